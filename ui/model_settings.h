@@ -5,9 +5,9 @@
 #include <string>
 
 #include "engine/base/fields.h"
-#include "engine/neural/attention_parameters.h"
-#include "engine/neural/dreambooth_parameters.h"
-#include "engine/neural/sds_parameters.h"
+#include "engine/neural/api/attention_parameters.h"
+#include "engine/neural/api/dreambooth_parameters.h"
+#include "engine/neural/api/sds_parameters.h"
 
 namespace gse::ui {
 

@@ -8,7 +8,7 @@
 #include <cctype>
 
 #include "engine/base/error.h"
-#include "engine/edit/vocabulary.h"
+#include "engine/edit/request/vocabulary.h"
 
 namespace gse::ui {
 namespace {
@@ -25,7 +25,7 @@ bool unread(const std::string& sentence, const std::string& phrase, const Senten
 }
 
 std::string unknown_source(const std::string& source, const SentenceGround& ground) {
-    if (edit::knows(edit::words_to_say(ground.known, ground.drawn), source))
+    if (edit::knows(edit::promptable_vocabulary(ground.known, ground.drawn), source))
         return fmt::format("The model can draw \"{}\" but not find it: label it by hand instead", source);
     return fmt::format("The model does not know the word \"{}\" and cannot find it: label it by hand instead",
                        edit::unknown_word(ground.known, source));
@@ -69,9 +69,9 @@ std::string problem_of(const edit::EditRequest& request, const SentenceGround& g
     try {
         edit::require_known_words(valid, ground.known, drawn, ground.labelled_by_hand);
     } catch (const Error& error) {
-        return fmt::format(
-            "{}: {}", first_letter_up(error.message()),
-            what_to_say(valid.target, edit::words_to_say(ground.known, drawn), !drawn.empty(), error.hint()));
+        return fmt::format("{}: {}", first_letter_up(error.message()),
+                           what_to_say(valid.target, edit::promptable_vocabulary(ground.known, drawn),
+                                       !drawn.empty(), error.hint()));
     }
     for (const auto& word : {valid.source, valid.target})
         if (unread(valid.prompt, word, ground))
@@ -101,7 +101,7 @@ edit::EditRequest with_target(edit::EditRequest request, const std::vector<std::
 
 SentenceFacts facts_of(const edit::EditRequest& request, const SentenceGround& ground) {
     SentenceFacts facts;
-    const auto say = edit::words_to_say(ground.known, ground.drawn);
+    const auto say = edit::promptable_vocabulary(ground.known, ground.drawn);
     for (const auto& word : edit::words_of(request.prompt)) {
         Chip chip;
         chip.text = word;

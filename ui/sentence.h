@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/edit/request.h"
+#include "engine/edit/request/request.h"
 #include "ui/widgets/chips.h"
 
 namespace gse::ui {

@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include "engine/base/answer_memory.h"
+#include "engine/base/answer_cache.h"
 
 namespace gse {
 
@@ -18,7 +18,7 @@ namespace gse {
 /// error: a folder that cannot be read or written remembers nothing, and a file that is not whole is removed
 /// and counts as not there. Entries appear whole (written beside their place and renamed), so processes may
 /// share a folder; threads may share an object.
-class DiskCache final : public AnswerMemory {
+class DiskCache final : public AnswerCache {
 public:
     /// Entries beyond `most_bytes` together are removed, those used least recently first. The folder is made
     /// when something is kept.

@@ -36,18 +36,18 @@ LabelWeights weights_of(const std::vector<double>& masked, std::vector<double> t
 
 }  // namespace
 
-KeptVotes::Vote* KeptVotes::find(const Camera& camera) {
+VoteCache::Vote* VoteCache::find(const Camera& camera) {
     const auto found =
         std::find_if(votes_.begin(), votes_.end(), [&](const Vote& vote) { return vote.camera == camera; });
     return found != votes_.end() ? &*found : nullptr;
 }
 
-std::size_t KeptVotes::Vote::bytes() const {
+std::size_t VoteCache::Vote::bytes() const {
     return row.size() * RowBytes + mask.data.size() * sizeof mask.data[0];
 }
 
 /// What the view says of every row, in masked_ and total_; returns how many rows it shows.
-std::size_t KeptVotes::cast(const GaussianSpans& gaussians, const MaskedView& view,
+std::size_t VoteCache::cast(const GaussianSpans& gaussians, const MaskedView& view,
                             const raster::Settings& settings, raster::Rasterizer& rasterizer) {
     masked_.assign(gaussians.size, 0);
     total_.assign(gaussians.size, 0);
@@ -57,7 +57,7 @@ std::size_t KeptVotes::cast(const GaussianSpans& gaussians, const MaskedView& vi
 }
 
 /// Keeps what was cast for the rows that are shown, in place of what the camera's view said before.
-void KeptVotes::keep(const MaskedView& view, std::size_t shown, Vote* old) {
+void VoteCache::keep(const MaskedView& view, std::size_t shown, Vote* old) {
     if (old != nullptr) bytes_ -= old->bytes();
     Vote vote;
     vote.camera = view.camera;
@@ -78,7 +78,7 @@ void KeptVotes::keep(const MaskedView& view, std::size_t shown, Vote* old) {
     else if (!vote.mask.data.empty()) votes_.push_back(std::move(vote));
 }
 
-LabelWeights KeptVotes::back_project(const GaussianSpans& gaussians, std::span<const MaskedView> views,
+LabelWeights VoteCache::back_project(const GaussianSpans& gaussians, std::span<const MaskedView> views,
                                      const raster::Settings& settings, raster::Rasterizer& rasterizer) {
     require_votes(views);
     std::vector<double> masked(gaussians.size), total(gaussians.size);

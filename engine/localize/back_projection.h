@@ -30,10 +30,10 @@ struct MaskedView {
 
 /// Votes of views, kept (as far as their memory allows) for as long as scene and settings are the same: of a
 /// view that comes again with the same mask nothing is rendered. The weights are the same to the last bit.
-class KeptVotes {
+class VoteCache {
 public:
     static constexpr std::size_t MostBytes = std::size_t{512} << 20;
-    explicit KeptVotes(std::size_t most_bytes = MostBytes) : most_bytes_(most_bytes) {}
+    explicit VoteCache(std::size_t most_bytes = MostBytes) : most_bytes_(most_bytes) {}
 
     /// Throws Error when more than half of the views failed or none is left.
     LabelWeights back_project(const GaussianSpans& gaussians, std::span<const MaskedView> views,

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <thread>
 
-#include "engine/neural/api.h"
-#include "engine/neural/buffer_cache.h"
-#include "engine/neural/model.h"
-#include "engine/neural/sam_segmenter.h"
-#include "engine/neural/text_segmenter.h"
-#include "engine/neural/torch_errors.h"
+#include "engine/neural/api/api.h"
+#include "engine/neural/clip/text_segmenter.h"
+#include "engine/neural/diffusion/model.h"
+#include "engine/neural/layers/buffer_cache.h"
+#include "engine/neural/layers/torch_errors.h"
+#include "engine/neural/sam/sam_segmenter.h"
 
 namespace gse::neural {
 namespace {

@@ -1,8 +1,13 @@
-# gse_module(NAME DEPS a b [LIBS x y]): the library gse_NAME from every .cpp of engine/NAME (kernels with their own
-# flags are added by the folder itself), linked to the modules it may use according to the design's table of arrows.
+# gse_module(NAME DEPS a b [ROOMS r s] [LIBS x y] [EXCLUDE f]): the library gse_NAME from every .cpp of the calling folder
+# and of its sub-folders ROOMS (kernels with their own flags are added by the folder itself), linked to the modules it may
+# use according to the table of arrows (tests/lint).
 function(gse_module name)
-  cmake_parse_arguments(arg "" "" "DEPS;LIBS;EXCLUDE" ${ARGN})
+  cmake_parse_arguments(arg "" "" "DEPS;ROOMS;LIBS;EXCLUDE" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  foreach(room ${arg_ROOMS})
+    file(GLOB room_sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${room}/*.cpp)
+    list(APPEND sources ${room_sources})
+  endforeach()
   foreach(excluded ${arg_EXCLUDE})
     list(REMOVE_ITEM sources ${CMAKE_CURRENT_SOURCE_DIR}/${excluded})
   endforeach()

@@ -1,4 +1,4 @@
-"""Pictures in the GPU's memory, and batches of them as engine/neural/starter_shape_stage.cpp and starter_inpainting.cpp make them."""
+"""Pictures in the GPU's memory, and batches of them as engine/neural/starter/starter_shape_stage.cpp and starter_inpainting.cpp make them."""
 import math
 import os
 import queue
@@ -19,7 +19,7 @@ LARGEST_MARGIN = 5
 
 
 def read_shard(path):
-    """The arrays of a file of `gseditpro train-starter --pictures-only` (engine/training/picture_shards.h)."""
+    """The arrays of a file of `gseditpro train-starter --pictures-only` (engine/laboratory/training/picture_shards.h)."""
     raw = np.fromfile(path, np.uint8)
     magic, n, side, cells, wordings, words = (int(value) for value in raw[:24].view(np.int32))
     if magic != 0x32485347 or (side, cells, wordings, words) != (SIDE, CELLS, WORDINGS, TOKENS - 2):

@@ -1,4 +1,4 @@
-"""The network that draws new things (engine/neural/unet.cpp), with the parameter names of diffusers' UNet2DConditionModel.
+"""The network that draws new things (engine/neural/diffusion/unet.cpp), with the parameter names of diffusers' UNet2DConditionModel.
 
 Tensors are [B,C,h,w] and [B,tokens,C]; norms sum in fp32 whatever the type.
 """

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Trains the classifier that tells from where a picture shows a thing (engine/neural/viewpoint_model.h), on a processor or a GPU, from
+"""Trains the classifier that tells from where a picture shows a thing (engine/neural/clip/viewpoint_model.h), on a processor or a GPU, from
 pictures that `gseditpro train-starter --pictures-only` has drawn, and writes it into a starter model's folder. Needs PyTorch and NumPy."""
 import argparse
 import glob

@@ -1,5 +1,5 @@
 // Fuzz target: the reader of what torch.save writes.
-#include "engine/neural/torch_pickle.h"
+#include "engine/neural/weights/torch_pickle.h"
 #include "tests/fuzz/fuzz_helpers.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -7,9 +7,9 @@
 #include <cctype>
 #include <cmath>
 
-#include "engine/edit/instruction.h"
-#include "engine/edit/method_fields.h"
-#include "engine/edit/vocabulary.h"
+#include "engine/edit/request/instruction.h"
+#include "engine/edit/request/method_fields.h"
+#include "engine/edit/request/vocabulary.h"
 #include "engine/scene/strength.h"
 #include "ui/commands.h"
 #include "ui/keyboard.h"

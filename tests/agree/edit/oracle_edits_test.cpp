@@ -6,12 +6,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/edit/oracle_guidance.h"
-#include "engine/edit/session.h"
+#include "engine/edit/optimise/edit_loop.h"
+#include "engine/edit/optimise/oracle_guidance.h"
 #include "engine/evaluate/metrics.h"
+#include "engine/laboratory/synth/synth.h"
 #include "engine/localize/clusters.h"
 #include "engine/scene/delta.h"
-#include "engine/synth/synth.h"
 
 namespace oracle_edits_test {
 

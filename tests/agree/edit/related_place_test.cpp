@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "engine/base/log.h"
-#include "engine/edit/locate.h"
+#include "engine/edit/search/locate.h"
+#include "engine/laboratory/synth/synth.h"
 #include "engine/localize/clusters.h"
-#include "engine/synth/synth.h"
 
 namespace related_place_test {
 
@@ -96,7 +96,7 @@ edit::LocateResult locate(const World& world, const std::string& sentence, const
         {*world.rasterizer, attention, nullptr, nullptr, {}});
 }
 
-Vec3 centre_of(const edit::AddRegion& region) {
+Vec3 centre_of(const edit::VoxelRegion& region) {
     Vec3 mean;
     for (const auto& cell : region.centres) mean = mean + cell / static_cast<double>(region.centres.size());
     return mean;

@@ -11,12 +11,12 @@
 #include <numeric>
 
 #include "engine/base/error.h"
-#include "engine/edit/locate.h"
-#include "engine/edit/session.h"
+#include "engine/edit/optimise/edit_loop.h"
+#include "engine/edit/search/locate.h"
 #include "engine/evaluate/metrics.h"
+#include "engine/laboratory/synth/synth.h"
 #include "engine/localize/clusters.h"
 #include "engine/raster/rasterizer.h"
-#include "engine/synth/synth.h"
 
 namespace shape_edit_test {
 
@@ -70,16 +70,16 @@ Image picture(raster::Rasterizer& rasterizer, const GaussianSet& set, const Came
 }
 
 /// Draws the true scene, and knows where the new thing is in it; some outlines may be wrong.
-struct TrueViews : edit::ViewGuidance, edit::AttentionSource {
+struct TrueViews : edit::MultiViewEditor, edit::AttentionSource {
     TrueViews(const synth::SynthScene& scene, synth::Part what, raster::Rasterizer& r)
         : truth(scene), part(what), rasterizer(r) {}
-    edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput& input,
-                            const JobControl&) override {
+    edit::EditedViews edit(const std::vector<edit::EditView>& views, const edit::EditViewsRequest& input,
+                           const JobControl&) override {
         inputs.push_back(input);
         counts.push_back(views.size());
         cameras.clear();
         asked = 0;
-        edit::RoundTargets targets;
+        edit::EditedViews targets;
         for (const auto& view : views) {
             cameras.push_back(view.view.camera);
             targets.images.push_back(picture(rasterizer, shown().scene.gaussians, view.view.camera));
@@ -106,7 +106,7 @@ struct TrueViews : edit::ViewGuidance, edit::AttentionSource {
     const synth::SynthScene* at_first = nullptr;  // what the first round shows instead
     synth::Part part;
     raster::Rasterizer& rasterizer;
-    std::vector<edit::RoundInput> inputs;
+    std::vector<edit::EditViewsRequest> inputs;
     std::vector<std::size_t> counts;  // of views, per input
     std::vector<Camera> cameras;
     std::vector<std::string> words;

@@ -5,10 +5,10 @@
 
 #include <numbers>
 
-#include "engine/edit/oracle_guidance.h"
-#include "engine/edit/session.h"
+#include "engine/edit/optimise/edit_loop.h"
+#include "engine/edit/optimise/oracle_guidance.h"
+#include "engine/laboratory/synth/synth.h"
 #include "engine/scene/delta.h"
-#include "engine/synth/synth.h"
 #include "tests/agree/raster/scenes.h"
 
 namespace view_session_edit_test {

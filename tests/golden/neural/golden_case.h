@@ -9,9 +9,9 @@
 #include <fstream>
 #include <string>
 
-#include "engine/neural/config.h"
-#include "engine/neural/safetensors.h"
-#include "engine/neural/weights.h"
+#include "engine/neural/weights/config.h"
+#include "engine/neural/weights/safetensors.h"
+#include "engine/neural/weights/weights.h"
 #include "tests/test_paths.h"
 
 namespace gse::test {

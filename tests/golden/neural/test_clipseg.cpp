@@ -2,7 +2,7 @@
 // the condition.
 #include <algorithm>
 
-#include "engine/neural/clipseg_model.h"
+#include "engine/neural/clip/clipseg_model.h"
 #include "tests/golden/neural/golden_case.h"
 
 namespace gse::test {

@@ -4,11 +4,11 @@
 #include <numeric>
 
 #include "engine/base/error.h"
-#include "engine/neural/key_map.h"
-#include "engine/neural/text_encoder.h"
-#include "engine/neural/tokenizer.h"
-#include "engine/neural/unet.h"
-#include "engine/neural/vae.h"
+#include "engine/neural/diffusion/text_encoder.h"
+#include "engine/neural/diffusion/tokenizer.h"
+#include "engine/neural/diffusion/unet.h"
+#include "engine/neural/diffusion/vae.h"
+#include "engine/neural/weights/key_map.h"
 #include "tests/golden/neural/golden_case.h"
 
 namespace {

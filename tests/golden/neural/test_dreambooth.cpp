@@ -1,7 +1,7 @@
 // DreamBooth's training step against the reference: losses, gradients, clipping, AdamW, with and without
 // prior and text encoder.
-#include "engine/neural/dreambooth.h"
-#include "engine/neural/key_map.h"
+#include "engine/neural/guidance/dreambooth.h"
+#include "engine/neural/weights/key_map.h"
 #include "tests/golden/neural/golden_case.h"
 #include "tests/golden/neural/tolerances.h"
 

@@ -2,8 +2,8 @@
 // autoencoder.
 #include <fstream>
 
-#include "engine/neural/key_map.h"
-#include "engine/neural/pipelines.h"
+#include "engine/neural/diffusion/pipelines.h"
+#include "engine/neural/weights/key_map.h"
 #include "tests/golden/neural/bundle_folder.h"
 #include "tests/golden/neural/fake_model.h"
 #include "tests/golden/neural/tolerances.h"

@@ -3,9 +3,9 @@
 #include <set>
 
 #include "engine/base/error.h"
-#include "engine/neural/key_map.h"
-#include "engine/neural/schedulers.h"
-#include "engine/neural/unet.h"
+#include "engine/neural/diffusion/schedulers.h"
+#include "engine/neural/diffusion/unet.h"
+#include "engine/neural/weights/key_map.h"
 #include "tests/golden/neural/fake_model.h"
 #include "tests/golden/neural/tolerances.h"
 

@@ -8,10 +8,10 @@
 #include <sstream>
 
 #include "engine/base/error.h"
-#include "engine/neural/key_map.h"
-#include "engine/neural/lora.h"
-#include "engine/neural/text_encoder.h"
-#include "engine/neural/unet.h"
+#include "engine/neural/diffusion/text_encoder.h"
+#include "engine/neural/diffusion/unet.h"
+#include "engine/neural/weights/key_map.h"
+#include "engine/neural/weights/lora.h"
 #include "tests/golden/neural/golden_case.h"
 #include "tests/golden/neural/tolerances.h"
 

@@ -1,11 +1,11 @@
 // UNet, VAE, text encoder and CLIP against the reference implementations: outputs, attention maps and
 // gradients.
-#include "engine/neural/clip_model.h"
-#include "engine/neural/key_map.h"
-#include "engine/neural/schedulers.h"
-#include "engine/neural/text_encoder.h"
-#include "engine/neural/unet.h"
-#include "engine/neural/vae.h"
+#include "engine/neural/clip/clip_model.h"
+#include "engine/neural/diffusion/schedulers.h"
+#include "engine/neural/diffusion/text_encoder.h"
+#include "engine/neural/diffusion/unet.h"
+#include "engine/neural/diffusion/vae.h"
+#include "engine/neural/weights/key_map.h"
 #include "tests/golden/neural/golden_case.h"
 #include "tests/golden/neural/tolerances.h"
 

@@ -1,7 +1,7 @@
 // Whole models against diffusers: text to image, image to image, score distillation, single-file checkpoints.
 #include "engine/base/error.h"
-#include "engine/neural/key_map.h"
-#include "engine/neural/pipelines.h"
+#include "engine/neural/diffusion/pipelines.h"
+#include "engine/neural/weights/key_map.h"
 #include "tests/golden/neural/golden_case.h"
 #include "tests/golden/neural/tolerances.h"
 

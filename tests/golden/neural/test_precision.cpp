@@ -1,9 +1,9 @@
 // A UNet in bfloat16 is as near to fp32 as rounding allows, and no nearer: it really computes in it
 // (goldens/precision).
-#include "engine/neural/key_map.h"
-#include "engine/neural/precision.h"
-#include "engine/neural/unet.h"
-#include "engine/neural/weights.h"
+#include "engine/neural/diffusion/unet.h"
+#include "engine/neural/layers/precision.h"
+#include "engine/neural/weights/key_map.h"
+#include "engine/neural/weights/weights.h"
 #include "tests/golden/neural/golden_case.h"
 
 using namespace gse;

@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include "engine/base/error.h"
-#include "engine/neural/images.h"
-#include "engine/neural/sam_model.h"
-#include "engine/neural/sam_segmenter.h"
-#include "engine/neural/torch_file.h"
+#include "engine/neural/layers/images.h"
+#include "engine/neural/sam/sam_model.h"
+#include "engine/neural/sam/sam_segmenter.h"
+#include "engine/neural/weights/torch_file.h"
 #include "tests/golden/neural/golden_case.h"
 
 namespace gse::test {

@@ -1,5 +1,5 @@
 // Noise schedule and samplers against diffusers.
-#include "engine/neural/schedulers.h"
+#include "engine/neural/diffusion/schedulers.h"
 
 #include "tests/golden/neural/fake_model.h"
 #include "tests/golden/neural/golden_case.h"

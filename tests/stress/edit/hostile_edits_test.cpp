@@ -179,7 +179,7 @@ DOCTEST_TEST_CASE("steps that are left out are not rest") {
         return output;
     });
     const auto result = edit::run_edit(scene.set, plan, request, {*rasterizer, guidance, {}, {}});
-    DOCTEST_CHECK_FALSE(result.came_to_rest);
+    DOCTEST_CHECK_FALSE(result.converged);
     DOCTEST_CHECK(result.skipped_steps == 45);
 }
 

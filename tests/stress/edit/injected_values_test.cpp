@@ -7,7 +7,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/log.h"
-#include "engine/edit/oracle_guidance.h"
+#include "engine/edit/optimise/oracle_guidance.h"
 #include "engine/scene/delta.h"
 #include "tests/unit/edit/view_oracle.h"
 
@@ -161,12 +161,12 @@ private:
 };
 
 /// Redrawn views, some of which are broken.
-class BreakingViews final : public edit::ViewGuidance {
+class BreakingViews final : public edit::MultiViewEditor {
 public:
-    BreakingViews(edit::ViewGuidance& whole, double share, std::uint64_t seed)
+    BreakingViews(edit::MultiViewEditor& whole, double share, std::uint64_t seed)
         : whole_(whole), share_(share), random_(seed) {}
-    edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput& input,
-                            const JobControl& job) override {
+    edit::EditedViews edit(const std::vector<edit::EditView>& views, const edit::EditViewsRequest& input,
+                           const JobControl& job) override {
         auto targets = whole_.edit(views, input, job);
         for (auto& image : targets.images) {
             if (all) std::fill(image.data.begin(), image.data.end(), broken_value(random_));
@@ -179,7 +179,7 @@ public:
     std::size_t broken = 0;  // values
 
 private:
-    edit::ViewGuidance& whole_;
+    edit::MultiViewEditor& whole_;
     double share_;
     Random random_;
 };

@@ -7,7 +7,7 @@
 
 #include "engine/base/log.h"
 #include "engine/base/process_memory.h"
-#include "engine/edit/oracle_guidance.h"
+#include "engine/edit/optimise/oracle_guidance.h"
 #include "engine/scene/delta.h"
 #include "tests/unit/edit/view_oracle.h"
 

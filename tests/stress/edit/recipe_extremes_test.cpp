@@ -7,7 +7,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/log.h"
-#include "engine/edit/oracle_guidance.h"
+#include "engine/edit/optimise/oracle_guidance.h"
 #include "tests/unit/edit/view_oracle.h"
 
 namespace recipe_extremes_test {

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "engine/base/random.h"
-#include "engine/edit/working_set.h"
+#include "engine/edit/optimise/working_set.h"
 #include "tests/unit/edit/edit_scenes.h"
 
 namespace snapshots_test {

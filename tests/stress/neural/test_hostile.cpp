@@ -4,9 +4,9 @@
 #include <fstream>
 
 #include "engine/base/random.h"
-#include "engine/neural/attention_source.h"
-#include "engine/neural/key_map.h"
-#include "engine/neural/sds_guidance.h"
+#include "engine/neural/guidance/attention_source.h"
+#include "engine/neural/guidance/sds_guidance.h"
+#include "engine/neural/weights/key_map.h"
 #include "tests/unit/neural/tiny_model.h"
 
 using namespace gse;

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "engine/pipeline/views.h"
+#include "engine/pipeline/run/views.h"
 #include "tests/ui/app/session.h"
 
 namespace front_test {

@@ -2,7 +2,7 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
-#include "app/application.h"
+#include "app/session/application.h"
 #include "engine/scene/label_ops.h"
 #include "tests/ui/app/session.h"
 

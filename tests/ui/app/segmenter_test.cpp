@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "engine/base/file.h"
-#include "engine/pipeline/views.h"
+#include "engine/pipeline/run/views.h"
 #include "engine/scene/label_ops.h"
 #include "tests/ui/app/session.h"
 

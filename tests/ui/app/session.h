@@ -10,7 +10,7 @@
 #include <string>
 #include <thread>
 
-#include "app/application.h"
+#include "app/session/application.h"
 #include "tests/test_paths.h"
 
 namespace gse::test {

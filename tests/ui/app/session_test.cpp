@@ -9,12 +9,12 @@
 #include <filesystem>
 #include <thread>
 
-#include "app/application.h"
+#include "app/session/application.h"
 #include "engine/base/file.h"
 #include "engine/io/cameras.h"
 #include "engine/io/image_file.h"
 #include "engine/io/scene_io.h"
-#include "engine/pipeline/film.h"
+#include "engine/pipeline/report/film.h"
 #include "engine/scene/label_ops.h"
 #include "tests/ui/app/session.h"
 

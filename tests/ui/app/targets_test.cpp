@@ -3,7 +3,7 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
-#include "app/application.h"
+#include "app/session/application.h"
 #include "engine/base/process_memory.h"
 #include "tests/ui/app/session.h"
 

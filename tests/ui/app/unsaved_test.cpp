@@ -8,7 +8,7 @@
 #include "engine/base/file.h"
 #include "engine/io/cameras.h"
 #include "engine/io/scene_io.h"
-#include "engine/pipeline/scene_tools.h"
+#include "engine/pipeline/run/scene_tools.h"
 #include "tests/ui/app/session.h"
 
 namespace unsaved_test {

@@ -8,10 +8,10 @@
 
 #include "engine/base/random.h"
 #include "engine/base/thread_pool.h"
+#include "engine/laboratory/synth/synth.h"
 #include "engine/raster/rasterizer.h"
 #include "engine/scene/framing.h"
 #include "engine/scene/viewpoints.h"
-#include "engine/synth/synth.h"
 
 namespace gse::test {
 

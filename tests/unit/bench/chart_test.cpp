@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/bench/growth.h"
-#include "engine/bench/pareto_chart.h"
-#include "engine/bench/setting_points.h"
-#include "engine/bench/subject.h"
 #include "engine/io/image_file.h"
+#include "engine/laboratory/bench/growth.h"
+#include "engine/laboratory/bench/pareto_chart.h"
+#include "engine/laboratory/bench/setting_points.h"
+#include "engine/laboratory/bench/subject.h"
 #include "tests/test_paths.h"
 
 namespace chart_test {

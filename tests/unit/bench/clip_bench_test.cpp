@@ -4,9 +4,9 @@
 #include <doctest/doctest.h>
 
 #include "engine/base/error.h"
-#include "engine/bench/clip_bench.h"
-#include "engine/pipeline/edit_job.h"
-#include "engine/pipeline/neural_loader.h"
+#include "engine/laboratory/bench/clip_bench.h"
+#include "engine/pipeline/models/neural_loader.h"
+#include "engine/pipeline/run/edit_job.h"
 #include "tests/test_paths.h"
 
 namespace clip_bench_test {
@@ -25,13 +25,13 @@ constexpr double BetterThanGuessing =
     0.3;  // of shapes; 64 pixels and few samples tell twelve objects apart badly
 
 /// An encoder that sees nothing.
-struct BlindScore : edit::TextImageScore {
+struct BlindScore : edit::ImageTextEncoder {
     std::vector<float> image(const Image&) override { return {1, 0}; }
     std::vector<float> text(const std::string&) override { return {0, 1}; }
 };
 
 /// The starter's encoder; null (after a [skip] line) when model or networks are not there.
-std::unique_ptr<edit::TextImageScore> starter_score() {
+std::unique_ptr<edit::ImageTextEncoder> starter_score() {
     if (!test::available(starter_model_path() / "clip/config.json")) return nullptr;
     try {
         neural_api().set_threads(1);
@@ -42,7 +42,7 @@ std::unique_ptr<edit::TextImageScore> starter_score() {
     }
     JobParameters job;
     static const auto model = load_recipe_model(job);
-    return model->text_image_score();
+    return model->image_text_encoder();
 }
 
 }  // namespace

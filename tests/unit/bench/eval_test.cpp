@@ -10,10 +10,10 @@
 #include <set>
 
 #include "engine/base/error.h"
-#include "engine/bench/eval_figures.h"
-#include "engine/bench/eval_scenes.h"
-#include "engine/bench/eval_suite.h"
-#include "engine/bench/eval_summary.h"
+#include "engine/laboratory/eval/eval_figures.h"
+#include "engine/laboratory/eval/eval_scenes.h"
+#include "engine/laboratory/eval/eval_suite.h"
+#include "engine/laboratory/eval/eval_summary.h"
 #include "tests/test_paths.h"
 
 namespace eval_test {

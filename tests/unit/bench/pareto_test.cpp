@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/bench/pareto_chart.h"
 #include "engine/io/image_file.h"
+#include "engine/laboratory/bench/pareto_chart.h"
 #include "tests/test_paths.h"
 
 namespace pareto_test {

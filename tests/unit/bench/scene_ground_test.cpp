@@ -2,8 +2,8 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
-#include "engine/edit/plain_ground.h"
-#include "engine/synth/without_ground.h"
+#include "engine/edit/target_views/strategies/studio_background.h"
+#include "engine/laboratory/synth/without_ground.h"
 
 namespace scene_ground_test {
 

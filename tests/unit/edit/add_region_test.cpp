@@ -230,7 +230,7 @@ DOCTEST_TEST_CASE("anchors lie where their names say") {
 }
 
 DOCTEST_TEST_CASE("seeds lie in the region, are finite and repeatable") {
-    edit::AddRegion region;
+    edit::VoxelRegion region;
     region.side = 0.1;
     region.centres = {{0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}};
     const auto seeds = edit::seed_splats(region, 350, 2, 9, 0.1);
@@ -257,7 +257,7 @@ DOCTEST_TEST_CASE("seeds lie in the region, are finite and repeatable") {
 DOCTEST_TEST_CASE("beside is the side with room, under is below what floats and at the foot of what stands") {
     const Search setup({-0.55, -0.55, 0}, 0.2);  // the red ball; the green one lies at its right
     auto search = setup.search();
-    const auto middle = [](const edit::AddRegion& region) {
+    const auto middle = [](const edit::VoxelRegion& region) {
         Vec3 mean;
         for (const auto& cell : region.centres)
             mean = mean + cell / static_cast<double>(region.centres.size());

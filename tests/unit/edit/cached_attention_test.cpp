@@ -2,7 +2,7 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
-#include "engine/edit/cached_attention.h"
+#include "engine/edit/search/cached_attention.h"
 
 namespace cached_attention_test {
 

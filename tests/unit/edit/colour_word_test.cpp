@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/edit/colour_word.h"
+#include "engine/edit/request/colour_word.h"
 
 namespace colour_word_test {
 

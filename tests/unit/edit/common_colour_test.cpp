@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/base/random.h"
-#include "engine/edit/common_colour.h"
+#include "engine/edit/optimise/common_colour.h"
 #include "engine/math/sh.h"
 
 namespace common_colour_test {

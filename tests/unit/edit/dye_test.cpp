@@ -11,8 +11,8 @@
 
 #include "engine/base/error.h"
 #include "engine/base/random.h"
-#include "engine/edit/dye.h"
-#include "engine/edit/vocabulary.h"
+#include "engine/edit/request/vocabulary.h"
+#include "engine/edit/target_views/strategies/colour_remap.h"
 #include "engine/math/sh.h"
 
 namespace dye_test {
@@ -34,9 +34,9 @@ edit::EditRequest request_of(const std::string& prompt, const std::string& targe
     return edit::validated(request);
 }
 
-std::optional<edit::Dye> dye(const std::string& prompt, const std::string& target,
-                             edit::EditMode mode = edit::EditMode::Modify,
-                             const std::vector<std::string>& known = Few) {
+std::optional<edit::ColourRemap> dye(const std::string& prompt, const std::string& target,
+                                     edit::EditMode mode = edit::EditMode::Modify,
+                                     const std::vector<std::string>& known = Few) {
     return edit::dye_of(request_of(prompt, target), mode, known);
 }
 
@@ -44,7 +44,7 @@ using Words = std::vector<std::string>;
 
 constexpr Rgb Red{0.85f, 0.07f, 0.07f};
 
-Rgb dyed(const edit::Dye& with, const Rgb& colour, float much = 1) {
+Rgb dyed(const edit::ColourRemap& with, const Rgb& colour, float much = 1) {
     // Most of the thing is of a clear red.
     Image image(5, 1, 3), share(5, 1, 1, much);
     for (std::size_t p = 0; p < 5; ++p)
@@ -65,12 +65,12 @@ double difference(const Rgb& a, const Rgb& b) {
 constexpr double Rounding = 1e-5;  // some float operations on numbers up to 1
 
 /// Draws all of a view red on white, and tells that its left half is new.
-class RedViews final : public edit::ViewGuidance {
+class RedViews final : public edit::MultiViewEditor {
 public:
-    edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput& input,
-                            const JobControl&) override {
+    edit::EditedViews edit(const std::vector<edit::EditView>& views, const edit::EditViewsRequest& input,
+                           const JobControl&) override {
         told = input.sentence;
-        edit::RoundTargets targets;
+        edit::EditedViews targets;
         for (const auto& view : views) {
             Image picture(view.rendered.width, view.rendered.height, 3),
                 outline(view.rendered.width, view.rendered.height, 1);
@@ -202,12 +202,12 @@ DOCTEST_TEST_CASE(
     const auto pink = dye("a pink cat", "cat", edit::EditMode::Replace);
     DOCTEST_REQUIRE(pink);
     edit::DyedViews views(red, *pink);
-    edit::RoundView view;
+    edit::EditView view;
     view.rendered = view.original = Image(8, 8, 3);
     view.mask = Mask(8, 8);
     for (int y = 0; y < 4; ++y)
         for (int x = 0; x < 8; ++x) view.mask.at(x, y) = 1;
-    edit::RoundInput input;
+    edit::EditViewsRequest input;
     input.sentence = "a pink cat on the grass";
     for (const bool anew : {true, false}) {
         input.anew = anew;

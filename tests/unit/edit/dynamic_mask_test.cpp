@@ -3,8 +3,8 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
-#include "engine/edit/add_region.h"
-#include "engine/edit/dynamic_mask.h"
+#include "engine/edit/optimise/dynamic_mask.h"
+#include "engine/edit/placement/voxel_region.h"
 #include "tests/unit/edit/edit_scenes.h"
 
 namespace dynamic_mask_test {
@@ -135,7 +135,7 @@ DOCTEST_TEST_CASE("a mask that would run away, or be empty, stays as it was") {
 }
 
 DOCTEST_TEST_CASE("rest is when no view changes, and not before all were seen twice") {
-    edit::RestDetector rest(3, 0.01);
+    edit::ConvergenceDetector rest(3, 0.01);
     rest.ignore(2);
     const Mask mask = disc(32, 32, 10);
     Image shown(Side, Side, 3, 0.5f);
@@ -164,10 +164,10 @@ DOCTEST_TEST_CASE("the loop refreshes masks and stops when it is at rest") {
     const auto all = edit::run_edit(scene.set, plan, request, tools);
     DOCTEST_CHECK(all.iterations == 40);
     DOCTEST_CHECK(attention.calls >= 4);
-    DOCTEST_CHECK_FALSE(all.came_to_rest);
+    DOCTEST_CHECK_FALSE(all.converged);
     request.early_stop = true;
     const auto early = edit::run_edit(scene.set, plan, request, tools);
-    DOCTEST_CHECK(early.came_to_rest);
+    DOCTEST_CHECK(early.converged);
     DOCTEST_CHECK(early.iterations < 40);
 }
 
@@ -176,7 +176,7 @@ DOCTEST_TEST_CASE("new splats outside of where the new thing is seen go, unless 
     auto rasterizer = raster::make_plain_rasterizer();
     auto plan = test::ball_plan(scene, *rasterizer, 6, 24);
     plan.label.assign(plan.label.size(), 0);
-    edit::AddRegion high, low;  // the scene's up is -y
+    edit::VoxelRegion high, low;  // the scene's up is -y
     high.side = low.side = 0.2;
     high.centres = {{0, -0.75, 0}};
     low.centres = {{0, 0.75, 0}};

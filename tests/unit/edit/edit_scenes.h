@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "engine/base/random.h"
-#include "engine/edit/interfaces.h"
-#include "engine/edit/locate.h"
-#include "engine/edit/session.h"
+#include "engine/edit/interfaces/interfaces.h"
+#include "engine/edit/optimise/edit_loop.h"
+#include "engine/edit/search/locate.h"
 #include "engine/localize/clusters.h"
 
 namespace gse::test {

@@ -6,7 +6,7 @@
 #include <memory>
 #include <numbers>
 
-#include "engine/edit/front_reading.h"
+#include "engine/edit/search/front_reading.h"
 
 namespace front_reading_test {
 
@@ -20,7 +20,7 @@ constexpr double Pi = std::numbers::pi;
 /// Knows pictures by their first value, the azimuth at which they see the front, and words by their side;
 /// likes one word better than the others in every picture, and one picture better than the others with every
 /// word.
-class ToyEncoder : public TextImageScore {
+class ToyEncoder : public ImageTextEncoder {
 public:
     explicit ToyEncoder(double strength) : strength_(strength) {}
     std::vector<float> image(const Image& image) override {
@@ -61,7 +61,7 @@ public:
 };
 
 template <class Encoder> FrontReading read(double front, double strength, int count) {
-    Recognition recognition(std::make_unique<Encoder>(strength), {});
+    VocabularyRanker recognition(std::make_unique<Encoder>(strength), {});
     std::vector<Image> pictures;
     std::vector<double> azimuths;
     for (int i = 0; i < count; ++i) {

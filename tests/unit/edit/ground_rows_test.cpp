@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "engine/edit/ground_rows.h"
+#include "engine/edit/placement/ground_rows.h"
 #include "tests/unit/edit/box_rows.h"
 
 namespace ground_rows_test {

@@ -2,7 +2,7 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
-#include "engine/edit/instruction.h"
+#include "engine/edit/request/instruction.h"
 
 namespace instruction_test {
 

@@ -6,10 +6,10 @@
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/base/thread_pool.h"
-#include "engine/edit/left_out.h"
-#include "engine/edit/locate.h"
-#include "engine/edit/search_outcome.h"
-#include "engine/edit/view_vote.h"
+#include "engine/edit/masks/search_outcome.h"
+#include "engine/edit/masks/view_vote.h"
+#include "engine/edit/request/excluded_views.h"
+#include "engine/edit/search/locate.h"
 #include "tests/unit/edit/edit_scenes.h"
 
 namespace left_out_test {

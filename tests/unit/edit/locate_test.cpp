@@ -4,8 +4,8 @@
 
 #include "engine/base/error.h"
 #include "engine/base/log.h"
-#include "engine/edit/cached_attention.h"
-#include "engine/edit/grabcut_segmenter.h"
+#include "engine/edit/search/cached_attention.h"
+#include "engine/edit/search/grabcut_segmenter.h"
 #include "tests/unit/edit/edit_scenes.h"
 
 namespace locate_test {
@@ -597,13 +597,13 @@ DOCTEST_TEST_CASE(
 DOCTEST_TEST_CASE("networks see a ground that is no part of the scene, and the views agree on it") {
     const Quiet quiet;
     const auto request = request_for("a blue ball", "blue");
-    const auto seen = [&](const std::optional<edit::PlainGround>& ground) {
+    const auto seen = [&](const std::optional<edit::StudioBackground>& ground) {
         Fixture fixture;
         auto input = fixture.input(request);
         input.ground = ground;
         return edit::locate(input, fixture.tools());
     };
-    const edit::PlainGround plain{{{0, 2, 0}, 1, 1, 1}, {0, -1, 0}, {0, 0, 0.2f}, {0, 0, 0.5f}};
+    const edit::StudioBackground plain{{{0, 2, 0}, 1, 1, 1}, {0, -1, 0}, {0, 0, 0.2f}, {0, 0, 0.5f}};
     const auto before_black = seen({}), before_plain = seen(plain);
     DOCTEST_CHECK(*before_plain.label.bits == *before_black.label.bits);  // both are as red as black
     DOCTEST_CHECK(before_plain.on_ground);

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "engine/base/random.h"
-#include "engine/edit/preservation.h"
-#include "engine/edit/working_set.h"
+#include "engine/edit/optimise/preservation_loss.h"
+#include "engine/edit/optimise/working_set.h"
 
 namespace losses_test {
 
@@ -116,7 +116,7 @@ DOCTEST_TEST_CASE("the generation schedule is its closed form (method 2.3)") {
 
 DOCTEST_TEST_CASE("the preservation loss and its gradient agree with the definition") {
     const Image image = random_image(17, 13, 1), original = random_image(17, 13, 2);
-    edit::Preservation preservation({0.8, 0.2, 10});
+    edit::PreservationLoss preservation({0.8, 0.2, 10});
     Image gradient(17, 13, 3);
     const Mask nothing(17, 13);
     const double loss = preservation.add_gradient(image, original, nothing, gradient);
@@ -144,7 +144,7 @@ DOCTEST_TEST_CASE(
         for (int y = y0; y < y0 + 3; ++y)
             for (int x = x0; x < x0 + 3; ++x)
                 for (int c = 0; c < 3; ++c) image.at(x, y, c) = other.at(x, y, c);
-        edit::Preservation preservation({0.8, 0.2, 10});
+        edit::PreservationLoss preservation({0.8, 0.2, 10});
         Image gradient(60, 50, 3);
         const double loss = preservation.add_gradient(image, original, Mask(60, 50), gradient);
         DOCTEST_CHECK(loss == doctest::Approx(plain_loss(image, original)).epsilon(1e-5));
@@ -173,7 +173,7 @@ DOCTEST_TEST_CASE("the pseudo ground truth leaves the inside of the mask alone b
     Mask mask(40, 24);
     for (int y = 0; y < 24; ++y)
         for (int x = 0; x < 20; ++x) mask.at(x, y) = 1;
-    edit::Preservation preservation({0.8, 0.2, 10});
+    edit::PreservationLoss preservation({0.8, 0.2, 10});
     Image gradient(40, 24, 3);
     const double loss = preservation.add_gradient(image, original, mask, gradient);
     DOCTEST_CHECK(loss > 0);
@@ -190,7 +190,7 @@ DOCTEST_TEST_CASE("the pseudo ground truth leaves the inside of the mask alone b
 DOCTEST_TEST_CASE("trust scales what a pixel's absolute difference counts") {
     const Image image = random_image(9, 7, 6), original = random_image(9, 7, 7);
     const Mask nothing(9, 7);
-    edit::Preservation preservation({1, 0, 10});
+    edit::PreservationLoss preservation({1, 0, 10});
     Image full(9, 7, 3), weighed(9, 7, 3), trust(9, 7, 1);
     std::fill(trust.data.begin(), trust.data.end(), 0.25f);
     trust.data[5] = 1;

@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
-#include "engine/edit/preservation.h"
-#include "engine/edit/working_set.h"
+#include "engine/edit/optimise/preservation_loss.h"
+#include "engine/edit/optimise/working_set.h"
 #include "tests/unit/edit/edit_scenes.h"
 #include "tests/unit/edit/row_gradients.h"
 
@@ -247,7 +247,7 @@ DOCTEST_TEST_CASE(
                                      {"ten times display white", filled(9, 8, 10), filled(10, 8, 10)}}};
     for (const auto& pair : pairs) {
         DOCTEST_CAPTURE(pair.name);
-        edit::Preservation preservation({0, 1, 1});
+        edit::PreservationLoss preservation({0, 1, 1});
         Image gradient(width, height, 3);
         const double loss = preservation.add_gradient(pair.a, pair.b, Mask(width, height), gradient);
         double twin_loss = 0, largest = 0, worst = 0;

@@ -9,7 +9,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/log.h"
-#include "engine/edit/place_drawing.h"
+#include "engine/edit/search/place_drawing.h"
 #include "tests/unit/edit/edit_scenes.h"
 
 namespace place_drawing_test {
@@ -53,12 +53,12 @@ private:
 
 /// Paints the hat where it belongs into the views; everything else a little differently, as an autoencoder
 /// does.
-class HatPainter : public edit::ViewGuidance {
+class HatPainter : public edit::MultiViewEditor {
 public:
-    edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput& input,
-                            const JobControl&) override {
+    edit::EditedViews edit(const std::vector<edit::EditView>& views, const edit::EditViewsRequest& input,
+                           const JobControl&) override {
         asked.push_back(input);
-        edit::RoundTargets targets;
+        edit::EditedViews targets;
         for (const auto& view : views) {
             const auto& camera = view.view.camera;
             const Vec3 centre = camera.to_camera(Hat);
@@ -92,7 +92,7 @@ public:
     }
     bool paints = true, tells = true, outlines = false, soft = false,
          breaks = false;  // breaks: the first value of each picture is not finite
-    std::vector<edit::RoundInput> asked;
+    std::vector<edit::EditViewsRequest> asked;
     std::vector<std::size_t> rooms;
     std::vector<float> corners;  // the first value of what it was shown
 };
@@ -125,7 +125,7 @@ struct Fixture {
     }
 };
 
-Vec3 middle(const edit::AddRegion& region) {
+Vec3 middle(const edit::VoxelRegion& region) {
     Vec3 sum;
     for (const auto& centre : region.centres)
         sum = sum + centre * (1.0 / static_cast<double>(region.centres.size()));
@@ -265,7 +265,7 @@ DOCTEST_TEST_CASE("a threshold that is asked for is that of told outlines, too")
         fixture.request.attention_threshold = threshold;
         return fixture.locate(&fixture.scene.first).region;
     };
-    const auto volume = [](const edit::AddRegion& region) {
+    const auto volume = [](const edit::VoxelRegion& region) {
         return static_cast<double>(region.centres.size()) * std::pow(region.side, 3);
     };
     const double usual = volume(cubes(0)), wide = volume(cubes(0.2)), narrow = volume(cubes(0.8));

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "engine/edit/ground_cover.h"
-#include "engine/edit/plain_ground.h"
+#include "engine/edit/placement/ground_cover.h"
+#include "engine/edit/target_views/strategies/studio_background.h"
 
 namespace plain_ground_test {
 
@@ -18,9 +18,9 @@ using namespace gse::edit;
 
 const Vec3 Up{0, -1, 0};
 
-Standing figure() { return {{0.5, 1, 2}, 1.0, 0.5, 0.4}; }
+UprightBounds figure() { return {{0.5, 1, 2}, 1.0, 0.5, 0.4}; }
 
-PlainGround ground_of(const std::string& sentence) { return *plain_ground(sentence, figure(), Up); }
+StudioBackground ground_of(const std::string& sentence) { return *plain_ground(sentence, figure(), Up); }
 
 /// Where the camera sees a point of the world.
 std::pair<int, int> pixel_of(const Camera& camera, const Vec3& point) {
@@ -30,12 +30,14 @@ std::pair<int, int> pixel_of(const Camera& camera, const Vec3& point) {
 }
 
 /// Keeps what it was shown; answers with outlines or without.
-class Recorder final : public ViewGuidance {
+class Recorder final : public MultiViewEditor {
 public:
-    explicit Recorder(bool outlines, bool restyles = false) : outlines_(outlines), restyles_(restyles) {}
-    RoundTargets edit(const std::vector<RoundView>& views, const RoundInput&, const JobControl&) override {
+    explicit Recorder(bool outlines, bool supports_appearance_editing = false)
+        : outlines_(outlines), restyles_(supports_appearance_editing) {}
+    EditedViews edit(const std::vector<EditView>& views, const EditViewsRequest&,
+                     const JobControl&) override {
         shown.push_back(views);
-        RoundTargets targets;
+        EditedViews targets;
         for (const auto& view : views) {
             targets.images.push_back(view.rendered);
             if (outlines_) targets.outlines.emplace_back(view.rendered.width, view.rendered.height, 1);
@@ -44,16 +46,16 @@ public:
         }
         return targets;
     }
-    bool restyles() const override { return restyles_; }
-    std::vector<std::vector<RoundView>> shown;
+    bool supports_appearance_editing() const override { return restyles_; }
+    std::vector<std::vector<EditView>> shown;
     float covers = 0;  // of every pixel, what it tells
 
 private:
     bool outlines_, restyles_;
 };
 
-RoundView red_view() {
-    RoundView view;
+EditView red_view() {
+    EditView view;
     view.view.camera = Camera::look_at({0.5, 0, -2}, {0.5, 0.7, 2}, Up, 0.8, 32, 24);
     view.rendered = Image(32, 24, 3);
     for (std::size_t i = 0; i < view.rendered.data.size(); i += 3) view.rendered.data[i] = 1;
@@ -92,17 +94,17 @@ DOCTEST_TEST_CASE("what is as flat as a ground, or is not there, stands on none"
     auto flat = figure();
     flat.height = 0.02;
     DOCTEST_CHECK_FALSE(plain_ground("snow", flat, Up).has_value());
-    DOCTEST_CHECK_FALSE(plain_ground("a cat", Standing{}, Up).has_value());
+    DOCTEST_CHECK_FALSE(plain_ground("a cat", UprightBounds{}, Up).has_value());
 }
 
 DOCTEST_TEST_CASE("only rounds that begin a new thing, and restyles, are shown the plain ground") {
     const auto view = red_view();
     const JobControl job;
-    const auto asked = [&](Recorder& model, const RoundInput& input) {
+    const auto asked = [&](Recorder& model, const EditViewsRequest& input) {
         OnPlainGround on_ground(model, ground_of("a red cat"), BeforePlain::Nothing);
         on_ground.edit({view}, input, job);
     };
-    RoundInput anew;
+    EditViewsRequest anew;
     anew.anew = true;
     Recorder tells(true);
     asked(tells, anew);
@@ -119,11 +121,11 @@ DOCTEST_TEST_CASE("only rounds that begin a new thing, and restyles, are shown t
     Recorder later(true);
     asked(later, anew);
     DOCTEST_CHECK(later.shown[0][0].rendered.data == view.rendered.data);
-    Recorder plain(false), restyles(false, true);
+    Recorder plain(false), supports_appearance_editing(false, true);
     asked(plain, {});
     DOCTEST_CHECK(plain.shown[0][0].rendered.data == view.rendered.data);
-    asked(restyles, {});
-    const auto& styled = restyles.shown[0][0];
+    asked(supports_appearance_editing, {});
+    const auto& styled = supports_appearance_editing.shown[0][0];
     DOCTEST_CHECK(styled.rendered.at(16, 12, 0) == 1);  // what may change is shown as it is
     DOCTEST_CHECK(styled.rendered.at(15, 12, 0) != 1);
 }
@@ -131,7 +133,7 @@ DOCTEST_TEST_CASE("only rounds that begin a new thing, and restyles, are shown t
 DOCTEST_TEST_CASE(
     "what is drawn on the plain ground is moved before the scene, as far as it is seen through") {
     auto view = red_view();
-    RoundInput anew;
+    EditViewsRequest anew;
     anew.anew = true;
     for (const float covers : {0.0f, 0.25f, 1.0f}) {
         Recorder model(true);  // draws what it was shown: nothing of its own
@@ -149,7 +151,7 @@ DOCTEST_TEST_CASE("to what something is added the plain ground is shown only whe
     auto view = red_view();
     view.backdrop.depth = Image(32, 24, 1);
     view.backdrop.depth.at(16, 12, 0) = 4;
-    RoundInput anew;
+    EditViewsRequest anew;
     anew.anew = true;
     Recorder model(true);
     OnPlainGround on_ground(model, ground_of("a man wearing a hat"), BeforePlain::Scene);

@@ -6,8 +6,8 @@
 #include <deque>
 
 #include "engine/base/log.h"
-#include "engine/edit/oracle_guidance.h"
-#include "engine/edit/view_round.h"
+#include "engine/edit/optimise/oracle_guidance.h"
+#include "engine/edit/target_views/view_round.h"
 #include "tests/unit/edit/view_oracle.h"
 
 namespace polish_test {

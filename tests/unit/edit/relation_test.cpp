@@ -4,9 +4,9 @@
 
 #include <string>
 
-#include "engine/edit/locate.h"
-#include "engine/edit/relation.h"
-#include "engine/edit/request.h"
+#include "engine/edit/request/relation.h"
+#include "engine/edit/request/request.h"
+#include "engine/edit/search/locate.h"
 
 namespace relation_test {
 

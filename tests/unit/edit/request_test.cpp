@@ -9,10 +9,10 @@
 #include <type_traits>
 #include <vector>
 
-#include "engine/edit/locate.h"
-#include "engine/edit/request.h"
-#include "engine/edit/view_round.h"
-#include "engine/edit/vocabulary.h"
+#include "engine/edit/request/request.h"
+#include "engine/edit/request/vocabulary.h"
+#include "engine/edit/search/locate.h"
+#include "engine/edit/target_views/view_round.h"
 
 namespace request_test {
 

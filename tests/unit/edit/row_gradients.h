@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "engine/edit/working_set.h"
+#include "engine/edit/optimise/working_set.h"
 
 namespace gse::test {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <memory>
 
-#include "engine/edit/scene_reading.h"
-#include "engine/edit/words.h"
+#include "engine/edit/request/words.h"
+#include "engine/edit/search/scene_reading.h"
 
 namespace scene_reading_test {
 
@@ -17,7 +17,7 @@ using namespace gse;
 const std::vector<std::string> Said{"golden", "bear", "hat", "snow"};
 
 /// A picture says yes or no to each of Said: its pixels are its vector. Sentences say yes to what they name.
-class WordScore : public edit::TextImageScore {
+class WordScore : public edit::ImageTextEncoder {
 public:
     explicit WordScore(int& asked) : asked_(asked) {}
     std::vector<float> image(const Image& picture) override {
@@ -51,7 +51,7 @@ edit::EditRequest sentence() {
 edit::SceneReading read(const std::vector<std::vector<Image>>& pictures,
                         const std::vector<std::string>& targets = {"hat", "golden", "snow"}) {
     int asked = 0;
-    edit::Recognition recognition(std::make_unique<WordScore>(asked), {});
+    edit::VocabularyRanker recognition(std::make_unique<WordScore>(asked), {});
     auto reading = edit::read_scene(recognition, sentence(), targets, pictures);
     std::size_t all = 0;
     for (const auto& group : pictures) all += group.size();
@@ -78,7 +78,7 @@ DOCTEST_TEST_CASE("a word that the encoder is not told is new where the pictures
         auto request = sentence();
         request.prompt = "a pink bear wearing a hat";
         int asked = 0;
-        edit::Recognition recognition(std::make_unique<WordScore>(asked), {});
+        edit::VocabularyRanker recognition(std::make_unique<WordScore>(asked), {});
         return edit::read_scene(recognition, request, {"hat", "pink"}, {{picture}},
                                 {"a", "bear", "wearing", "hat"})
             .target;

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "engine/base/random.h"
-#include "engine/edit/grabcut_segmenter.h"
+#include "engine/edit/search/grabcut_segmenter.h"
 #include "engine/localize/clusters.h"
 
 namespace segmenter_test {

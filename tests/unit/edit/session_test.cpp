@@ -247,7 +247,7 @@ DOCTEST_TEST_CASE("seeds are new rows of a later generation, the scene itself st
     const auto rasterizer = raster::make_fast_rasterizer(pool);
     auto plan = test::ball_plan(scene, *rasterizer);
     plan.label.assign(plan.label.size(), 0);
-    edit::AddRegion region;
+    edit::VoxelRegion region;
     region.side = 0.2;
     region.centres = {{-0.55, -0.6, 0}, {-0.55, -0.8, 0}};
     plan.seeds = edit::seed_splats(region, 60, 0, 1);

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "engine/base/log.h"
-#include "engine/edit/add_region.h"
+#include "engine/edit/placement/voxel_region.h"
 #include "tests/unit/edit/edit_scenes.h"
 
 namespace session_views_test {
@@ -113,7 +113,7 @@ DOCTEST_TEST_CASE("after a corrected label an edit rests only when every view th
     constexpr int at = 4;  // before the views of the red ball have been drawn twice
     tools.new_label = at_iteration(at, std::vector<std::uint8_t>(scene.first.size(), 1));
     const auto result = edit::run_edit(scene.set, plan, request, tools);
-    DOCTEST_CHECK(result.came_to_rest);
+    DOCTEST_CHECK(result.converged);
     std::vector<int> drawn(plan.views.size(), 0);
     for (const auto& record : result.history)
         if (record.iteration >= at) ++drawn[record.view];
@@ -125,7 +125,7 @@ DOCTEST_TEST_CASE("looking again for what is new does not delay the rest") {
     const auto rasterizer = raster::make_plain_rasterizer();
     auto plan = test::ball_plan(scene, *rasterizer, 5, 24);
     plan.label.assign(plan.label.size(), 0);
-    edit::AddRegion region;
+    edit::VoxelRegion region;
     region.side = 0.3;
     region.centres = {{0, -0.6, 0}};
     plan.seeds = edit::seed_splats(region, 30, 0, 1, 0.5);
@@ -145,7 +145,7 @@ DOCTEST_TEST_CASE("looking again for what is new does not delay the rest") {
     DOCTEST_CHECK(attention.calls == 10);  // after iterations 60 and 90, five views each
     request.look_again = false;
     const auto plain = edit::run_edit(scene.set, plan, request, tools);
-    DOCTEST_REQUIRE(plain.came_to_rest);
+    DOCTEST_REQUIRE(plain.converged);
     DOCTEST_CHECK(plain.iterations > 90);
     DOCTEST_CHECK(looked.iterations == plain.iterations);
     DOCTEST_CHECK(test::same_bytes(looked.set, plain.set));

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/edit/backdrop.h"
-#include "engine/edit/hidden_surface.h"
-#include "engine/edit/shape_room.h"
+#include "engine/edit/interfaces/clean_plate.h"
+#include "engine/edit/placement/placement_volume.h"
+#include "engine/edit/target_views/ground_hole_fill.h"
 #include "engine/math/sh.h"
 #include "engine/math/unproject.h"
 #include "tests/unit/edit/edit_scenes.h"
@@ -38,9 +38,9 @@ GaussianSet post(double half_width, double height, int count = 400) {
 const Vec3 Up{0, -1, 0}, Front{0, 0, -1};
 
 /// A floor from the horizon down; the thing has left a hole in it and stood up into the sky.
-edit::Backdrop floor_with_hole(Mask& mask) {
+edit::CleanPlate floor_with_hole(Mask& mask) {
     constexpr int Side = 32;
-    edit::Backdrop backdrop{Image(Side, Side, 3), Image(Side, Side, 1)};
+    edit::CleanPlate backdrop{Image(Side, Side, 3), Image(Side, Side, 1)};
     mask = Mask(Side, Side);
     for (int y = 0; y < Side; ++y)
         for (int x = 0; x < Side; ++x) {
@@ -141,12 +141,12 @@ DOCTEST_TEST_CASE(
     orbit.radius = 3;
     orbit.elevation = 0.5;
     orbit.fov_x = 0.7;
-    std::vector<edit::RoundView> views;
+    std::vector<edit::EditView> views;
     for (int v = 0; v < 6; ++v) {
-        edit::RoundView view;
+        edit::EditView view;
         view.view.camera = orbit_camera(orbit, v * 1.05, Side, Side);
         const Camera& camera = view.view.camera;
-        edit::Backdrop backdrop{Image(Side, Side, 3, 0.5f), Image(Side, Side, 1)};
+        edit::CleanPlate backdrop{Image(Side, Side, 3, 0.5f), Image(Side, Side, 1)};
         Mask mask(Side, Side);
         for (int y = 0; y < Side; ++y)
             for (int x = 0; x < Side; ++x) {
@@ -161,7 +161,7 @@ DOCTEST_TEST_CASE(
         view.backdrop = std::move(backdrop);
         views.push_back(std::move(view));
     }
-    const auto rows = edit::hidden_surface(views, 0);
+    const auto rows = edit::ground_hole_fill(views, 0);
     const GaussianSet set(rows);
     DOCTEST_REQUIRE(set.size() > 50);
     const double pixel = 3.0 / views.front().view.camera.fx;
@@ -182,9 +182,9 @@ DOCTEST_TEST_CASE(
         std::fill(view.backdrop.filled.data.begin(), view.backdrop.filled.data.end(), std::uint8_t{0});
         for (auto& z : view.backdrop.depth.data) z = 10;
     }
-    DOCTEST_CHECK(edit::hidden_surface(views, 0).size() == 0);
+    DOCTEST_CHECK(edit::ground_hole_fill(views, 0).size() == 0);
     for (auto& view : views) view.backdrop.filled = {};
-    DOCTEST_CHECK(edit::hidden_surface(views, 0).size() == 0);
+    DOCTEST_CHECK(edit::ground_hole_fill(views, 0).size() == 0);
 }
 
 }  // namespace shape_room_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "engine/edit/shape_round.h"
+#include "engine/edit/target_views/shape_round.h"
 #include "tests/unit/edit/edit_scenes.h"
 
 namespace shape_round_test {
@@ -39,8 +39,8 @@ private:
     double threshold_;
 };
 
-edit::RoundView grey_view(float backdrop) {
-    edit::RoundView view;
+edit::EditView grey_view(float backdrop) {
+    edit::EditView view;
     view.mask = Mask(Side, Side);
     std::fill(view.mask.data.begin(), view.mask.data.end(), std::uint8_t{1});
     view.backdrop.picture = Image(Side, Side, 3, backdrop);
@@ -65,7 +65,7 @@ double outline_radius(double threshold, Image picture, float backdrop = 0) {
     const edit::ShapeFinder finder(plan, request, "cat", attention);
     Image outline;
     const Image before = picture;
-    edit::RoundTargets drawn{{std::move(picture)}, {}, {}};
+    edit::EditedViews drawn{{std::move(picture)}, {}, {}};
     DOCTEST_REQUIRE(finder.take_out(grey_view(backdrop), drawn, 0, 1, &outline));
     const Image& after = drawn.images.front();
     double covered = 0;
@@ -103,13 +103,13 @@ DOCTEST_TEST_CASE(
     Image told(Side, Side, 1), outline;
     for (int y = 20; y < 50; ++y)
         for (int x = 40; x < 60; ++x) told.at(x, y, 0) = x < 42 ? 0.25f : 1.0f;
-    edit::RoundTargets drawn{{Image(Side, Side, 3, 0.75f)}, {}, {told}};
+    edit::EditedViews drawn{{Image(Side, Side, 3, 0.75f)}, {}, {told}};
     DOCTEST_REQUIRE(finder.take_out(grey_view(0.25f), drawn, 0, 1, &outline));
     DOCTEST_CHECK(outline.data == told.data);
     DOCTEST_CHECK(drawn.images.front().at(50, 30, 0) == 0.75f);
     DOCTEST_CHECK(drawn.images.front().at(41, 30, 0) == 0.375f);  // a quarter of it
     DOCTEST_CHECK(drawn.images.front().at(32, 32, 0) == 0.25f);
-    edit::RoundTargets empty{{Image(Side, Side, 3, 0.75f)}, {}, {Image(Side, Side, 1, 0.3f)}};
+    edit::EditedViews empty{{Image(Side, Side, 3, 0.75f)}, {}, {Image(Side, Side, 1, 0.3f)}};
     DOCTEST_CHECK(!finder.take_out(grey_view(0.25f), empty, 0, 1));
 }
 

@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include "engine/edit/shape_room.h"
-#include "engine/edit/standing.h"
+#include "engine/edit/placement/placement_volume.h"
+#include "engine/edit/placement/upright_bounds.h"
 #include "tests/unit/edit/box_rows.h"
 
 namespace standing_test {
@@ -20,7 +20,7 @@ using namespace gse;
 const Vec3 Up{0, -1, 0}, Front{0, 0, -1};
 
 struct Rows : test::BoxRows {
-    edit::Standing standing() const { return edit::standing_of(set(), bits, Up, Front); }
+    edit::UprightBounds standing() const { return edit::standing_of(set(), bits, Up, Front); }
 };
 
 constexpr double Close = 0.04;  // of a thing 1 high: rows are drawn at random, and the outermost do not count
@@ -85,7 +85,7 @@ DOCTEST_TEST_CASE("what was low may be followed by something as high as others o
     car.box(-0.3, 0.3, 0, 0.6, -0.65, 0.65, 900, true);
     const auto found = car.standing();
     DOCTEST_CHECK(edit::figure_height(found) == doctest::Approx(0.75 * 1.3).epsilon(Close));
-    const auto highest = [&](const edit::AddRegion& room) {
+    const auto highest = [&](const edit::VoxelRegion& room) {
         double most = 0;
         for (const auto& centre : room.centres) most = std::max(most, -centre.y);
         return most + 0.5 * room.side;

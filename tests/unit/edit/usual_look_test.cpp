@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 
-#include "engine/edit/usual_look.h"
+#include "engine/edit/target_views/strategies/default_ground_colour.h"
 
 namespace usual_look_test {
 
@@ -24,8 +24,8 @@ std::optional<Rgb> look(const char* prompt, const char* target,
 }
 
 /// A grey ramp of 8x8, times `light`; its lower half may change.
-edit::RoundView ramp(float light) {
-    edit::RoundView view;
+edit::EditView ramp(float light) {
+    edit::EditView view;
     view.original = Image(8, 8, 3);
     view.mask = Mask(8, 8);
     for (int y = 0; y < 8; ++y)
@@ -50,8 +50,8 @@ DOCTEST_TEST_CASE(
     "what may change gets the colour in the light in which it was, however dark a scan is, and nothing else "
     "changes") {
     const auto snow = *look("a bear on the snow", "snow");
-    edit::UsualLook views(snow);
-    DOCTEST_CHECK(views.restyles());
+    edit::DefaultGroundColour views(snow);
+    DOCTEST_CHECK(views.supports_appearance_editing());
     const auto bright = views.edit({ramp(1), ramp(1)}, {}, {}),
                dark = views.edit({ramp(0.2f), ramp(0.2f)}, {}, {});
     DOCTEST_REQUIRE(bright.images.size() == 2);

@@ -2,7 +2,7 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
-#include "engine/edit/view_agreement.h"
+#include "engine/edit/target_views/view_agreement.h"
 #include "tests/unit/edit/view_oracle.h"
 
 namespace view_agreement_test {
@@ -12,13 +12,13 @@ using namespace gse;
 namespace {
 
 /// Renders of the red ball from all sides, with the depth of the surface.
-std::vector<edit::RoundView> rendered_views(const test::BallScene& scene, raster::Rasterizer& rasterizer,
-                                            int count = 8) {
-    std::vector<edit::RoundView> views;
+std::vector<edit::EditView> rendered_views(const test::BallScene& scene, raster::Rasterizer& rasterizer,
+                                           int count = 8) {
+    std::vector<edit::EditView> views;
     raster::ForwardOutput output;
     for (const auto& view : test::ball_views(count, 48)) {
         rasterizer.forward(scene.set.spans(), view.camera, {}, output);
-        edit::RoundView shown{output.colour, output.colour, output.depth, {}, view};
+        edit::EditView shown{output.colour, output.colour, output.depth, {}, view};
         for (std::size_t i = 0; i < shown.depth.data.size(); ++i) {
             const float alpha = output.alpha.data[i];
             shown.depth.data[i] = alpha > 0.5f ? output.depth.data[i] / alpha : 0.0f;
@@ -30,7 +30,7 @@ std::vector<edit::RoundView> rendered_views(const test::BallScene& scene, raster
 }
 
 /// The ball in a flat grey of its own in every view.
-std::vector<Image> painted(const std::vector<edit::RoundView>& views, const std::vector<float>& greys) {
+std::vector<Image> painted(const std::vector<edit::EditView>& views, const std::vector<float>& greys) {
     std::vector<Image> pictures;
     for (std::size_t v = 0; v < views.size(); ++v) {
         pictures.push_back(views[v].rendered);
@@ -126,15 +126,15 @@ DOCTEST_TEST_CASE("an artist is told when the model left the views as they were"
     DOCTEST_REQUIRE(sheets.front().warnings.size() == 1);
     DOCTEST_CHECK(sheets.front().warnings.front().find("100 % of the redrawn views hardly differ") == 0);
 
-    struct Unfinished final : edit::ViewGuidance {  // a pattern comes over them
-        explicit Unfinished(edit::ViewGuidance& idle) : views(idle) {}
-        edit::RoundTargets edit(const std::vector<edit::RoundView>& seen, const edit::RoundInput& input,
-                                const JobControl& job) override {
+    struct Unfinished final : edit::MultiViewEditor {  // a pattern comes over them
+        explicit Unfinished(edit::MultiViewEditor& idle) : views(idle) {}
+        edit::EditedViews edit(const std::vector<edit::EditView>& seen, const edit::EditViewsRequest& input,
+                               const JobControl& job) override {
             auto targets = views.edit(seen, input, job);
             targets.unfinished = true;
             return targets;
         }
-        edit::ViewGuidance& views;
+        edit::MultiViewEditor& views;
     } unfinished(idle);
     sheets.clear();
     run.tools.views = &unfinished;
@@ -177,7 +177,7 @@ DOCTEST_TEST_CASE(
     for (std::size_t v = 0; v < views.size(); ++v)
         for (std::size_t i = 0; i < trust[v].data.size(); ++i)
             if (views[v].mask.data[i] == 0) DOCTEST_REQUIRE(trust[v].data[i] == 1.0f);
-    const std::vector<edit::RoundView> two(views.begin(), views.begin() + 2);
+    const std::vector<edit::EditView> two(views.begin(), views.begin() + 2);
     for (const auto& weights : edit::trust_weights(two, painted(two, {0.1f, 0.9f})))
         DOCTEST_CHECK(
             std::all_of(weights.data.begin(), weights.data.end(), [](float w) { return w == 1.0f; }));

@@ -8,25 +8,25 @@
 #include "engine/base/error.h"
 #include "engine/base/random.h"
 #include "engine/base/thread_pool.h"
-#include "engine/edit/session.h"
+#include "engine/edit/optimise/edit_loop.h"
 #include "tests/unit/edit/edit_scenes.h"
 
 namespace gse::test {
 
 /// Knows the answer: the render of another scene from every view.
-class OracleViews : public edit::ViewGuidance {
+class OracleViews : public edit::MultiViewEditor {
 public:
     OracleViews(const GaussianSet& target, raster::Rasterizer& rasterizer)
         : target_(target), rasterizer_(rasterizer) {}
-    edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput& input,
-                            const JobControl& job) override {
+    edit::EditedViews edit(const std::vector<edit::EditView>& views, const edit::EditViewsRequest& input,
+                           const JobControl& job) override {
         if (job.stop_requested()) throw Error(ErrorCode::Cancelled, "stopped");
         if (input.round == fails_in || (fails_alone && views.size() == 1))
             throw Error(ErrorCode::Model, "not finite");
         inputs.push_back(input);
         asked.push_back(views);
         Random random(input.seed);
-        edit::RoundTargets targets;
+        edit::EditedViews targets;
         for (const auto& view : views) {
             if (input.strength < least_strength) {
                 targets.images.push_back(view.rendered);
@@ -42,12 +42,12 @@ public:
         targets.scalars["views"] = static_cast<double>(views.size());
         return targets;
     }
-    std::vector<edit::RoundInput> inputs;
-    std::vector<std::vector<edit::RoundView>> asked;  // per input
-    int fails_in = -1;                                // round
-    bool fails_alone = false;                         // where a single view is asked for
-    double least_strength = 0;                        // below it the pictures stay as they are
-    bool noisy = false;                               // another picture for another seed
+    std::vector<edit::EditViewsRequest> inputs;
+    std::vector<std::vector<edit::EditView>> asked;  // per input
+    int fails_in = -1;                               // round
+    bool fails_alone = false;                        // where a single view is asked for
+    double least_strength = 0;                       // below it the pictures stay as they are
+    bool noisy = false;                              // another picture for another seed
 
 private:
     const GaussianSet& target_;

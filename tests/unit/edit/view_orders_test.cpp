@@ -7,8 +7,8 @@
 
 #include "engine/base/error.h"
 #include "engine/base/log.h"
-#include "engine/edit/method_fields.h"
-#include "engine/edit/view_round.h"
+#include "engine/edit/request/method_fields.h"
+#include "engine/edit/target_views/view_round.h"
 #include "tests/unit/edit/edit_scenes.h"
 #include "tests/unit/edit/view_oracle.h"
 

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "engine/base/error.h"
-#include "engine/edit/surface_noise.h"
-#include "engine/edit/view_round.h"
+#include "engine/edit/optimise/surface_noise.h"
+#include "engine/edit/target_views/view_round.h"
 #include "tests/unit/edit/edit_scenes.h"
 #include "tests/unit/edit/view_oracle.h"
 

@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/base/random.h"
-#include "engine/edit/view_section.h"
+#include "engine/edit/interfaces/view_section.h"
 
 namespace view_section_test {
 
@@ -56,7 +56,7 @@ DOCTEST_TEST_CASE(
 }
 
 DOCTEST_TEST_CASE("a section shows what the view shows there, and goes back to where it was") {
-    RoundView view;
+    EditView view;
     view.rendered = noise_image(3, 1);
     view.original = noise_image(3, 2);
     view.depth = noise_image(1, 3);

@@ -8,7 +8,7 @@
 #include <functional>
 
 #include "engine/base/random.h"
-#include "engine/edit/visual_hull.h"
+#include "engine/edit/placement/visual_hull.h"
 #include "engine/localize/clusters.h"
 #include "engine/raster/rasterizer.h"
 #include "tests/unit/edit/edit_scenes.h"

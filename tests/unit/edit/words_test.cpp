@@ -5,10 +5,10 @@
 #include <string>
 
 #include "engine/base/error.h"
-#include "engine/edit/locate.h"
-#include "engine/edit/recognition.h"
-#include "engine/edit/request.h"
-#include "engine/edit/vocabulary.h"
+#include "engine/edit/request/request.h"
+#include "engine/edit/request/vocabulary.h"
+#include "engine/edit/search/locate.h"
+#include "engine/edit/search/vocabulary_ranker.h"
 
 namespace words_test {
 
@@ -27,7 +27,7 @@ EditRequest valid(const std::string& source, const std::string& prompt, const st
 }
 
 /// Writes down the sentences it is asked for; all fit all pictures.
-class ListeningScore : public edit::TextImageScore {
+class ListeningScore : public edit::ImageTextEncoder {
 public:
     explicit ListeningScore(Words& sentences) : sentences_(sentences) {}
     std::vector<float> image(const Image&) override { return {1.0f}; }
@@ -149,7 +149,7 @@ DOCTEST_TEST_CASE("every word of a phrase must be known to a model with a fixed 
 
 DOCTEST_TEST_CASE("recognition puts other words in the place of the whole phrase") {
     Words sentences;
-    edit::Recognition recognition(std::make_unique<ListeningScore>(sentences), {"a", "bear", "dog"});
+    edit::VocabularyRanker recognition(std::make_unique<ListeningScore>(sentences), {"a", "bear", "dog"});
     const Image picture(1, 1, 3);
     recognition.of("A teddy bear, on grass", "teddy bear", {&picture});
     DOCTEST_CHECK(sentences == Words{"a teddy bear on grass",

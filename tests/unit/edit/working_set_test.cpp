@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "engine/edit/working_set.h"
+#include "engine/edit/optimise/working_set.h"
 #include "tests/unit/edit/edit_scenes.h"
 #include "tests/unit/edit/row_gradients.h"
 

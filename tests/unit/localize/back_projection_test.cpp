@@ -115,11 +115,11 @@ DOCTEST_TEST_CASE(
     const auto scene = two_balls();
     ThreadPool pool(2);
     const auto fast = raster::make_fast_rasterizer(pool);
-    for (const std::size_t room : {localize::KeptVotes::MostBytes, std::size_t{40000}, std::size_t{0}}) {
+    for (const std::size_t room : {localize::VoteCache::MostBytes, std::size_t{40000}, std::size_t{0}}) {
         DOCTEST_CAPTURE(room);
         auto views = true_views(scene, *fast, 8);
         Counting counting(*fast);
-        localize::KeptVotes votes(room);
+        localize::VoteCache votes(room);
         const auto check = [&](int most) {
             counting.rendered = 0;
             const auto found = votes.back_project(scene.set.spans(), views, {}, counting);
@@ -127,7 +127,7 @@ DOCTEST_TEST_CASE(
             DOCTEST_CHECK(found.weight == expected.weight);
             DOCTEST_CHECK(found.evidence == expected.evidence);
             DOCTEST_CHECK(found.views_used == expected.views_used);
-            if (room == localize::KeptVotes::MostBytes) DOCTEST_CHECK(counting.rendered == most);
+            if (room == localize::VoteCache::MostBytes) DOCTEST_CHECK(counting.rendered == most);
             if (room == 0) DOCTEST_CHECK(counting.rendered == expected.views_used);
         };
         check(8);

@@ -11,7 +11,7 @@
 
 #include "engine/base/random.h"
 #include "engine/localize/graph_cut.h"
-#include "engine/localize/spread.h"
+#include "engine/localize/propagate_labels.h"
 
 namespace graph_cut_test {
 
@@ -165,10 +165,10 @@ DOCTEST_TEST_CASE("any number of threads gives the same bits") {
         if (random.uniform(0, 1) < 0.2) rows.weights.weight[row] = 1 - rows.weights.weight[row];
     }
     auto one = rows.weights, three = rows.weights;
-    localize::spread_to_unseen(spans(rows.data), {}, one);
+    localize::propagate_labels_knn(spans(rows.data), {}, one);
     const auto changed = localize::cut_label(spans(rows.data), {}, one);
     ThreadPool pool(3);
-    localize::spread_to_unseen(spans(rows.data), {}, three, &pool);
+    localize::propagate_labels_knn(spans(rows.data), {}, three, &pool);
     DOCTEST_CHECK(localize::cut_label(spans(rows.data), {}, three, &pool) == changed);
     DOCTEST_CHECK(changed > count / 20);
     DOCTEST_CHECK(three.weight == one.weight);

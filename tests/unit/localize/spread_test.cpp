@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "engine/base/random.h"
-#include "engine/localize/spread.h"
+#include "engine/localize/propagate_labels.h"
 
 namespace spread_test {
 
@@ -68,7 +68,7 @@ double plain_reach(const GaussianData& data, const localize::LabelWeights& weigh
 DOCTEST_TEST_CASE("unseen rows take the opinion of their own ball") {
     Balls balls;
     const auto before = balls.weights;
-    localize::spread_to_unseen(spans(balls.data), {}, balls.weights);
+    localize::propagate_labels_knn(spans(balls.data), {}, balls.weights);
     const auto label = localize::label_from_weights("ball", balls.weights, 0.5, 0.5);
     for (std::size_t row = 0; row < 2 * PerBall; ++row) {
         DOCTEST_CHECK((*label.bits)[row] == (row < PerBall ? 1 : 0));
@@ -82,7 +82,7 @@ DOCTEST_TEST_CASE("no opinion comes from out of reach, and broken rows ask nobod
     Balls balls;
     balls.data.position[0] = 500;
     balls.data.position[3 * 3] = std::numeric_limits<float>::quiet_NaN();
-    localize::spread_to_unseen(spans(balls.data), {}, balls.weights);
+    localize::propagate_labels_knn(spans(balls.data), {}, balls.weights);
     DOCTEST_CHECK(balls.weights.inferred[0] == 0);
     DOCTEST_CHECK(balls.weights.inferred[3] == 0);
     DOCTEST_CHECK(balls.weights.inferred[6] == 1);
@@ -96,7 +96,7 @@ DOCTEST_TEST_CASE("the opinion is that of the nearest within reach, as measuring
         localize::SpreadParameters parameters;
         parameters.reach_share = share;
         const auto before = balls.weights;
-        localize::spread_to_unseen(spans(balls.data), parameters, balls.weights);
+        localize::propagate_labels_knn(spans(balls.data), parameters, balls.weights);
         const double reach = plain_reach(balls.data, before, parameters);
         for (std::size_t row = 0; row < 2 * PerBall; row += 3) {
             std::vector<std::pair<double, std::size_t>> seen;
@@ -125,7 +125,7 @@ DOCTEST_TEST_CASE("without a labelled or without a seen row nothing changes") {
     Balls balls;
     for (auto& evidence : balls.weights.evidence) evidence = 0;
     const auto before = balls.weights.weight;
-    localize::spread_to_unseen(spans(balls.data), {}, balls.weights);
+    localize::propagate_labels_knn(spans(balls.data), {}, balls.weights);
     DOCTEST_CHECK(balls.weights.weight == before);
 }
 

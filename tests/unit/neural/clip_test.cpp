@@ -8,10 +8,10 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
-#include "engine/neural/clip_score.h"
-#include "engine/neural/known_sentence.h"
-#include "engine/neural/safetensors.h"
-#include "engine/neural/starter_stages.h"
+#include "engine/neural/api/known_sentence.h"
+#include "engine/neural/clip/clip_score.h"
+#include "engine/neural/starter/starter_stages.h"
+#include "engine/neural/weights/safetensors.h"
 #include "tests/test_paths.h"
 
 namespace {
@@ -135,10 +135,12 @@ DOCTEST_TEST_CASE("keys that transformers leaves out are those of ViT-B/32") {
 
 DOCTEST_TEST_CASE("words the encoder never saw are left out") {
     const std::vector<std::string> known{"a", "red", "bear", "front", "view"};
-    DOCTEST_CHECK(known_part("A sks red, shiny bear; front view!", known) == "a red, bear front view");
-    DOCTEST_CHECK(known_part("nothing known", known).empty());
-    DOCTEST_CHECK(known_part("a shiny red * bear, front view", known, "*") == "a red * bear, front view");
-    DOCTEST_CHECK(known_part("a caf\xc3\xa9", {"a", "caf\xc3\xa9"}) == "a caf\xc3\xa9");
+    DOCTEST_CHECK(filter_to_vocabulary("A sks red, shiny bear; front view!", known) ==
+                  "a red, bear front view");
+    DOCTEST_CHECK(filter_to_vocabulary("nothing known", known).empty());
+    DOCTEST_CHECK(filter_to_vocabulary("a shiny red * bear, front view", known, "*") ==
+                  "a red * bear, front view");
+    DOCTEST_CHECK(filter_to_vocabulary("a caf\xc3\xa9", {"a", "caf\xc3\xa9"}) == "a caf\xc3\xa9");
     TinyFolder tiny;
     tiny.folder.known_words = {"a", "red", "bear"};
     const auto score = load_clip_score(tiny.folder);

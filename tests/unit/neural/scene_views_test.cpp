@@ -7,8 +7,8 @@
 #include <set>
 
 #include "engine/base/error.h"
-#include "engine/neural/conditioning.h"
-#include "engine/neural/scene_views.h"
+#include "engine/neural/diffusion/conditioning.h"
+#include "engine/neural/diffusion/scene_views.h"
 #include "tests/test_paths.h"
 
 namespace {

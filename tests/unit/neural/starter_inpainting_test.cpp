@@ -5,7 +5,7 @@
 #include <numeric>
 #include <set>
 
-#include "engine/neural/starter_inpainting.h"
+#include "engine/neural/starter/starter_inpainting.h"
 
 namespace {
 

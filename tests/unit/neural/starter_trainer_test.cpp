@@ -11,12 +11,12 @@
 #include "engine/base/file.h"
 #include "engine/base/json.h"
 #include "engine/base/random.h"
-#include "engine/neural/config.h"
-#include "engine/neural/lora.h"
-#include "engine/neural/safetensors.h"
-#include "engine/neural/scene_views.h"
-#include "engine/neural/starter_data.h"
-#include "engine/neural/starter_trainer.h"
+#include "engine/neural/diffusion/scene_views.h"
+#include "engine/neural/starter/starter_data.h"
+#include "engine/neural/starter/starter_trainer.h"
+#include "engine/neural/weights/config.h"
+#include "engine/neural/weights/lora.h"
+#include "engine/neural/weights/safetensors.h"
 #include "tests/test_paths.h"
 
 namespace {

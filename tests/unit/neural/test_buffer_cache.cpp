@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/neural/buffer_cache.h"
+#include "engine/neural/layers/buffer_cache.h"
 
 using namespace gse::neural;
 

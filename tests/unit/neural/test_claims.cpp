@@ -3,10 +3,10 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/base/memory.h"
-#include "engine/neural/key_map.h"
-#include "engine/neural/lora.h"
-#include "engine/neural/sam_model.h"
-#include "engine/neural/taesd.h"
+#include "engine/neural/diffusion/taesd.h"
+#include "engine/neural/sam/sam_model.h"
+#include "engine/neural/weights/key_map.h"
+#include "engine/neural/weights/lora.h"
 #include "tests/unit/neural/tiny_model.h"
 
 using namespace gse;

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/neural/attention_source.h"
-#include "engine/neural/images.h"
-#include "engine/neural/model.h"
-#include "engine/neural/network_use.h"
-#include "engine/neural/sds_guidance.h"
+#include "engine/neural/api/network_use.h"
+#include "engine/neural/diffusion/model.h"
+#include "engine/neural/guidance/attention_source.h"
+#include "engine/neural/guidance/sds_guidance.h"
+#include "engine/neural/layers/images.h"
 #include "tests/unit/neural/tiny_model.h"
 
 using namespace gse;

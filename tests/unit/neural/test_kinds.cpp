@@ -1,10 +1,10 @@
 // Kinds of models on tiny random weights: how they are told apart, how each redraws views, and what it asks
 // of the networks.
-#include "engine/neural/conditioning.h"
-#include "engine/neural/model.h"
-#include "engine/neural/model_profile.h"
-#include "engine/neural/network_use.h"
-#include "engine/neural/view_guidance.h"
+#include "engine/neural/api/model_profile.h"
+#include "engine/neural/api/network_use.h"
+#include "engine/neural/diffusion/conditioning.h"
+#include "engine/neural/diffusion/model.h"
+#include "engine/neural/guidance/multi_view_editor.h"
 #include "tests/unit/neural/tiny_model.h"
 #include "tests/unit/neural/wall_views.h"
 
@@ -53,7 +53,7 @@ UNetConfig channels(std::int64_t in, std::int64_t out) {
 }
 
 std::uint64_t unet_passes(const std::shared_ptr<const ModelBundle>& bundle, const SdsParameters& parameters,
-                          const edit::RoundInput& input) {
+                          const edit::EditViewsRequest& input) {
     DiffusionViews guidance(bundle, "a red bear", parameters);
     const auto before = thread_use();
     const auto targets = guidance.edit(wall_views(), input, {});
@@ -167,7 +167,7 @@ DOCTEST_TEST_CASE("kinds: two rows do for InstructPix2Pix at image scale 1 what 
 }
 
 DOCTEST_TEST_CASE("kinds: each redraws views with as few calls as it needs") {
-    edit::RoundInput input;
+    edit::EditViewsRequest input;
     input.steps = 3;
     input.strength = 0.8;
     SdsParameters parameters;
@@ -205,7 +205,7 @@ DOCTEST_TEST_CASE("kinds: between the steps an LCM takes fresh noise, TCD none; 
     auto bundle = load_bundle(plain.path());
     const auto redrawn = [&](BundleKind kind, std::uint64_t seed, int steps) {
         bundle.kind = kind;
-        edit::RoundInput input;
+        edit::EditViewsRequest input;
         input.steps = steps;
         input.seed = seed;
         SdsParameters parameters;
@@ -229,7 +229,7 @@ DOCTEST_TEST_CASE(
     SdsParameters parameters;
     auto views = wall_views();
     DiffusionViews guidance(bundle, "make it red", parameters);
-    edit::RoundInput input;
+    edit::EditViewsRequest input;
     input.steps = 2;
     const auto one = guidance.edit(views, input, {}).images[0].data;
     for (auto& view : views)
@@ -283,7 +283,7 @@ DOCTEST_TEST_CASE(
 
     const auto config = TinyAutoencoderConfig{};
     DOCTEST_CHECK(TinyAutoencoderConfig::from_json(config.to_json(), "x").to_json() == config.to_json());
-    edit::RoundInput input;
+    edit::EditViewsRequest input;
     input.steps = 1;
     input.rounds = 2;
     const auto arithmetic = [&](int round) {

@@ -1,7 +1,7 @@
 // Properties of attention, norms and captures that hold for any weights.
-#include "engine/neural/blocks.h"
-#include "engine/neural/network_use.h"
-#include "engine/neural/unet.h"
+#include "engine/neural/api/network_use.h"
+#include "engine/neural/diffusion/unet.h"
+#include "engine/neural/layers/blocks.h"
 #include "tests/unit/neural/tiny_model.h"
 
 using namespace gse;

@@ -4,9 +4,9 @@
 #include <torch/library.h>
 #include <torch/torch.h>
 
-#include "engine/neural/network_use.h"
-#include "engine/neural/unet.h"
-#include "engine/neural/vae.h"
+#include "engine/neural/api/network_use.h"
+#include "engine/neural/diffusion/unet.h"
+#include "engine/neural/diffusion/vae.h"
 
 using namespace gse::neural;
 

@@ -4,10 +4,10 @@
 #include <stdexcept>
 #include <thread>
 
-#include "engine/neural/attention_source.h"
-#include "engine/neural/network_use.h"
-#include "engine/neural/parallel_parts.h"
-#include "engine/neural/view_guidance.h"
+#include "engine/neural/api/network_use.h"
+#include "engine/neural/guidance/attention_source.h"
+#include "engine/neural/guidance/multi_view_editor.h"
+#include "engine/neural/layers/parallel_for_batches.h"
 #include "tests/unit/neural/tiny_model.h"
 #include "tests/unit/neural/wall_views.h"
 
@@ -87,7 +87,7 @@ DOCTEST_TEST_CASE("redrawn views: the unedited ones are encoded once for all rou
     const auto bundle = std::make_shared<const ModelBundle>(load_bundle(model.path()));
     auto views = wall_views();
     DiffusionViews guidance(bundle, "a red bear", {});
-    edit::RoundInput input;
+    edit::EditViewsRequest input;
     input.steps = 1;
     guidance.edit(views, input, {});
     views.back().original.data.front() += 0.25f;  // of another one

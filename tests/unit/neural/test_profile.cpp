@@ -1,5 +1,5 @@
 // Which kind a model is, from its configurations or a checkpoint's shapes, and what its profile states.
-#include "engine/neural/model_profile.h"
+#include "engine/neural/api/model_profile.h"
 #include "tests/unit/neural/tiny_model.h"
 
 using namespace gse;

@@ -10,7 +10,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
-#include "engine/neural/torch_file.h"
+#include "engine/neural/weights/torch_file.h"
 #include "tests/test_paths.h"
 
 namespace gse::test {

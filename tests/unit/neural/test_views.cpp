@@ -2,12 +2,12 @@
 // networks.
 #include <cmath>
 
-#include "engine/edit/method_fields.h"
-#include "engine/neural/dreambooth.h"
-#include "engine/neural/model.h"
-#include "engine/neural/network_use.h"
-#include "engine/neural/scene_views.h"
-#include "engine/neural/view_guidance.h"
+#include "engine/edit/request/method_fields.h"
+#include "engine/neural/api/network_use.h"
+#include "engine/neural/diffusion/model.h"
+#include "engine/neural/diffusion/scene_views.h"
+#include "engine/neural/guidance/dreambooth.h"
+#include "engine/neural/guidance/multi_view_editor.h"
 #include "tests/unit/neural/tiny_model.h"
 #include "tests/unit/neural/wall_views.h"
 
@@ -17,7 +17,7 @@ using namespace gse::test;
 
 namespace {
 
-double mean_change(const edit::RoundTargets& targets, const std::vector<edit::RoundView>& views) {
+double mean_change(const edit::EditedViews& targets, const std::vector<edit::EditView>& views) {
     double sum = 0;
     for (std::size_t v = 0; v < views.size(); ++v)
         for (std::size_t i = 0; i < views[v].rendered.data.size(); ++i)
@@ -41,7 +41,7 @@ DOCTEST_TEST_CASE("redrawn views: repeatable, of the size that came in, and coun
     SdsParameters parameters;
     parameters.before_prompt = "a bear";
     DiffusionViews guidance(bundle, "a red bear", parameters);
-    edit::RoundInput input;
+    edit::EditViewsRequest input;
     input.steps = 3;
     input.seed = 5;
     const auto before = thread_use();
@@ -79,7 +79,7 @@ DOCTEST_TEST_CASE(
     const auto bundle = std::make_shared<const ModelBundle>(load_bundle(model.path()));
     const auto views = wall_views();
     DiffusionViews guidance(bundle, "a red bear", {});
-    edit::RoundInput input;
+    edit::EditViewsRequest input;
     input.steps = 2;
     input.strength = 1;
     const auto drawn = [&](double noise, std::uint64_t seed) {
@@ -108,7 +108,7 @@ DOCTEST_TEST_CASE(
     const TinyModel model;
     const auto bundle = std::make_shared<const ModelBundle>(load_bundle(model.path()));
     const auto views = wall_views();
-    edit::RoundInput input;
+    edit::EditViewsRequest input;
     input.steps = 2;
     SdsParameters parameters;
     parameters.before_prompt = "a bear";
@@ -144,7 +144,7 @@ DOCTEST_TEST_CASE(
     }
     const auto shapes = std::make_shared<const ModelBundle>(with_lora(*bundle, learned, 1));
     auto views = wall_views();
-    edit::RoundInput input;
+    edit::EditViewsRequest input;
     input.steps = 2;
     const auto drawn = [&](bool with) {
         return DiffusionViews(bundle, "a bear", {}, with ? shapes : nullptr)
@@ -175,7 +175,7 @@ DOCTEST_TEST_CASE(
         shapes.facts.shape_views = together;
         auto views = wall_views();
         for (auto& value : views[0].rendered.data) value *= seen_by_the_other;
-        edit::RoundInput input;
+        edit::EditViewsRequest input;
         input.steps = 2;
         input.anew = anew;
         return DiffusionViews(bundle, "a bear", {}, std::make_shared<const ModelBundle>(std::move(shapes)))
@@ -202,7 +202,7 @@ DOCTEST_TEST_CASE(
             if (name.starts_with("conv_inpaint.")) weight.normal_(0, 0.1);
         auto views = wall_views();
         for (auto& view : views) view.backdrop.picture = Image(40, 40, 3, behind);
-        edit::RoundInput input;
+        edit::EditViewsRequest input;
         input.steps = 2;
         input.anew = anew;
         return DiffusionViews(bundle, "a bear", {}, std::make_shared<const ModelBundle>(std::move(shapes)))
@@ -230,15 +230,16 @@ DOCTEST_TEST_CASE(
             if (name.starts_with("conv_inpaint.")) weight.normal_(0, 0.1);
     }
     const auto scene = std::make_shared<const ModelBundle>(std::move(shapes));
-    edit::RoundInput input;
+    edit::EditViewsRequest input;
     input.steps = 2;
-    const auto drawn = [&](bool restyles, float original) {
+    const auto drawn = [&](bool supports_appearance_editing, float original) {
         auto views = wall_views();
         for (auto& view : views) view.original = Image(40, 40, 3, original);
-        return DiffusionViews(bundle, "a bear", {}, scene, restyles).edit(views, input, {});
+        return DiffusionViews(bundle, "a bear", {}, scene, supports_appearance_editing)
+            .edit(views, input, {});
     };
-    DOCTEST_CHECK_FALSE(DiffusionViews(bundle, "a bear", {}, nullptr, true).restyles());
-    DOCTEST_CHECK(DiffusionViews(bundle, "a bear", {}, scene, true).restyles());
+    DOCTEST_CHECK_FALSE(DiffusionViews(bundle, "a bear", {}, nullptr, true).supports_appearance_editing());
+    DOCTEST_CHECK(DiffusionViews(bundle, "a bear", {}, scene, true).supports_appearance_editing());
     const auto plain = drawn(false, 0.2f), restyled = drawn(true, 0.2f), other = drawn(true, 0.7f);
     DOCTEST_CHECK(restyled.images[1].data != plain.images[1].data);
     DOCTEST_CHECK(restyled.images[1].data != other.images[1].data);
@@ -268,7 +269,7 @@ DOCTEST_TEST_CASE(
     const auto change_of = [&](bool anew, bool may_change, bool tells = true) {
         for (auto& view : views)
             std::fill(view.mask.data.begin(), view.mask.data.end(), std::uint8_t{may_change});
-        edit::RoundInput input;
+        edit::EditViewsRequest input;
         input.steps = 2;
         input.strength = 1;
         input.anew = anew;
@@ -296,7 +297,7 @@ DOCTEST_TEST_CASE(
     shapes.unet = with_scene_inputs(shapes.unet);
     auto views = wall_views();
     for (auto& view : views) view.backdrop.picture = view.original;
-    edit::RoundInput input;
+    edit::EditViewsRequest input;
     input.steps = 2;
     input.tells_changes = true;
     const auto drawn = [&] {
@@ -330,11 +331,11 @@ DOCTEST_TEST_CASE(
     "a model with a network of its own draws new things with it, and everything else as before") {
     const TinyModel model;
     const auto plain = load_model(model.path(), "cpu");
-    DOCTEST_CHECK_FALSE(plain->knows_scene());
+    DOCTEST_CHECK_FALSE(plain->supports_scene_conditioning());
     auto views = wall_views();
     for (auto& view : views) view.backdrop.picture = view.original;
     const auto drawn = [&](const TextToImage& with, bool anew) {
-        edit::RoundInput input;
+        edit::EditViewsRequest input;
         input.steps = 2;
         input.anew = anew;
         return with.views("a bear", {})->edit(views, input, {});
@@ -348,30 +349,31 @@ DOCTEST_TEST_CASE(
     write_shape_unet(unet, model.path() / "own");
     gse::write_file(model.path() / "gseditpro.json", R"({"shape_unet": "own", "shape_views": 2})");
     const auto with = load_model(model.path(), "cpu");
-    DOCTEST_CHECK(with->knows_scene());
+    DOCTEST_CHECK(with->supports_scene_conditioning());
     const auto same = drawn(*with, false), shapes = drawn(*with, true);
     for (std::size_t v = 0; v < views.size(); ++v)
         DOCTEST_CHECK(same.images[v].data == redrawn.images[v].data);
     DOCTEST_CHECK((same.outlines.empty() && shapes.outlines.size() == views.size()));
     DOCTEST_CHECK(shapes.images[0].data != drawn(*plain, true).images[0].data);
-    DOCTEST_CHECK_FALSE((with->restyles() || plain->restyles()));
+    DOCTEST_CHECK_FALSE((with->supports_appearance_editing() || plain->supports_appearance_editing()));
     gse::write_file(model.path() / "gseditpro.json",
                     R"({"shape_unet": "own", "shape_views": 2, "shape_restyles": true})");
     const auto restyling = load_model(model.path(), "cpu");
-    DOCTEST_CHECK(restyling->restyles());
-    DOCTEST_CHECK(restyling->views("a bear", {})->restyles());
+    DOCTEST_CHECK(restyling->supports_appearance_editing());
+    DOCTEST_CHECK(restyling->views("a bear", {})->supports_appearance_editing());
     DOCTEST_CHECK(drawn(*restyling, false).images[0].data != redrawn.images[0].data);
     // What was tuned, or merged with a LoRA, draws by itself.
     LoraWeights style;
     for (const auto& factor : new_lora(lora_targets(*load_bundle(model.path()).unet), 2, 7))
         style.unet.push_back(factor);
     write_lora(model.path() / "style.safetensors", style);
-    DOCTEST_CHECK_FALSE(restyling->load_lora(model.path() / "style.safetensors")->restyles());
+    DOCTEST_CHECK_FALSE(
+        restyling->load_lora(model.path() / "style.safetensors")->supports_appearance_editing());
     ModelOptions merged;
     merged.loras = {{model.path() / "style.safetensors", 1.0}};
-    DOCTEST_CHECK_FALSE(load_model(model.path(), merged)->restyles());
+    DOCTEST_CHECK_FALSE(load_model(model.path(), merged)->supports_appearance_editing());
     merged.loras.front().strength = 0;
-    DOCTEST_CHECK(load_model(model.path(), merged)->restyles());
+    DOCTEST_CHECK(load_model(model.path(), merged)->supports_appearance_editing());
 }
 
 DOCTEST_TEST_CASE("redrawing views can be stopped") {

@@ -7,8 +7,8 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
-#include "engine/neural/model_bundle.h"
-#include "engine/neural/safetensors.h"
+#include "engine/neural/weights/model_bundle.h"
+#include "engine/neural/weights/safetensors.h"
 #include "tests/test_paths.h"
 
 namespace gse::test {

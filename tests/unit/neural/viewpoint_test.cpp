@@ -9,8 +9,8 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
-#include "engine/neural/safetensors.h"
-#include "engine/neural/viewpoint_model.h"
+#include "engine/neural/clip/viewpoint_model.h"
+#include "engine/neural/weights/safetensors.h"
 #include "tests/test_paths.h"
 
 namespace {

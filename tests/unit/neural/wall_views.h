@@ -3,15 +3,15 @@
 
 #include <vector>
 
-#include "engine/edit/interfaces.h"
+#include "engine/edit/interfaces/interfaces.h"
 
 namespace gse::test {
 
 /// Two views of one wall with something to see on it.
-inline std::vector<edit::RoundView> wall_views() {
-    std::vector<edit::RoundView> views;
+inline std::vector<edit::EditView> wall_views() {
+    std::vector<edit::EditView> views;
     for (const double x : {0.0, 0.3}) {
-        edit::RoundView view;
+        edit::EditView view;
         view.view.camera = Camera::look_at({x, 0, 3}, {x, 0, 0}, {0, -1, 0}, 0.9, 40, 40);
         view.rendered = Image(40, 40, 3);
         for (std::size_t i = 0; i < view.rendered.data.size(); ++i)

@@ -7,11 +7,11 @@
 
 #include "engine/base/error.h"
 #include "engine/base/random.h"
-#include "engine/edit/grabcut_segmenter.h"
-#include "engine/pipeline/cut_out.h"
-#include "engine/pipeline/cut_out_sides.h"
-#include "engine/pipeline/scene_tools.h"
-#include "engine/synth/synth.h"
+#include "engine/edit/search/grabcut_segmenter.h"
+#include "engine/laboratory/synth/synth.h"
+#include "engine/pipeline/run/scene_tools.h"
+#include "engine/pipeline/select/cut_out.h"
+#include "engine/pipeline/select/cut_out_sides.h"
 
 namespace cut_out_test {
 

@@ -7,9 +7,9 @@
 #include <memory>
 
 #include "engine/io/scene_io.h"
-#include "engine/pipeline/edit_job.h"
-#include "engine/pipeline/installed.h"
-#include "engine/synth/without_ground.h"
+#include "engine/laboratory/synth/without_ground.h"
+#include "engine/pipeline/models/installed.h"
+#include "engine/pipeline/run/edit_job.h"
 
 namespace edit_job_test {
 
@@ -248,7 +248,7 @@ DOCTEST_TEST_CASE(
         DOCTEST_CHECK(sky(*search(false)) < 0.1f);
     }
     const auto whole = synth::generate({});
-    Workplace workplace(whole.scene, model, {});
+    RunContext workplace(whole.scene, model, {});
     DOCTEST_CHECK_FALSE(workplace.ground("a bear", orbit_views({}, 4, 64, 64)).has_value());
 }
 
@@ -256,8 +256,8 @@ DOCTEST_TEST_CASE("the front is read off the scene where the recipe leaves it op
     EditRecipe recipe = bear_recipe(false);
     recipe.request.views = 8;
     recipe.request = edit::validated(recipe.request);
-    Workplace workplace(load_scene(assets_path() / "scenes/bear/scene.ply"), load_recipe_model({}),
-                        recipe.job);
+    RunContext workplace(load_scene(assets_path() / "scenes/bear/scene.ply"), load_recipe_model({}),
+                         recipe.job);
     const auto found = [&](const std::string& front) {
         recipe.job.front = front;
         return locate(workplace, recipe, choose_views(workplace.scene(), recipe, {}), {}, {}).views;
@@ -434,8 +434,8 @@ DOCTEST_TEST_CASE("stages: each is a value that names what it follows from, and 
     recipe.request.views = 6;
     recipe.request.iterations = 3;
     recipe.request = edit::validated(recipe.request);
-    Workplace workplace(load_scene(assets_path() / "scenes/bear/scene.ply"), load_recipe_model({}),
-                        recipe.job);
+    RunContext workplace(load_scene(assets_path() / "scenes/bear/scene.ply"), load_recipe_model({}),
+                         recipe.job);
     const Views views = choose_views(workplace.scene(), recipe, {});
     DOCTEST_CHECK(choose_views(workplace.scene(), recipe, {}).key == views.key);
     EditRecipe turned = recipe;

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "engine/edit/place_drawing.h"
-#include "engine/pipeline/estimate.h"
-#include "engine/pipeline/probe.h"
+#include "engine/edit/search/place_drawing.h"
+#include "engine/pipeline/models/probe.h"
+#include "engine/pipeline/session/estimate.h"
 
 namespace estimate_test {
 
@@ -96,10 +96,10 @@ DOCTEST_TEST_CASE("an estimate of redrawn views: what a view takes, and each of 
     DOCTEST_CHECK(seconds(known, request, work) == doctest::Approx(16 * (0.05 + 6 * 0.02) + fit + rest));
     DOCTEST_CHECK(pipeline::estimated_cost(known, request, work).tflop ==
                   doctest::Approx(16 * (0.002 + 6 * 0.003)));
-    known.restyles = 1;
+    known.supports_appearance_editing = 1;
     request.restyle_steps = 2;
     DOCTEST_CHECK(seconds(known, request, work) == doctest::Approx(16 * (0.05 + 2 * 0.02) + fit + rest));
-    known.restyles = 0;
+    known.supports_appearance_editing = 0;
     work.first_iteration = 10;  // a branch goes on with what was redrawn
     DOCTEST_CHECK(seconds(known, request, work) == doctest::Approx(8 * (0.05 + 6 * 0.02) + 70 * 0.01 + rest));
     work = located();  // the pictures before the edit, from a pass of the search

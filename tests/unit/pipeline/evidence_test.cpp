@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <thread>
 
-#include "engine/pipeline/evidence_pictures.h"
+#include "engine/pipeline/report/evidence_pictures.h"
 
 namespace evidence_test {
 

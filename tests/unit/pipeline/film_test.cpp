@@ -6,7 +6,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
-#include "engine/pipeline/film.h"
+#include "engine/pipeline/report/film.h"
 #include "engine/scene/scene.h"
 #include "tests/test_paths.h"
 

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "engine/edit/head.h"
-#include "engine/pipeline/edit_job.h"
-#include "engine/pipeline/installed.h"
-#include "engine/synth/synth.h"
+#include "engine/edit/placement/head.h"
+#include "engine/laboratory/synth/synth.h"
+#include "engine/pipeline/models/installed.h"
+#include "engine/pipeline/run/edit_job.h"
 #include "tests/unit/edit/box_rows.h"
 
 namespace head_test {
@@ -143,18 +143,18 @@ DOCTEST_TEST_CASE("only what is worn takes the place of something worn, and only
     edit::EditRequest request;
     request.source = "hat";
     request.target = "crown";
-    DOCTEST_CHECK(edit::takes_worn_place(request, edit::EditMode::Replace));
-    DOCTEST_CHECK_FALSE(edit::takes_worn_place(request, edit::EditMode::Add));
-    DOCTEST_CHECK_FALSE(edit::takes_worn_place(request, edit::EditMode::Modify));
+    DOCTEST_CHECK(edit::replaces_accessory(request, edit::EditMode::Replace));
+    DOCTEST_CHECK_FALSE(edit::replaces_accessory(request, edit::EditMode::Add));
+    DOCTEST_CHECK_FALSE(edit::replaces_accessory(request, edit::EditMode::Modify));
     DOCTEST_CHECK_FALSE(edit::moves_worn_place(request, edit::EditMode::Replace));
     request.target = "sunglasses";
     DOCTEST_CHECK(edit::moves_worn_place(request, edit::EditMode::Replace));
     DOCTEST_CHECK_FALSE(edit::moves_worn_place(request, edit::EditMode::Modify));
     request.source = "ball";
-    DOCTEST_CHECK_FALSE(edit::takes_worn_place(request, edit::EditMode::Replace));  // a crown on the ground
+    DOCTEST_CHECK_FALSE(edit::replaces_accessory(request, edit::EditMode::Replace));  // a crown on the ground
     request.source = "hat";
     request.target = "ball";
-    DOCTEST_CHECK_FALSE(edit::takes_worn_place(request, edit::EditMode::Replace));
+    DOCTEST_CHECK_FALSE(edit::replaces_accessory(request, edit::EditMode::Replace));
 }
 
 }  // namespace head_test

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/base/file.h"
-#include "engine/pipeline/installed.h"
-#include "engine/pipeline/model_catalogue.h"
+#include "engine/pipeline/models/installed.h"
+#include "engine/pipeline/models/model_catalogue.h"
 #include "tests/test_paths.h"
 
 namespace model_catalogue_test {

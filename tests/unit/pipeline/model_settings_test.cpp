@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/base/file.h"
-#include "engine/pipeline/model_settings.h"
+#include "engine/pipeline/models/model_settings.h"
 #include "tests/test_paths.h"
 
 namespace model_settings_test {

@@ -1,5 +1,5 @@
 // What pictures say of the edit that made them, and what the program says of pictures and scenes.
-#include "engine/pipeline/picture_text.h"
+#include "engine/pipeline/report/picture_text.h"
 
 #include <algorithm>
 
@@ -11,8 +11,8 @@
 #include "engine/io/cameras.h"
 #include "engine/io/image_file.h"
 #include "engine/io/scene_io.h"
-#include "engine/pipeline/scene_report.h"
-#include "engine/pipeline/scene_tools.h"
+#include "engine/pipeline/report/scene_report.h"
+#include "engine/pipeline/run/scene_tools.h"
 #include "tests/test_paths.h"
 
 namespace picture_text_test {

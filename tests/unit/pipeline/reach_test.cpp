@@ -2,7 +2,7 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
-#include "engine/pipeline/reach.h"
+#include "engine/pipeline/session/edit_scope.h"
 #include "engine/scene/label_ops.h"
 
 namespace reach_test {

@@ -6,7 +6,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
-#include "engine/pipeline/recipe.h"
+#include "engine/pipeline/run/recipe.h"
 #include "tests/test_paths.h"
 
 namespace recipe_test {

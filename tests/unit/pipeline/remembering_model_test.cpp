@@ -15,11 +15,11 @@
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/io/scene_io.h"
-#include "engine/pipeline/edit_job.h"
-#include "engine/pipeline/installed.h"
-#include "engine/pipeline/model_identity.h"
-#include "engine/pipeline/neural_loader.h"
-#include "engine/pipeline/remembering_model.h"
+#include "engine/pipeline/models/cached_model.h"
+#include "engine/pipeline/models/installed.h"
+#include "engine/pipeline/models/model_identity.h"
+#include "engine/pipeline/models/neural_loader.h"
+#include "engine/pipeline/run/edit_job.h"
 #include "tests/test_paths.h"
 
 namespace remembering_model_test {
@@ -58,7 +58,7 @@ private:
     Asked& asked_;
 };
 
-class FakeScore final : public edit::TextImageScore {
+class FakeScore final : public edit::ImageTextEncoder {
 public:
     explicit FakeScore(Asked& asked) : asked_(asked) {}
     std::vector<float> image(const Image& image) override {
@@ -78,13 +78,13 @@ private:
     Asked& asked_;
 };
 
-class FakeViews final : public edit::ViewGuidance {
+class FakeViews final : public edit::MultiViewEditor {
 public:
     explicit FakeViews(Asked& asked) : asked_(asked) {}
-    edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput&,
-                            const JobControl&) override {
+    edit::EditedViews edit(const std::vector<edit::EditView>& views, const edit::EditViewsRequest&,
+                           const JobControl&) override {
         ++asked_.drawn;
-        edit::RoundTargets targets;
+        edit::EditedViews targets;
         for (const auto& view : views) {
             targets.images.push_back(view.rendered);
             auto& maps = asked_.outlines ? targets.outlines : targets.changes;
@@ -107,23 +107,23 @@ public:
                                              const neural::SdsParameters&) const override {
         return nullptr;
     }
-    std::unique_ptr<edit::ViewGuidance> views(const std::string&,
-                                              const neural::SdsParameters&) const override {
+    std::unique_ptr<edit::MultiViewEditor> views(const std::string&,
+                                                 const neural::SdsParameters&) const override {
         return std::make_unique<FakeViews>(asked_);
     }
-    bool knows_scene() const override { return true; }
-    bool restyles() const override { return true; }
+    bool supports_scene_conditioning() const override { return true; }
+    bool supports_appearance_editing() const override { return true; }
     std::vector<std::string> known_words() const override { return {"bear", "caf\xc3\xa9"}; }
     int image_size() const override { return 96; }
     std::string name() const override { return "fake"; }
     neural::BundleKind kind() const override { return neural::BundleKind::Tcd; }
     Image sample(const neural::SampleRequest&) const override { return {}; }
     Image img2img(const Image& image, const neural::SampleRequest&) const override { return image; }
-    std::unique_ptr<edit::TextImageScore> text_image_score() const override {
+    std::unique_ptr<edit::ImageTextEncoder> image_text_encoder() const override {
         return std::make_unique<FakeScore>(asked_);
     }
     neural::TunedModel tune(const neural::DreamBoothParameters&, std::span<const Image>, const std::string&,
-                            const std::string&, const JobControl&, AnswerMemory*) const override {
+                            const std::string&, const JobControl&, AnswerCache*) const override {
         return {};
     }
     bool save_tuning(const fs::path&, std::uint64_t) const override { return false; }
@@ -136,9 +136,9 @@ private:
 };
 
 /// As after a restart: nothing is left but the folder.
-std::shared_ptr<RememberingModel> fake(const fs::path& folder, Asked& asked,
-                                       const std::string& identity = "a model") {
-    return std::make_shared<RememberingModel>(std::make_shared<DiskCache>(folder, Room), identity, [&asked] {
+std::shared_ptr<CachedModel> fake(const fs::path& folder, Asked& asked,
+                                  const std::string& identity = "a model") {
+    return std::make_shared<CachedModel>(std::make_shared<DiskCache>(folder, Room), identity, [&asked] {
         ++asked.loads;
         return std::make_shared<FakeModel>(asked);
     });
@@ -159,7 +159,7 @@ DOCTEST_TEST_CASE(
     const auto ask = [&] {
         const auto model = fake(folder.path(), asked);
         maps = model->attention()->locate(query);
-        const auto score = model->text_image_score();
+        const auto score = model->image_text_encoder();
         seen = score->image(picture);
         told = score->text("a bear");
         viewpoint = score->viewpoint(picture);
@@ -168,7 +168,7 @@ DOCTEST_TEST_CASE(
         DOCTEST_CHECK(model->image_size() == 96);
         DOCTEST_CHECK(model->name() == "fake");
         DOCTEST_CHECK(model->kind() == neural::BundleKind::Tcd);
-        DOCTEST_CHECK((model->knows_scene() && model->restyles()));
+        DOCTEST_CHECK((model->supports_scene_conditioning() && model->supports_appearance_editing()));
         DOCTEST_CHECK(model->known_words() == std::vector<std::string>{"bear", "caf\xc3\xa9"});
     };
     ask();
@@ -251,20 +251,20 @@ DOCTEST_TEST_CASE(
 DOCTEST_TEST_CASE("remembering model: views drawn to find a place are kept, by all that they follow from") {
     const test::ScratchFolder folder;
     Asked asked;
-    std::vector<edit::RoundView> views(2);
+    std::vector<edit::EditView> views(2);
     for (auto& view : views) {
         view.rendered = view.original = view.backdrop.picture = Image(6, 6, 3, 0.25f);
         view.depth = view.backdrop.depth = Image(6, 6, 1, 2.0f);
         view.mask = Mask(6, 6);
         view.view.camera.width = view.view.camera.height = 6;
     }
-    edit::RoundInput input;
+    edit::EditViewsRequest input;
     input.keep = true;
-    edit::RoundTargets targets;
+    edit::EditedViews targets;
     const auto draws = [&](const std::string& prompt = "a hat") {
         const int before = asked.drawn;
         const auto model = fake(folder.path(), asked);
-        DOCTEST_CHECK(model->knows_scene());
+        DOCTEST_CHECK(model->supports_scene_conditioning());
         targets = model->views(prompt, {})->edit(views, input, {});
         return asked.drawn > before;
     };
@@ -318,11 +318,11 @@ DOCTEST_TEST_CASE(
     DOCTEST_CHECK((asked.loads == 2 && asked.maps == 2));
     int tries = 0;
     const auto broken =
-        std::make_shared<RememberingModel>(std::make_shared<DiskCache>(folder.path(), Room), "broken",
-                                           [&]() -> std::shared_ptr<neural::TextToImage> {
-                                               ++tries;
-                                               throw Error(ErrorCode::Model, "it is broken", "");
-                                           });
+        std::make_shared<CachedModel>(std::make_shared<DiskCache>(folder.path(), Room), "broken",
+                                      [&]() -> std::shared_ptr<neural::TextToImage> {
+                                          ++tries;
+                                          throw Error(ErrorCode::Model, "it is broken", "");
+                                      });
     DOCTEST_CHECK_THROWS_AS(broken->name(), Error);
     DOCTEST_CHECK_THROWS_AS(broken->sample({}), Error);
     DOCTEST_CHECK(tries == 2);

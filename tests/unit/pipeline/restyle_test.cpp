@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "engine/io/scene_io.h"
-#include "engine/pipeline/edit_job.h"
-#include "engine/pipeline/installed.h"
-#include "engine/pipeline/neural_loader.h"
+#include "engine/pipeline/models/installed.h"
+#include "engine/pipeline/models/neural_loader.h"
+#include "engine/pipeline/run/edit_job.h"
 #include "tests/test_paths.h"
 
 namespace restyle_test {
@@ -25,17 +25,17 @@ using namespace gse;
 using namespace gse::pipeline;
 
 /// Gives the views back as they are.
-class Idle final : public edit::ViewGuidance {
+class Idle final : public edit::MultiViewEditor {
 public:
-    explicit Idle(bool restyles) : restyles_(restyles) {}
-    edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput&,
-                            const JobControl&) override {
+    explicit Idle(bool supports_appearance_editing) : restyles_(supports_appearance_editing) {}
+    edit::EditedViews edit(const std::vector<edit::EditView>& views, const edit::EditViewsRequest&,
+                           const JobControl&) override {
         ++rounds;
-        edit::RoundTargets targets;
+        edit::EditedViews targets;
         for (const auto& view : views) targets.images.push_back(view.rendered);
         return targets;
     }
-    bool restyles() const override { return restyles_; }
+    bool supports_appearance_editing() const override { return restyles_; }
     static inline int rounds = 0;  // of all that were asked
 
 private:
@@ -54,14 +54,14 @@ public:
                                              const neural::SdsParameters& parameters) const override {
         return model_->guidance(prompt, parameters);
     }
-    std::unique_ptr<edit::ViewGuidance> views(const std::string& prompt,
-                                              const neural::SdsParameters& parameters) const override {
+    std::unique_ptr<edit::MultiViewEditor> views(const std::string& prompt,
+                                                 const neural::SdsParameters& parameters) const override {
         asked.push_back(parameters.restyle);
         if (parameters.restyle || both_) return std::make_unique<Idle>(parameters.restyle);
         return model_->views(prompt, parameters);
     }
-    bool knows_scene() const override { return model_->knows_scene(); }
-    bool restyles() const override { return true; }
+    bool supports_scene_conditioning() const override { return model_->supports_scene_conditioning(); }
+    bool supports_appearance_editing() const override { return true; }
     std::vector<std::string> known_words() const override { return model_->known_words(); }
     std::vector<std::string> drawn_words() const override { return model_->drawn_words(); }
     int image_size() const override { return model_->image_size(); }
@@ -71,12 +71,12 @@ public:
     Image img2img(const Image& image, const neural::SampleRequest& request) const override {
         return model_->img2img(image, request);
     }
-    std::unique_ptr<edit::TextImageScore> text_image_score() const override {
-        return model_->text_image_score();
+    std::unique_ptr<edit::ImageTextEncoder> image_text_encoder() const override {
+        return model_->image_text_encoder();
     }
     neural::TunedModel tune(const neural::DreamBoothParameters& parameters, std::span<const Image> instance,
                             const std::string& instance_prompt, const std::string& class_prompt,
-                            const JobControl& job, AnswerMemory* memory) const override {
+                            const JobControl& job, AnswerCache* memory) const override {
         return model_->tune(parameters, instance, instance_prompt, class_prompt, job, memory);
     }
     bool save_tuning(const std::filesystem::path& path, std::uint64_t most_bytes) const override {
@@ -99,14 +99,14 @@ protected:
 };
 
 /// Draws nothing into scenes, and what the starter does where there is none.
-class Shy final : public edit::ViewGuidance {
+class Shy final : public edit::MultiViewEditor {
 public:
-    explicit Shy(std::unique_ptr<edit::ViewGuidance> guidance) : guidance_(std::move(guidance)) {}
-    edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput& input,
-                            const JobControl& job) override {
+    explicit Shy(std::unique_ptr<edit::MultiViewEditor> guidance) : guidance_(std::move(guidance)) {}
+    edit::EditedViews edit(const std::vector<edit::EditView>& views, const edit::EditViewsRequest& input,
+                           const JobControl& job) override {
         const auto& first = views.front();
         if (first.rendered.data == first.backdrop.picture.data) return guidance_->edit(views, input, job);
-        edit::RoundTargets targets;
+        edit::EditedViews targets;
         for (const auto& view : views) {
             targets.images.push_back(draws_lumps ? view.rendered : view.backdrop.picture);
             if (draws_lumps)
@@ -118,19 +118,19 @@ public:
         }
         return targets;
     }
-    bool restyles() const override { return guidance_->restyles(); }
+    bool supports_appearance_editing() const override { return guidance_->supports_appearance_editing(); }
     bool draws_outlines = true, draws_lumps = false;  // what was there, red for blue
 
 private:
-    std::unique_ptr<edit::ViewGuidance> guidance_;
+    std::unique_ptr<edit::MultiViewEditor> guidance_;
 };
 
 class ShyModel final : public Misled {
 public:
     ShyModel(std::shared_ptr<neural::TextToImage> model, bool draws_outlines, bool draws_lumps = false)
         : Misled(std::move(model), false), draws_outlines_(draws_outlines), draws_lumps_(draws_lumps) {}
-    std::unique_ptr<edit::ViewGuidance> views(const std::string& prompt,
-                                              const neural::SdsParameters& parameters) const override {
+    std::unique_ptr<edit::MultiViewEditor> views(const std::string& prompt,
+                                                 const neural::SdsParameters& parameters) const override {
         asked.push_back(parameters.restyle);
         auto shy = std::make_unique<Shy>(model_->views(prompt, parameters));
         shy->draws_outlines = draws_outlines_;
@@ -157,7 +157,7 @@ EditRecipe blue_bear() {
 
 struct Outcome {
     GaussianSet set;
-    std::vector<Verdict> judged;
+    std::vector<EditQuality> judged;
     std::vector<bool> asked;
 };
 
@@ -169,7 +169,7 @@ Outcome edited(const EditRecipe& recipe, const std::shared_ptr<Misled>& model) {
     model->asked.clear();  // by the search
     Outcome outcome;
     EditObserver observer;
-    observer.judged = [&](const Verdict& verdict, const edit::ViewTargets&) {
+    observer.judged = [&](const EditQuality& verdict, const edit::ViewTargets&) {
         outcome.judged.push_back(verdict);
     };
     job.run(observer);

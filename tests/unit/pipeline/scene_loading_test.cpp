@@ -6,8 +6,8 @@
 #include "engine/base/file.h"
 #include "engine/io/cameras.h"
 #include "engine/io/scene_io.h"
-#include "engine/pipeline/scene_loading.h"
-#include "engine/synth/synth.h"
+#include "engine/laboratory/synth/synth.h"
+#include "engine/pipeline/run/scene_loading.h"
 #include "tests/test_paths.h"
 
 namespace scene_loading_test {

@@ -9,9 +9,9 @@
 #include "engine/base/file.h"
 #include "engine/base/random.h"
 #include "engine/base/thread_pool.h"
-#include "engine/pipeline/neural_loader.h"
-#include "engine/pipeline/recipe.h"
-#include "engine/pipeline/segmenters.h"
+#include "engine/pipeline/models/neural_loader.h"
+#include "engine/pipeline/models/segmenters.h"
+#include "engine/pipeline/run/recipe.h"
 #include "tests/test_paths.h"
 
 namespace segmenters_test {

@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "engine/base/error.h"
-#include "engine/edit/words.h"
+#include "engine/edit/request/words.h"
 #include "engine/io/scene_io.h"
 #include "engine/math/sh.h"
-#include "engine/pipeline/edit_job.h"
-#include "engine/pipeline/installed.h"
-#include "engine/pipeline/model_words.h"
-#include "engine/pipeline/neural_loader.h"
+#include "engine/pipeline/models/installed.h"
+#include "engine/pipeline/models/model_words.h"
+#include "engine/pipeline/models/neural_loader.h"
+#include "engine/pipeline/run/edit_job.h"
 #include "tests/test_paths.h"
 
 namespace unknown_words_test {
@@ -166,9 +166,11 @@ DOCTEST_TEST_CASE(
                 EditJobInput{load_scene(assets_path() / "scenes/bear/scene.ply"), {}, model}, JobControl{});
     job.locate();
     DOCTEST_REQUIRE(job.found());
-    std::vector<Verdict> judged;
+    std::vector<EditQuality> judged;
     EditObserver observer;
-    observer.judged = [&](const Verdict& verdict, const edit::ViewTargets&) { judged.push_back(verdict); };
+    observer.judged = [&](const EditQuality& verdict, const edit::ViewTargets&) {
+        judged.push_back(verdict);
+    };
     job.run(observer);
     DOCTEST_REQUIRE(judged.size() == 1);
     DOCTEST_CHECK_FALSE(judged.front().score.has_value());

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
+#include "engine/laboratory/synth/synth.h"
 #include "engine/math/framing.h"
-#include "engine/pipeline/views.h"
-#include "engine/synth/synth.h"
+#include "engine/pipeline/run/views.h"
 
 namespace views_test {
 

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "engine/pipeline/waiting_results.h"
+#include "engine/pipeline/session/waiting_results.h"
 #include "engine/scene/label_ops.h"
 
 namespace waiting_results_test {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/synth/synth.h"
+#include "engine/laboratory/synth/synth.h"
 
 namespace more_words_test {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/base/error.h"
-#include "engine/synth/synth.h"
+#include "engine/laboratory/synth/synth.h"
 
 namespace test_generate {
 

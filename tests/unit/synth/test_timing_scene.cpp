@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/synth/timing_scene.h"
+#include "engine/laboratory/synth/timing_scene.h"
 
 namespace test_timing_scene {
 

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "engine/base/error.h"
-#include "engine/synth/synth.h"
+#include "engine/laboratory/synth/synth.h"
 
 namespace test_words {
 

@@ -7,8 +7,8 @@
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/json.h"
-#include "engine/training/picture_shards.h"
-#include "engine/training/starter_source.h"
+#include "engine/laboratory/training/picture_shards.h"
+#include "engine/laboratory/training/starter_source.h"
 #include "tests/test_paths.h"
 
 namespace picture_shards_test {

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/neural/starter_words.h"
-#include "engine/synth/synth.h"
-#include "engine/training/starter_source.h"
+#include "engine/laboratory/synth/synth.h"
+#include "engine/laboratory/training/starter_source.h"
+#include "engine/neural/api/starter_words.h"
 
 namespace shape_source_test {
 

@@ -4,8 +4,8 @@
 #include <set>
 #include <string>
 
-#include "engine/edit/words.h"
-#include "engine/training/starter_twins.h"
+#include "engine/edit/request/words.h"
+#include "engine/laboratory/training/starter_twins.h"
 
 namespace twins_test {
 

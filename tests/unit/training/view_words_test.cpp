@@ -1,8 +1,8 @@
 // What a training picture's side is called, and what the editor calls it.
 #include <doctest/doctest.h>
 
-#include "engine/edit/front_reading.h"
-#include "engine/synth/synth.h"
+#include "engine/edit/search/front_reading.h"
+#include "engine/laboratory/synth/synth.h"
 
 namespace view_words_test {
 

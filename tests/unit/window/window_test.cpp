@@ -13,7 +13,7 @@
 #include <optional>
 #include <thread>
 
-#include "app/window_textures.h"
+#include "app/window/window_textures.h"
 #include "engine/preview/splat_renderer.h"
 #include "engine/vulkan/device.h"
 #include "engine/window/window.h"

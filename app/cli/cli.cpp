@@ -1,0 +1,94 @@
+// Builds the command line and dispatches.
+#include "app/cli/cli.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+
+#include "engine/base/log.h"
+#include "engine/base/printable.h"
+#include "engine/base/process.h"
+#include "engine/base/progress_bar.h"
+
+#ifndef GSE_VERSION
+#define GSE_VERSION "unknown"
+#endif
+
+namespace gse::app {
+
+std::string option_name(const std::string& field) {
+    std::string name = "--" + field;
+    std::replace(name.begin(), name.end(), '_', '-');
+    std::replace(name.begin(), name.end(), '.', '-');
+    return name;
+}
+
+void require_finite_numbers(CLI::App& command) {
+    const CLI::Validator finite(
+        [](std::string& text) {
+            char* end = nullptr;
+            const double value = std::strtod(text.c_str(), &end);
+            return std::isfinite(value) ? std::string() : printable(text) + " is not a finite number";
+        },
+        "");
+    for (auto* option : command.get_options(
+             [](const CLI::Option* candidate) { return candidate->get_type_name().starts_with("FLOAT"); }))
+        option->check(finite);
+    for (auto* below : command.get_subcommands({})) require_finite_numbers(*below);
+}
+
+JobControl CommandContext::job() const {
+    JobControl control;
+    control.stop = interrupt_token();
+    if (!quiet) {
+        auto bar = std::make_shared<ProgressBar>();
+        control.progress = [bar](std::string_view stage, int step, int total) {
+            bar->update(stage, step, total);
+        };
+    }
+    return control;
+}
+
+int run_command_line(int argc, char** argv) {
+    CLI::App app{"GSEditPro: text-driven editing of 3D Gaussian Splatting scenes"};
+    app.set_version_flag("--version", std::string("gseditpro ") + GSE_VERSION);
+    app.require_subcommand(0, 1);
+    CommandContext context;
+    app.add_flag("-q,--quiet", context.quiet, "No progress bar, only warnings");
+#ifdef GSE_WINDOW
+    add_window_command(app, context);
+#endif
+    add_scene_commands(app, context);
+    add_edit_commands(app, context);
+    add_project_command(app, context);
+    add_training_command(app, context);
+    add_bench_command(app, context);
+    add_eval_command(app, context);
+    for (auto* command : app.get_subcommands({})) {
+        command->fallthrough();
+        require_finite_numbers(*command);
+    }
+    app.parse_complete_callback([&] {
+        if (context.quiet) log::set_level(log::Level::Warning);
+    });
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        const int code = app.exit(error);
+        return code == 0 ? 0 : 2;
+    }
+    if (app.get_subcommands().empty()) {
+#ifdef GSE_WINDOW
+        run_default_window();
+#else
+        fmt::print("{}", app.help());
+        return 2;
+#endif
+    }
+    return 0;
+}
+
+}  // namespace gse::app

@@ -1,0 +1,315 @@
+// gseditpro locate, edit.
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+#include "app/cli/cli.h"
+#include "app/cli/dreambooth_options.h"
+#include "app/cli/engine_names.h"
+#include "engine/base/error.h"
+#include "engine/base/file.h"
+#include "engine/base/log.h"
+#include "engine/base/path_text.h"
+#include "engine/base/print.h"
+#include "engine/base/staged_folder.h"
+#include "engine/pipeline/models/model_settings.h"
+#include "engine/pipeline/models/tuning_json.h"
+#include "engine/pipeline/report/edit_output.h"
+#include "engine/pipeline/report/edit_project.h"
+#include "engine/pipeline/run/edit_job.h"
+#include "engine/pipeline/run/preview_check.h"
+#include "engine/pipeline/run/variations.h"
+
+namespace gse::app {
+namespace {
+
+struct EditOptions {
+    EditRecipe recipe;
+    std::filesystem::path recipe_file, output;
+    bool demo = false;
+    bool headless = false;
+    bool json = false;
+    bool gate = true;
+    bool no_cache = false;
+    int variations = 1;
+    CLI::App* command = nullptr;
+};
+
+void add_options(CLI::App& command, const std::shared_ptr<EditOptions>& options) {
+    options->command = &command;
+    command.add_option("--out", options->output, "Folder for the results");
+    command.add_option("--recipe", options->recipe_file,
+                       "Take every setting from this recipe.json, or from a picture that an edit made; --out "
+                       "is still yours");
+    command.add_flag("--demo", options->demo, "The bundled scene and sentence");
+    command.add_flag("--headless", options->headless, "Work without a display (this version always does)");
+    command.add_flag("--json", options->json, "Print the report as JSON");
+    command.add_flag("--no-cache", options->no_cache,
+                     "Ask the networks anew, and keep no answer of theirs on the disk");
+    auto& job = options->recipe.job;
+    command.add_option("scene", job.scene, "Scene file or folder");
+    JobParameters::visit_fields(
+        job, [&](const char* name, auto& value, const char* help, const auto&... range) {
+            if (std::string(name) == "scene") return;
+            add_field_option(command, option_name(name), value, help, range...)->group("Files and machine");
+        });
+    bind_fields(command, options->recipe.request, "Edit");
+    bind_fields(command, options->recipe.guidance, "Guidance (score distillation)");
+    bind_fields(command, options->recipe.attention, "Attention", "--attention-");
+    add_dreambooth_options(command, options->recipe);
+}
+
+/// What is in the folder, and in the report, only when it was asked for.
+void add_optional_parts(nlohmann::ordered_json& report, const std::filesystem::path& folder, EditJob& job,
+                        const std::optional<PreviewCheck>& gate) {
+    if (gate) {
+        report["gate"] = gate_to_json(*gate);
+        write_gate(folder / "evidence", *gate);
+    }
+    if (!job.tuning()) return;
+    report["dreambooth"] = tuning_to_json(*job.tuning());
+    if (job.recipe().dreambooth.rank > 0) job.model().save_lora(folder / "lora.safetensors");
+}
+
+/// Before another sentence comes in: what follows from the recipe's own one does not hold for it.
+void forget_sentence(EditRecipe& recipe) {
+    recipe.request.target.clear();
+    recipe.request.mode = "auto";
+    recipe.guidance.before_prompt.clear();
+    for (const char* name : {"request.target", "request.mode", "guidance.before_prompt"})
+        recipe.given.erase(name);
+}
+
+/// Takes over what the model states and neither the recipe's file nor the command line does.
+void apply_model(EditOptions& options) {
+    auto& recipe = options.recipe;
+    auto given = recipe.given;
+    note_given(*options.command, recipe.job, "job", given);
+    note_given(*options.command, recipe.request, "request", given);
+    note_given(*options.command, recipe.guidance, "guidance", given);
+    note_given(*options.command, recipe.attention, "attention", given, "--attention-");
+    note_given(*options.command, recipe.dreambooth, "dreambooth", given, "--dreambooth-");
+    apply_profile(profile_of(recipe.job), recipe, given);
+}
+
+/// Reads the recipe of --recipe or --demo, or checks that a scene was named.
+void complete(EditOptions& options) {
+    if (options.demo) options.recipe_file = assets_path() / "scenes/demo.recipe.json";
+    if (!options.recipe_file.empty()) {
+        options.recipe = read_recipe(options.recipe_file);
+        if (options.command->get_option("--prompt")->count() > 0) forget_sentence(options.recipe);
+        // What stands on the command line wins over the recipe.
+        for (auto* option : options.command->get_options())
+            if (option->count() > 0) option->run_callback();
+    }
+    if (options.recipe.job.scene.empty())
+        throw Error(ErrorCode::InvalidArgument, "no scene is named", "give a scene file, --recipe or --demo");
+    if (options.output.empty())
+        options.output = std::filesystem::path("out") /
+                         (options.demo ? "demo" : std::filesystem::path(options.recipe.job.scene).stem());
+    apply_model(options);
+    auto& request = options.recipe.request;
+    const bool open =
+        request.target.empty() && !request.source.empty();  // the pictures say which word is new
+    request = edit::validated(request);
+    if (open) request.target.clear();
+}
+
+/// Results beside their own scene would replace it, or be taken for it the next time.
+void refuse_own_folder(const std::filesystem::path& scene, const std::filesystem::path& output) {
+    std::error_code ignored;
+    const auto folder = std::filesystem::absolute(scene, ignored).lexically_normal().parent_path();
+    const auto real_folder = std::filesystem::canonical(scene, ignored).parent_path();
+    for (const auto& place : {scene, folder, real_folder})
+        if (std::filesystem::equivalent(place, output, ignored))
+            throw Error(ErrorCode::InvalidArgument,
+                        "--out is the folder of the scene itself, which the results would replace",
+                        "choose another folder", output);
+}
+
+void print_summary(const nlohmann::ordered_json& report, const std::filesystem::path& output) {
+    const auto text = std::filesystem::absolute(output).lexically_normal().string();
+    print("{} splats, {} labelled, {} added, {} removed; outside the label {} changed (PSNR {:.1f} dB)\n",
+          report["splats"].get<std::size_t>(), report["labelled"].get<long>(), report["added"].get<long>(),
+          report["removed"].get<long>(), report["changed_outside_label"].get<std::size_t>(),
+          report["psnr_outside_db"].get<double>());
+    print("{}\n", report["confidence_text"].get<std::string>());
+    const auto& networks = report["networks"]["total"];
+    const auto count = [&](const char* name) { return networks[name].get<std::uint64_t>(); };
+    print("{:.1f} s, {:.0f} MB at most; {}\n", report["seconds"]["total"].get<double>(),
+          report["peak_rss_mb"].get<double>(),
+          use_text({count("unet"), count("encoder"), count("decoder"), networks["tflop"].get<double>() * 1e12,
+                    networks.value("cached", std::uint64_t{0})}));
+    print(
+        "edited scene   {}/scene.ply\nproject        {}/edit.gsep\nbefore, labels {}/source.ply\nfilm        "
+        "   {}/before_after.mp4\n"
+        "pictures       {}/before_after.png, {}/evidence/\nreport, recipe {}/report.json, {}/recipe.json\n",
+        text, text, text, text, text, text, text, text);
+}
+
+/// Ends an edit whose words were not found. What the search saw goes beside the place of the results, which
+/// may hold earlier ones.
+void require_search(EditJob& job, const std::filesystem::path& output) {
+    if (job.found()) return;
+    const std::filesystem::path place =
+        std::filesystem::absolute(output).lexically_normal().string() + ".search";
+    try {
+        StagedFolder folder(place, {"report.json", {"report.json", "evidence"}});
+        write_evidence(folder.path() / "evidence", job.painter().pool(), job.located(), job.views());
+        auto report = locate_report(job);
+        report["files"] = folder.listing();
+        write_file(folder.path() / "report.json", json_text(report, 2) + "\n");
+        folder.commit();
+    } catch (const Error& failure) {  // what was looked for was not found all the same
+        log::warning("{}", failure.what());
+        throw Error(ErrorCode::NotFound, job.located().message, job.located().remedy);
+    }
+    throw Error(ErrorCode::NotFound, job.located().message,
+                job.located().remedy + "; what the views showed is in", place);
+}
+
+/// Throws what ended an edit before its time.
+void require_finished(const EditJob& job, const std::filesystem::path& output) {
+    const auto ended_by = [&](const Error& reason, ErrorCode code) {
+        return Error(
+            code,
+            fmt::format("{}; the edit ended after {} of {} iterations, and what it had reached is saved",
+                        reason.message(), job.result().iterations,
+                        edit::loop_steps(job.recipe().request, job.located().mode)),
+            reason.hint(), output);
+    };
+    if (const auto& shortage = job.result().shortage) throw ended_by(*shortage, ErrorCode::Foreign);
+    if (const auto& failure = job.result().failure) throw ended_by(*failure, failure->code());
+    if (job.result().stopped)
+        throw Error(ErrorCode::Cancelled, "the edit was stopped; what it had reached is saved", "", output);
+}
+
+/// One edit, into the folder. What a finished one came to goes onto the sheet, too.
+nlohmann::ordered_json edit_into(const std::filesystem::path& output, const EditRecipe& recipe,
+                                 const EditOptions& options, const CommandContext& context,
+                                 VariationSheet* sheet) {
+    refuse_own_folder(recipe.job.scene, output);
+    StagedFolder folder(output, {"report.json",
+                                 {"scene.ply", "source.ply", "recipe.json", "report.json", "evidence",
+                                  "before_after.mp4", "before_after.png", "edit.gsep", "lora.safetensors"}});
+    EditJob job(recipe, context.job(), options.no_cache ? nullptr : open_answer_cache(load_cache_settings()));
+    folder.require_space(bytes_of_results(job));
+    job.locate();
+    require_search(job, output);
+    std::optional<PreviewCheck> gate;
+    if (options.gate && !edit::edits_by_views(job.recipe().request))
+        gate = look_through_gate(job);  // redrawn views are judged anyway
+    job.run();
+    job.times().begin("export");
+    folder.keep_on_failure();
+    write_edit(folder.path(), job);
+    job.times().end();
+    auto report = make_report(job);
+    if (job.result().iterations > 0)
+        write_file(
+            folder.path() / "edit.gsep",
+            ProjectWriter().pack(std::filesystem::absolute(output) / "edit.gsep", project_of(job, report)));
+    add_optional_parts(report, folder.path(), job, gate);
+    if (const auto& verdict = job.edited().verdict) report["gate"] = verdict_to_json(*verdict);
+    report["files"] = folder.listing();
+    write_file(folder.path() / "report.json", json_text(report, 1) + "\n");
+    folder.commit();
+    if (!options.json) print_summary(report, output);
+    else if (options.variations == 1) print_json(report, 2);
+    if (sheet != nullptr) sheet->add(job, output.filename().string());
+    require_finished(job, output);
+    return report;
+}
+
+/// The edit from several seeds, each in a folder of its own, and one picture of them all. One that cannot be
+/// drawn is left out.
+void run_variations(const EditOptions& options, const CommandContext& context) {
+    VariationSheet sheet;
+    auto reports = nlohmann::ordered_json::array();
+    const auto finish = [&] {
+        if (sheet.empty()) return;
+        sheet.write(options.output / "variations.png");
+        if (options.json) print_json(reports, 2);
+        else print("to choose from {}\n", (options.output / "variations.png").string());
+    };
+    const auto folder = [&](int i) { return options.output / std::to_string(i + 1); };
+    for (int i = 0; i < options.variations; ++i)
+        refuse_own_folder(options.recipe.job.scene, folder(i));  // before the first is begun
+    for (int i = 0; i < options.variations; ++i) try {
+            reports.push_back(
+                edit_into(folder(i), variation_of(options.recipe, i), options, context, &sheet));
+        } catch (const Error& error) {
+            if (error.code() == ErrorCode::Model && (i + 1 < options.variations || !sheet.empty())) {
+                log::warning("variation {}: {}", i + 1, error.what());
+                continue;
+            }
+            finish();
+            throw;
+        }
+    finish();
+}
+
+void run_edit_command(EditOptions& options, const CommandContext& context) {
+    complete(options);
+    if (options.variations > 1) return run_variations(options, context);
+    edit_into(options.output, options.recipe, options, context, nullptr);
+}
+
+void run_locate_command(EditOptions& options, const CommandContext& context) {
+    complete(options);
+    refuse_own_folder(options.recipe.job.scene, options.output);
+    if (std::filesystem::exists(options.output / "scene.ply"))
+        throw Error(ErrorCode::Unwritable,
+                    "the folder holds an edited scene, which what is found now would not belong to",
+                    "choose another place with --out", options.output);
+    StagedFolder folder(options.output,
+                        {"report.json", {"source.ply", "recipe.json", "report.json", "evidence"}});
+    EditJob job(options.recipe, context.job(),
+                options.no_cache ? nullptr : open_answer_cache(load_cache_settings()));
+    job.locate();
+    write_labelled_source(folder.path() / "source.ply", job);
+    write_evidence(folder.path() / "evidence", job.painter().pool(), job.located(), job.views());
+    auto report = locate_report(job);
+    report["nonfinite_before"] = job.unusable();
+    add_optional_parts(report, folder.path(), job, std::nullopt);
+    write_file(folder.path() / "recipe.json", json_text(recipe_to_json(job.recipe()), 2) + "\n");
+    report["files"] = folder.listing();
+    write_file(folder.path() / "report.json", json_text(report, 2) + "\n");
+    folder.commit();
+    if (options.json) print_json(report, 2);
+    else
+        print(
+            "{}\n{} of {} splats labelled for \"{}\" ({} mode), {} new\nlabels   {}/source.ply\nevidence "
+            "{}/evidence/\n",
+            edit::confidence_text(job.located().confidence), report["labelled"].get<long>(),
+            report["splats"].get<std::size_t>(), report["word"].get<std::string>(),
+            report["mode"].get<std::string>(), report["new"].get<std::size_t>(), options.output.string(),
+            options.output.string());
+    edit::require_found(job.located());
+}
+
+}  // namespace
+
+void add_edit_commands(CLI::App& app, CommandContext& context) {
+    auto locate = std::make_shared<EditOptions>();
+    auto* locate_command =
+        app.add_subcommand("locate", "Find what a word means in a scene, without changing it");
+    add_options(*locate_command, locate);
+    locate_command->callback([locate, &context] { run_locate_command(*locate, context); });
+    auto edit = std::make_shared<EditOptions>();
+    auto* edit_command = app.add_subcommand("edit", "Change a scene by one sentence");
+    add_options(*edit_command, edit);
+    edit_command->add_flag(
+        "--gate,!--no-gate", edit->gate,
+        "Method sds: first show what the model makes of four views, in evidence/gate_*.png, and warn when "
+        "they do not show the edit; redrawn views are judged as they are");
+    edit_command
+        ->add_option("--variations", edit->variations,
+                     "Make so many, each from the next seed, in folders 1, 2, ... of --out, and "
+                     "variations.png to choose from")
+        ->check(CLI::Range(1, MostVariations));
+    edit_command->callback([edit, &context] { run_edit_command(*edit, context); });
+}
+
+}  // namespace gse::app

@@ -1,0 +1,331 @@
+// gseditpro info, convert, adjust, cameras, render, turntable, synth.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <numbers>
+
+#include "app/cli/cli.h"
+#include "app/cli/engine_names.h"
+#include "engine/base/error.h"
+#include "engine/base/log.h"
+#include "engine/base/path_text.h"
+#include "engine/base/print.h"
+#include "engine/io/cameras.h"
+#include "engine/io/image_file.h"
+#include "engine/io/scene_io.h"
+#include "engine/laboratory/synth/synth.h"
+#include "engine/pipeline/report/film.h"
+#include "engine/pipeline/report/scene_report.h"
+#include "engine/pipeline/run/scene_tools.h"
+#include "engine/scene/colour_adjustment.h"
+
+namespace gse::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct SceneOptions {
+    std::filesystem::path input, output;
+    RenderParameters render;
+    TurntableParameters turn;
+    SaveOptions save;
+    bool labels = false;
+    bool drop = false;
+    bool json = false;
+};
+
+/// One broken file of several does not hide the others.
+void print_infos(const std::vector<std::filesystem::path>& paths, bool as_json) {
+    std::size_t failed = 0;
+    Json list = Json::array();
+    for (const auto& path : paths) {
+        try {
+            const Json json = scene_report(path);
+            if (as_json) list.push_back(json);
+            else fmt::print("{}", report_text(json));
+        } catch (const Error& error) {
+            log::error("{}", error.what());
+            ++failed;
+        }
+    }
+    if (as_json) print_json(list);
+    if (failed > 0)
+        throw Error(ErrorCode::Unreadable,
+                    fmt::format("{} of {} scenes cannot be read", failed, paths.size()));
+}
+
+void add_info(CLI::App& app, CommandContext&) {
+    struct InfoOptions {
+        std::vector<std::filesystem::path> scenes;
+        bool json = false;
+    };
+    auto options = std::make_shared<InfoOptions>();
+    auto* command = app.add_subcommand(
+        "info", "Print what scenes hold and what may be wrong with them, or how pictures were made");
+    command->add_option("scene", options->scenes, "Scene files or folders, or pictures (.png)")->required();
+    command->add_flag("--json", options->json, "Print JSON; a list for several scenes");
+    command->callback([options] {
+        if (options->scenes.size() > 1) return print_infos(options->scenes, options->json);
+        const Json json = scene_report(options->scenes.front());
+        if (options->json) print_json(json);
+        else fmt::print("{}", report_text(json));
+    });
+}
+
+bool has_room_for_labels(const std::filesystem::path& output) {
+    return output.extension() == ".ply" && output.stem().extension() != ".compressed";
+}
+
+void refuse_same_file(const std::filesystem::path& input, const std::filesystem::path& output) {
+    std::error_code ignored;
+    if (std::filesystem::equivalent(input, output, ignored))
+        throw Error(ErrorCode::InvalidArgument, "the output is the input itself", "choose another name",
+                    output);
+}
+
+std::string left_out_text(const SavedRows& rows) {
+    return rows.left_out == 0 ? ""
+                              : fmt::format(" ({} that the format cannot hold are left out)", rows.left_out);
+}
+
+void add_convert(CLI::App& app, CommandContext&) {
+    auto options = std::make_shared<SceneOptions>();
+    auto* command = app.add_subcommand("convert", "Write a scene in another format");
+    command->add_option("input", options->input, "Scene file or folder")->required();
+    command->add_option("output", options->output, "New file: .ply, .compressed.ply, .splat, .spz or .sog")
+        ->required();
+    command->add_option("--format", options->save.format,
+                        "ply, compressed.ply, splat, spz or sog; from the name when left out");
+    command
+        ->add_option("--spz-version", options->save.spz_version,
+                     "Of a .spz: 3 (most programs read it), 4 (newest) or 2 (oldest)")
+        ->capture_default_str()
+        ->check(CLI::Range(2, 4));
+    command->add_flag("--labels", options->labels, "Keep label columns (PLY only)");
+    command->add_flag("--drop-unusable", options->drop, "Leave out splats with NaN or illegal infinities");
+    command->callback([options] {
+        Scene scene = load_scene(options->input);
+        if (options->drop) {
+            const std::size_t before = scene.gaussians.size();
+            scene.gaussians = drop_unusable(scene.gaussians);
+            if (scene.gaussians.size() != before) scene.labels = {};
+            log::info("{} unusable splats were dropped", before - scene.gaussians.size());
+        }
+        SaveOptions save = options->save;
+        if (options->labels && !scene.labels.labels.empty()) save.from_label = &scene.labels.labels.front();
+        else if (!scene.labels.labels.empty())
+            log::warning("the labels of the scene are not written; --labels keeps them in a .ply");
+        refuse_same_file(options->input, options->output);
+        const SavedRows rows = save_scene(options->output, scene, save);
+        print("{} splats written to {}{}\n", rows.written, options->output.string(), left_out_text(rows));
+    });
+}
+
+void add_adjust(CLI::App& app, CommandContext&) {
+    struct AdjustOptions {
+        std::filesystem::path input, output;
+        ColourAdjustment colours;
+        bool use_label = false;
+    };
+    auto options = std::make_shared<AdjustOptions>();
+    auto* command = app.add_subcommand("adjust", "Write a scene with its colours adjusted");
+    command->add_option("input", options->input, "Scene file or folder")->required();
+    command->add_option("output", options->output, "New file: .ply, .compressed.ply, .splat, .spz or .sog")
+        ->required();
+    command->add_flag("--use-label", options->use_label,
+                      "Of what the scene's own label marks, not of all splats");
+    bind_fields(*command, options->colours, "Colours");
+    command->callback([options] {
+        Scene scene = load_scene(options->input);
+        const auto& labels = scene.labels.labels;
+        if (options->use_label && labels.empty())
+            throw Error(ErrorCode::InvalidArgument, "the scene has no label",
+                        "leave out --use-label, or save it with a label", options->input);
+        refuse_same_file(options->input, options->output);
+        scene.gaussians = adjusted(
+            scene.gaussians,
+            options->use_label ? *labels.front().bits : std::vector<std::uint8_t>(scene.gaussians.size(), 1),
+            options->colours);
+        SaveOptions save;
+        if (!labels.empty() && has_room_for_labels(options->output)) save.from_label = &labels.front();
+        const SavedRows rows = save_scene(options->output, scene, save);
+        print("{} splats written to {}{}\n", rows.written, options->output.string(), left_out_text(rows));
+    });
+}
+
+void add_cameras(CLI::App& app, CommandContext&) {
+    struct CameraOptions {
+        std::filesystem::path input, output;
+        int orbit = 0;
+    };
+    auto options = std::make_shared<CameraOptions>();
+    auto* command = app.add_subcommand(
+        "cameras", "Write viewpoints as cameras.json (3DGS) or transforms.json (nerfstudio)");
+    command
+        ->add_option("input", options->input,
+                     "Project (.gsep), camera file or folder, or a scene with cameras beside it")
+        ->required();
+    command
+        ->add_option("output", options->output,
+                     "New file; a name that begins with transforms is nerfstudio's form")
+        ->required();
+    command->add_option("--orbit", options->orbit, "This many viewpoints around the scene instead of its own")
+        ->check(CLI::Range(1, 100000));
+    command->callback([options] {
+        const auto views = viewpoints_of(options->input, options->orbit);
+        save_cameras(options->output, views);
+        print("{} viewpoints written to {}\n", views.size(), options->output.string());
+    });
+}
+
+void add_render(CLI::App& app, CommandContext&) {
+    auto options = std::make_shared<SceneOptions>();
+    auto* command = app.add_subcommand("render", "Take a picture of a scene");
+    command->add_option("scene", options->input, "Scene file or folder")->required();
+    command->add_option("output", options->output, "PNG to write")->required();
+    auto transparent = std::make_shared<bool>(false);
+    command->add_flag("--transparent", *transparent,
+                      "Transparent where the scene does not cover the picture");
+    bind_fields(*command, options->render, "Picture");
+    command->callback([options, transparent] {
+        const Scene scene = load_scene(options->input);
+        Painter painter;
+        const Camera camera = choose_camera(scene, options->input, options->render);
+        auto settings = raster_settings(options->render, scene.info);
+        if (*transparent) settings.background = {0, 0, 0};
+        const auto& output = painter.paint(scene.gaussians.spans(), camera, settings);
+        write_png(options->output, *transparent ? transparent_picture(output) : output.colour,
+                  {{"Software", "GSEditPro"}, {"Recipe", fields_to_json(options->render).dump()}});
+        print("{}\n", options->output.string());
+    });
+}
+
+/// What `turntable` films.
+struct FilmOptions {
+    SceneOptions scene;
+    std::filesystem::path before, path;
+    bool transparent = false;
+};
+
+FilmRequest film_request(const FilmOptions& options) {
+    const auto& render = options.scene.render;
+    const auto& turn = options.scene.turn;
+    const Scene scene = load_scene(options.scene.input);
+    FilmRequest film;
+    film.first = scene.gaussians;
+    if (!options.before.empty()) {
+        film.second = std::make_shared<const GaussianSet>(scene.gaussians);
+        film.first = load_scene(options.before).gaussians;
+    }
+    film.settings = raster_settings(render, scene.info);
+    film.transparent = options.transparent;
+    film.fps = turn.fps;
+    film.cameras =
+        options.path.empty()
+            ? turn_cameras(whole_orbit(scene, render), turn, render.azimuth, render.width, render.height)
+            : path_cameras(load_camera_path(options.path, render.width, render.height), turn.fps,
+                           render.width, render.height);
+    return film;
+}
+
+void add_turntable(CLI::App& app, CommandContext& context) {
+    auto options = std::make_shared<FilmOptions>();
+    auto* command = app.add_subcommand("turntable", "Film a turn around a scene, or a camera path");
+    command->add_option("scene", options->scene.input, "Scene file or folder")->required();
+    command->add_option("output", options->scene.output, "Film (.mp4 or .webm), or a folder for PNG frames")
+        ->required();
+    command->add_option("--before", options->before, "Another scene to show in the left half");
+    command->add_option("--path", options->path,
+                        "Camera path (JSON of the editor) to follow instead of a turn");
+    command->add_flag("--transparent", options->transparent, "Transparent background (PNG frames)");
+    bind_fields(*command, options->scene.render, "Picture");
+    bind_fields(*command, options->scene.turn, "Turn");
+    command->callback([options, &context] {
+        write_film(options->scene.output, film_request(*options), context.job());
+        print("{}\n", options->scene.output.string());
+    });
+}
+
+void check_word(const std::string& word, const std::vector<std::string>& words, const char* kind,
+                bool may_be_empty) {
+    if (word.empty() && may_be_empty) return;
+    if (std::find(words.begin(), words.end(), word) != words.end()) return;
+    std::string list;
+    for (const auto& known : words) list += (list.empty() ? "" : ", ") + known;
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("\"{}\" is not {} of the synthetic world", word, kind), "choose from " + list);
+}
+
+/// Cameras that frame the object, alternately low and high.
+std::vector<View> synth_ring(const synth::SynthScene& scene) {
+    constexpr int count = 24, side = 512;
+    std::vector<View> views;
+    for (int i = 0; i < count; ++i)
+        views.push_back(
+            {fmt::format("ring_{:02}", i), synth::scene_camera(scene, 2 * std::numbers::pi * i / count,
+                                                               i % 2 == 0 ? 0.2 : 0.5, 1, side, side)});
+    return views;
+}
+
+void add_synth(CLI::App& app, CommandContext&) {
+    struct SynthOptions {
+        synth::SceneSpec spec;
+        std::filesystem::path output;
+        std::filesystem::path cameras;
+        std::string edit;
+    };
+    auto options = std::make_shared<SynthOptions>();
+    auto& spec = options->spec;
+    auto* command = app.add_subcommand("synth", "Generate a scene of the synthetic world, parts labelled");
+    command->add_option("output", options->output, "Scene file to write")->required();
+    command->add_option("--object", spec.object, "Main object")->capture_default_str();
+    command->add_option("--material", spec.material, "Colour or material of the object")
+        ->capture_default_str();
+    command->add_option("--accessory", spec.accessory, "What the object wears; empty = nothing");
+    command->add_option("--accessory-colour", spec.accessory_colour,
+                        "Colour of the accessory; empty = its own");
+    command->add_option("--ground", spec.ground, "What the object stands on")->capture_default_str();
+    command->add_option("--seed", spec.seed, "Shape, pose, texture and light")->capture_default_str();
+    command->add_option("--splats", spec.gaussian_budget, "About this many splats")
+        ->capture_default_str()
+        ->check(CLI::Range(500, 5000000));
+    command->add_option("--edit", options->edit, "Sentence of an edit: writes the true edited scene instead");
+    command->add_option("--cameras", options->cameras,
+                        "Also write a ring of 24 cameras to this cameras.json");
+    command->callback([options] {
+        auto& wanted = options->spec;
+        check_word(wanted.object, synth::object_words(), "an object", false);
+        check_word(wanted.material, synth::material_words(), "a material", false);
+        check_word(wanted.accessory, synth::accessory_words(), "an accessory", true);
+        check_word(wanted.ground, synth::ground_words(), "a ground", false);
+        const auto final_spec = options->edit.empty() ? wanted : synth::apply_edit(wanted, options->edit);
+        synth::SynthScene result = synth::generate(final_spec);
+        std::vector<float> parts(result.parts.size());
+        std::transform(result.parts.begin(), result.parts.end(), parts.begin(),
+                       [](synth::Part part) { return part == synth::Part::Ground ? 0.0f : 1.0f; });
+        SaveOptions save;
+        if (has_room_for_labels(options->output)) {
+            result.scene.labels.labels.push_back(make_label("part", std::move(parts), 0.5f));
+            save.from_label = &result.scene.labels.labels.front();
+        }
+        save_scene(options->output, result.scene, save);
+        if (!options->cameras.empty()) save_cameras_json(options->cameras, synth_ring(result));
+        print("{}: {}\n", options->output.string(), synth::full_caption(final_spec).text);
+    });
+}
+
+}  // namespace
+
+void add_scene_commands(CLI::App& app, CommandContext& context) {
+    add_info(app, context);
+    add_convert(app, context);
+    add_adjust(app, context);
+    add_cameras(app, context);
+    add_render(app, context);
+    add_turntable(app, context);
+    add_synth(app, context);
+}
+
+}  // namespace gse::app

@@ -1,0 +1,16 @@
+// The options of `eval` and `bench edit` that set how the suite's edits are made.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "app/cli/engine_names.h"
+#include "engine/pipeline/run/edit_job.h"
+
+namespace gse::app {
+
+/// Model, machine, and every field of the request and the guidance that the suite does not set itself.
+void add_eval_settings(CLI::App& command, EditRecipe& settings);
+/// What the command line does not say is as the model states.
+void apply_eval_model(const CLI::App& command, EditRecipe& settings);
+
+}  // namespace gse::app

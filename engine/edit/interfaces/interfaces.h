@@ -1,0 +1,167 @@
+// What the edit needs from networks and segmenters, in plain types: implemented in engine/neural and here.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/base/image.h"
+#include "engine/base/progress.h"
+#include "engine/edit/interfaces/clean_plate.h"
+#include "engine/scene/scene.h"
+
+namespace gse::edit {
+
+/// What a guidance sees of one iteration.
+struct GuidanceInput {
+    const Image& rendered;        // [H,W,3] in [0,1], the current render
+    const View& view;             // where it was rendered from
+    std::size_t view_index = 0;   // index into the edit's views
+    std::string view_words = {};  // "front view", "side view", "back view" or empty: appended to the prompt
+    int iteration = 0;
+    int iteration_count = 1;
+    std::uint64_t seed = 0;  // already mixed with the iteration: the only source of randomness
+    /// [H,W,3] the unedited scene from there, not clamped; the same picture for the same view_index. Null =
+    /// not known.
+    const Image* original = nullptr;
+};
+
+/// Gradient of the guidance loss with respect to the image, and numbers for the log.
+struct GuidanceOutput {
+    Image gradient;                         // [H,W,3] dL/dImage
+    std::map<std::string, double> scalars;  // "loss", "timestep", "gradient_norm", ...
+};
+
+/// Pulls the rendered image towards the goal of the edit.
+class Guidance {
+public:
+    virtual ~Guidance() = default;
+    /// A gradient with a value that is not finite says that there is none this time; the step is left out.
+    virtual GuidanceOutput evaluate(const GuidanceInput& input) = 0;
+};
+
+/// One view of a round of view guidance. Pictures have one size; `rendered` and `original` are in [0,1].
+struct EditView {
+    Image rendered;  // [H,W,3] the scene as it is now
+    Image original;  // [H,W,3] the unedited scene
+    Image depth;     // [H,W,1] of the surface along the camera's z, world units; 0 = nothing there
+    Mask mask;       // where the picture may change
+    View view;
+    std::string view_words = {};  // as in GuidanceInput
+    std::optional<double> azimuth =
+        {};  // of the camera from the thing's front, radians, positive to its left; nothing = not known
+    double elevation =
+        0;  // of the camera above the thing's horizon, radians; 0 where the azimuth is not known
+    CleanPlate backdrop =
+        {};  // the scene without what may change, its holes filled; empty unless the round draws anew
+};
+
+/// What a round is asked to be.
+struct EditViewsRequest {
+    int round = 0, rounds = 1;
+    int steps = 6;              // of the sampler
+    double strength = 0.75;     // where it begins: 0 = the picture itself, 1 = pure noise
+    std::uint64_t seed = 0;     // already mixed with the round: the only source of randomness
+    bool anew = false;          // the inside of the masks becomes something else: nothing of it is to be kept
+    std::string sentence = {};  // that the model is told; empty = the one that the guidance was made for
+    double guided_until =
+        0;  // steps at or below this noise level are led by the sentence alone, without the negative prompt
+    bool keep = false;           // the answer is worth remembering: the same may be asked again
+    bool tells_changes = false;  // EditedViews::changes are wanted where there are no outlines; they take a
+                                 // decoder's pass per view
+    double noise =
+        1;  // standard deviation of the noise of a round that is `anew`; below 1 it draws nearer to the mean
+};
+
+/// The pictures as the model would have them, and numbers for the log.
+struct EditedViews {
+    std::vector<Image> images;  // per view, [H,W,3] in [0,1], of the size that came in
+    /// Per view, [H,W,1]: how much the picture differs from what the model makes of the backdrop alone (of
+    /// the channel that differs most); empty where it cannot tell, or was not asked.
+    std::vector<Image> changes = {};
+    /// Per view, [H,W,1] in [0,1]: how much of each pixel the new thing covers; empty where the model cannot
+    /// tell.
+    std::vector<Image> outlines = {};
+    std::map<std::string, double> scalars = {};
+    bool unfinished = false;  // what they lack is laid over the edited scene: pictures like the scene do not
+                              // mean that nothing came
+};
+
+/// Edits all views of a round in the picture; the scene is fitted to what comes back.
+class MultiViewEditor {
+public:
+    virtual ~MultiViewEditor() = default;
+    /// Throws Error (Cancelled) on a stop request.
+    virtual EditedViews edit(const std::vector<EditView>& views, const EditViewsRequest& input,
+                             const JobControl& job) = 0;
+    /// Whether rounds that are not `anew` are drawn by a network that is shown the unedited views and keeps
+    /// their shapes, however much noise there is in the beginning.
+    virtual bool supports_appearance_editing() const { return false; }
+};
+
+/// One attention query: where in the image does each of these words of the prompt land?
+struct AttentionQuery {
+    const Image& image;              // [H,W,3] in [0,1]
+    std::string prompt;              // must contain every word
+    std::vector<std::string> words;  // one map each
+    std::string view_words = {};     // as in GuidanceInput
+    bool absent = false;             // the thing is not in the image yet: look at high timesteps
+    int repeats = 3;
+    std::uint64_t seed = 0;
+};
+
+/// Cross-attention of a text-to-image model (GSEditPro 3.2). Returns one single-channel image per word, at
+/// the size of the input image, non-negative, on the same scale for all pictures (all zero if the word drew
+/// no attention at all): where a word draws much less than in others, what it means is not there.
+class AttentionSource {
+public:
+    virtual ~AttentionSource() = default;
+    virtual std::vector<Image> locate(const AttentionQuery& query) = 0;
+    /// Tells what locate() is asked next: a source that is quicker with several queries works them out
+    /// together. One that fails is left to locate(), which says why.
+    virtual void prepare(std::span<const AttentionQuery> queries) { static_cast<void>(queries); }
+    /// How many queries are worth preparing together; no longer than a stop request may wait.
+    virtual std::size_t at_once() const { return 1; }
+    /// Binarisation threshold the model was measured to work best with; 0.5 (the paper's) unless it states
+    /// its own.
+    virtual double threshold() const { return 0.5; }
+    /// Side in pixels of the square images the model works at.
+    virtual int image_size() const = 0;
+};
+
+/// A click: positive = inside the wanted region. Pixel coordinates, pixel centres at .5.
+struct PointPrompt {
+    double x = 0, y = 0;
+    bool positive = true;
+};
+
+struct BoxPrompt {
+    double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+};
+
+/// Image and clicks (or a box) to a mask.
+class Segmenter {
+public:
+    virtual ~Segmenter() = default;
+    /// `hint` (may be empty) is a coarse map in [0,1] of where the object probably is, at the image's size.
+    virtual Mask segment(const Image& image, const std::vector<PointPrompt>& points,
+                         const std::optional<BoxPrompt>& box, const Image& hint) = 0;
+    /// Whether its masks are better than the attention they come from: then attention outside of them does
+    /// not count.
+    virtual bool trusted() const { return false; }
+    virtual std::string name() const = 0;
+};
+
+/// Image and noun to a mask with a confidence in [0,1]; absent without weights.
+class TextSegmenter {
+public:
+    virtual ~TextSegmenter() = default;
+    virtual std::pair<Mask, double> segment(const Image& image, const std::string& noun) = 0;
+};
+
+}  // namespace gse::edit

@@ -1,0 +1,41 @@
+// What one view of a search says, as the vote that labels are fused from.
+#pragma once
+
+#include "engine/edit/search/locate.h"
+
+namespace gse::edit {
+
+/// [H,W,1], 0 or 1.
+Image mask_image(const Mask& mask);
+
+/// What a view says about its pixels, [H,W,1] in [0,1]. A mask cut out by colours has sharp edges but leaves
+/// out what has another colour (a mushroom's stem, a car's windows); the attention is blurred but knows that
+/// they belong. Where the two disagree, the other views and the cut between neighbours decide; what another
+/// named thing has for sure (the white legs of a dog on snow) the mask does not take from it. The mask of a
+/// segmenter that is trusted is believed as it is.
+Image vote_of(const ViewEvidence& view, double threshold);
+
+/// How far ahead the others are (`lead`); maps[0] is the view's own. Those that the user gave (`strict`) take
+/// every pixel they have more of, those of the sentence only count in vote_of(): the attention of a wide
+/// ground is strong under the feet of what stands on it.
+void compete(ViewEvidence& view, const std::vector<Image>& maps, bool strict);
+
+/// The largest of its values; those that are not finite do not count.
+float largest_value(const Image& map);
+
+/// Views, by their number, in which what a word means is out of sight, by the most attention that it draws in
+/// each of them: much less than in most. At most half of them.
+std::vector<std::size_t> faint_views(const std::vector<float>& peaks);
+
+/// Throws Error (InvalidArgument) for a view that is none of `count`.
+void require_views(const std::vector<std::size_t>& left_out, std::size_t count);
+
+/// Views that do not vote, by their number: marked as such. Throws Error (InvalidArgument) for one that is
+/// not there.
+void leave_out(std::vector<ViewEvidence>& views, const std::vector<std::size_t>& left_out);
+
+/// Evidence from which a row counts as seen, in pixels: `asked` is meant for scenes whose splats cover a few
+/// pixels; in denser ones no splat has that much.
+double least_evidence(const localize::LabelWeights& weights, double asked);
+
+}  // namespace gse::edit

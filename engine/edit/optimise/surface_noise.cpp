@@ -1,0 +1,91 @@
+// Hashed voxels, summed over the pixels of a cell.
+#include "engine/edit/optimise/surface_noise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "engine/base/check.h"
+#include "engine/base/hash.h"
+#include "engine/base/random.h"
+#include "engine/math/unproject.h"
+
+namespace gse::edit {
+namespace {
+
+std::uint64_t voxel_of(const Vec3& point, double voxel) {
+    Hash key;
+    for (int axis = 0; axis < 3; ++axis)
+        key.add(static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(point[axis] / voxel))));
+    return key.value();
+}
+
+std::uint64_t private_voxel(std::uint64_t view, int cell_x, int cell_y) {
+    Hash key;
+    key.text("nothing there");
+    for (const auto part : {view, static_cast<std::uint64_t>(cell_x), static_cast<std::uint64_t>(cell_y)})
+        key.add(part);
+    return key.value();
+}
+
+/// World point of a pixel's surface.
+/// Voxels of a cell with the pixels of each.
+using Shares = std::vector<std::pair<std::uint64_t, int>>;
+
+void count(Shares& shares, std::uint64_t voxel) {
+    const auto found =
+        std::find_if(shares.begin(), shares.end(), [&](const auto& share) { return share.first == voxel; });
+    if (found != shares.end()) ++found->second;
+    else shares.emplace_back(voxel, 1);
+}
+
+}  // namespace
+
+Image surface_noise(const Image& depth, const Camera& camera, int cells, int channels, double voxel,
+                    std::uint64_t seed, std::uint64_t view) {
+    GSE_CHECK(cells > 0 && channels > 0 && voxel > 0);
+    GSE_CHECK(depth.width == camera.width && depth.height == camera.height);
+    std::vector<Shares> shares(static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells));
+    for (int y = 0; y < depth.height; ++y)
+        for (int x = 0; x < depth.width; ++x) {
+            const int cell_x = x * cells / depth.width, cell_y = y * cells / depth.height;
+            const double z = depth.at(x, y, 0);
+            count(shares[static_cast<std::size_t>(cell_y * cells + cell_x)],
+                  z > 0 ? voxel_of(unprojected(camera, x + 0.5, y + 0.5, z), voxel)
+                        : private_voxel(view, cell_x, cell_y));
+        }
+    Image noise(cells, cells, channels);
+    const auto stride = static_cast<std::size_t>(channels);
+    for (std::size_t cell = 0; cell < shares.size(); ++cell) {
+        double squares = 0;
+        std::vector<double> sums(stride, 0.0);
+        for (const auto& [key, pixels] : shares[cell]) {
+            Random random = Random::stream(seed, key);
+            squares += static_cast<double>(pixels) * pixels;
+            for (auto& sum : sums) sum += pixels * random.normal();
+        }
+        if (shares[cell].empty()) {  // more cells than pixels
+            Random random = Random::stream(seed, private_voxel(view, static_cast<int>(cell), -1));
+            squares = 1;
+            for (auto& sum : sums) sum = random.normal();
+        }
+        for (std::size_t c = 0; c < stride; ++c)
+            noise.data[cell * stride + c] = static_cast<float>(sums[c] / std::sqrt(squares));
+    }
+    return noise;
+}
+
+double noise_voxel(std::span<const EditView> views, int cells) {
+    std::vector<double> sizes;
+    for (const auto& view : views)
+        for (std::size_t i = 0; i < view.mask.data.size(); ++i)
+            if (view.mask.data[i] != 0 && view.depth.data[i] > 0)
+                sizes.push_back(view.depth.data[i] / view.view.camera.fx * view.depth.width / cells);
+    if (sizes.empty()) return 1;
+    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+    std::nth_element(sizes.begin(), middle, sizes.end());
+    return 0.5 * *middle;
+}
+
+}  // namespace gse::edit

@@ -1,0 +1,91 @@
+// Slices from the top downwards.
+#include "engine/edit/placement/head.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/base/check.h"
+#include "engine/edit/placement/region_frame.h"
+#include "engine/edit/search/place_drawing.h"
+
+namespace gse::edit {
+namespace {
+
+constexpr float SeenLogit = -2.2f;    // opacity 0.1: a haze above is no head
+constexpr double Steps = 50;          // slices of a thing
+constexpr double LeastHead = 0.08;    // of its height: a tip is no head
+constexpr double HeadTrim = 0.03;     // of a slice's rows, at either end: a strand, a ray of a crown
+constexpr double HeadProportion = 1;  // height over width
+// Of the head's height: with the head alone a scarf went over the mouth of a man and of a statue, with twice
+// and a half of it over the shoulders.
+constexpr double HeadAndNeck = 1.7;
+
+struct Row {
+    std::size_t row;
+    Vec3 at;  // in the frame
+};
+
+std::vector<Row> seen_rows(const GaussianSet& set, std::span<const std::uint8_t> bits, const Frame& frame) {
+    std::vector<Row> rows;
+    for (std::size_t row = 0; row < bits.size(); ++row) {
+        const auto p = set.position().subspan(row * 3, 3);
+        if (bits[row] == 0 || !(set.opacity_logit()[row] > SeenLogit)) continue;
+        if (std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]))
+            rows.push_back({row, frame.to_frame({p[0], p[1], p[2]})});
+    }
+    return rows;
+}
+
+}  // namespace
+
+HeadRegion bust_of(const GaussianSet& set, std::span<const std::uint8_t> bits, const Vec3& up,
+                   const Vec3& front, double heads) {
+    GSE_CHECK_EQ(bits.size(), set.size());
+    HeadRegion bust{{bits.begin(), bits.end()}, 1};
+    auto rows = seen_rows(set, bits, make_frame(up, front));
+    if (rows.empty()) return bust;
+    std::sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.at.y > b.at.y; });
+    std::vector<Vec3> points;
+    for (const auto& row : rows) points.push_back(row.at);
+    const Box all = trimmed_box(points, BoundsTrim);
+    const double height = all.size().y;
+    points.clear();
+    for (double share = LeastHead; share < 1; share += 1 / Steps) {
+        while (points.size() < rows.size() && rows[points.size()].at.y >= all.high.y - share * height)
+            points.push_back(rows[points.size()].at);
+        if (points.empty()) continue;
+        const Vec3 size = trimmed_box(points, HeadTrim).size();
+        if (share * height < HeadProportion * 0.5 * (size.x + size.z)) continue;
+        bust.head = share;
+        const double bottom = all.high.y - std::min(1.0, heads * share) * height;
+        std::fill(bust.bits.begin(), bust.bits.end(), std::uint8_t{0});
+        for (const auto& row : rows) bust.bits[row.row] = row.at.y >= bottom ? 1 : 0;
+        break;
+    }
+    return bust;
+}
+
+AttachmentTarget wearer_of(const EditRequest& request, const GaussianSet& set,
+                           std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front,
+                           bool drawn) {
+    const bool at_head = has_usual_place(request.target) && usual_place(request.target) != "around";
+    if (drawn && at_head && draws_place(request, EditMode::Add)) {
+        auto bust = bust_of(set, bits, up, front, usual_place(request.target) == "neck" ? HeadAndNeck : 1);
+        if (bust.has_small_head()) {
+            const auto standing = standing_alone(set, bust.bits, up, front);
+            return {std::move(bust.bits), standing, bust.head};
+        }
+    }
+    return {{bits.begin(), bits.end()}, standing_of(set, bits, up, front)};
+}
+
+bool replaces_accessory(const EditRequest& request, EditMode mode) {
+    return mode == EditMode::Replace && has_usual_place(request.source) && has_usual_place(request.target);
+}
+
+bool moves_worn_place(const EditRequest& request, EditMode mode) {
+    return replaces_accessory(request, mode) && usual_place(request.source) != usual_place(request.target);
+}
+
+}  // namespace gse::edit

@@ -1,0 +1,52 @@
+// The head of a figure: what wears hats, glasses and scarves, where it is small beside the whole.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/edit/placement/upright_bounds.h"
+#include "engine/edit/request/request.h"
+#include "engine/math/vec.h"
+#include "engine/scene/gaussian_set.h"
+
+namespace gse::edit {
+
+/// The upper part of a labelled thing.
+struct HeadRegion {
+    std::vector<std::uint8_t> bits;  // [N]
+    double head =
+        1;  // its height, as a share of the whole thing's: the topmost part that is as high as it is wide
+    /// Smaller than that of any figure that the model has learned from, for which it would draw a hat that
+    /// suits the whole of it.
+    bool has_small_head() const { return head < SmallHead; }
+    static constexpr double SmallHead =
+        0.26;  // of the learned figures a chair's back has the least, 0.3, and a statue 0.4
+};
+
+/// Of what `bits` [N] label, as high as so many `heads`. All of it where no part is as high as wide, or
+/// nothing of it can be seen.
+HeadRegion bust_of(const GaussianSet& set, std::span<const std::uint8_t> bits, const Vec3& up,
+                   const Vec3& front, double heads = 1);
+
+/// What of a thing wears something new.
+struct AttachmentTarget {
+    std::vector<std::uint8_t> bits;  // [N]
+    UprightBounds standing;
+    double head = 1;  // where it is the head: its height, as a share of the whole thing's
+};
+
+/// Of what `bits` [N] label: the head, where it is small and the target has its place there (add_region.h,
+/// usual_place) and is `drawn` into the views; the whole otherwise. What the bundled model draws suits the
+/// figure it is shown: the hat of a statue of a man was twice as wide as the shoulders, and suits his head
+/// where the figure is that.
+AttachmentTarget wearer_of(const EditRequest& request, const GaussianSet& set,
+                           std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front, bool drawn);
+
+/// Whether something that is worn takes the place of something else that is ("crown" of "hat"): whoever wears
+/// it stays, and is shown.
+bool replaces_accessory(const EditRequest& request, EditMode mode);
+/// Whether it is worn elsewhere than that ("sunglasses" of "hat").
+bool moves_worn_place(const EditRequest& request, EditMode mode);
+
+}  // namespace gse::edit

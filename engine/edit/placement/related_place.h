@@ -1,0 +1,35 @@
+// Where a thing may lie that the sentence puts beside, behind, before or under the source.
+#pragma once
+
+#include "engine/edit/placement/region_frame.h"
+#include "engine/edit/request/relation.h"
+
+namespace gse::edit {
+
+/// The room that a relation leaves, in frame coordinates: what the views vote in, and where the thing goes
+/// unasked.
+class RelatedPlace {
+public:
+    /// `source` and `others`: visible points of the source (at least one) and of the rest of the scene.
+    RelatedPlace(Relation relation, const std::vector<Vec3>& source, const std::vector<Vec3>& others);
+    /// Where the views vote.
+    const Box& box() const { return box_; }
+    /// Whether a point of it stands in the relation to the source.
+    bool allows(const Vec3& p) const;
+    /// A round thing next to the source, which rests on the ground the source stands on; under a source that
+    /// stands on the ground, a flat one at its foot.
+    VoxelRegion usual(const Frame& frame, int cells) const;
+
+private:
+    void find_room_below(const std::vector<Vec3>& others);
+    void choose_side(const std::vector<Vec3>& others);
+    Box thing() const;
+
+    Relation relation_;
+    Box source_, box_;
+    double radius_ = 0;  // of a thing that suits the source
+    double sign_ = 1;    // of x, where either side would do: the emptier one
+    double below_ = 0;   // free height under the source; 0 = it stands on something
+};
+
+}  // namespace gse::edit

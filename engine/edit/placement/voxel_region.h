@@ -1,0 +1,82 @@
+// Where a thing that is not in the scene yet goes, and the faint new splats it grows from (method A14).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/base/image.h"
+#include "engine/base/thread_pool.h"
+#include "engine/edit/placement/upright_bounds.h"
+#include "engine/edit/request/relation.h"
+#include "engine/scene/scene.h"
+
+namespace gse::edit {
+
+/// A set of equal cubes.
+struct VoxelRegion {
+    std::vector<Vec3> centres;  // world
+    std::vector<Vec3> shell;    // those with a free face, which alone are seen; empty = not known
+    double side = 0;            // of a cube, world units
+    double agreement = 0;       // mean share, of the views that see the cubes, whose mask covers them
+    std::string origin =
+        "none";  // "attention" or the place: "top", "front", "neck", "around", "beside", "left", ...
+    bool empty() const { return centres.empty(); }
+};
+
+/// What the search for a region looks at.
+struct RegionSearch {
+    const GaussianSet& gaussians;
+    std::span<const std::uint8_t> source_bits;  // [N] rows of the thing the new one belongs to
+    const std::vector<View>& views;
+    std::span<const Mask> masks;    // per view; an empty mask does not vote
+    std::span<const Image> depths;  // per view [H,W,1] depth of the surface, 0 = nothing there
+    Vec3 up{0, -1, 0};
+    Vec3 front{0, 0, -1};  // where the thing looks
+    Relation relation =
+        Relation::None;  // what the sentence says of the new thing's place: cells elsewhere do not count
+    ThreadPool* threads = nullptr;  // may be null
+    UprightBounds standing{};       // of the thing; not found = read off its rows
+};
+
+struct RegionParameters {
+    int cells = 28;                 // along the longest side of the searched box
+    double least_agreement = 0.5;   // share of the views that see the best cube that must cover it
+    double lowest_agreement = 0.4;  // of all regions above which the one is taken that matches the masks best
+    double level_step = 0.05;
+    double least_covered =
+        0.45;  // share of the views in which the cube is in the mask: few that see it prove little
+    double least_seen = 0.2;    // share of the views in which the cube is not hidden behind the surface
+    double most_volume = 0.35;  // of the searched box: a larger region means the maps agree on nothing
+    int least_cells = 6;
+    double least_part =
+        0.1;  // of the largest connected part: smaller ones are dropped (flames above a wide cap are)
+};
+
+/// Votes a grid of cubes around the source with the masks; empty when the masks do not agree on a place.
+VoxelRegion vote_region(const RegionSearch& search, const RegionParameters& parameters = {});
+
+/// A place relative to the source: "top" (hat, crown), "front" (glasses), "neck" (scarf) or "around"
+/// (flames).
+VoxelRegion anchor_region(const RegionSearch& search, const std::string& place, int cells = 28);
+
+/// Where the relation puts a thing of that name when nothing else says it; without a relation, where it
+/// usually goes.
+VoxelRegion usual_region(const RegionSearch& search, const std::string& thing, int cells = 28);
+
+/// The place a thing ("hat", "top hat") usually takes: "top" for what is not known.
+std::string usual_place(const std::string& thing);
+/// Whether the place is known, not only supposed.
+bool has_usual_place(const std::string& thing);
+
+/// `count` round splats of neutral colour, spread over the region; sized by the room each has. `opacity` in
+/// (0,1).
+GaussianData seed_splats(const VoxelRegion& region, int count, int sh_degree, std::uint64_t seed,
+                         double opacity = 0.1);
+
+/// Pixels that the region covers in a view; with `depth` ([H,W,1] of the surface, 0 = nothing there) those in
+/// which something of it lies before the surface, or a cube's side behind it.
+Mask region_mask(const VoxelRegion& region, const Camera& camera, const Image* depth = nullptr);
+
+}  // namespace gse::edit

@@ -1,0 +1,155 @@
+// Pixels to basic colour terms; a word into a sentence.
+#include "engine/edit/request/colour_word.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "engine/base/check.h"
+#include "engine/edit/request/request.h"
+#include "engine/edit/request/vocabulary.h"
+#include "engine/edit/request/words.h"
+
+namespace gse::edit {
+namespace {
+
+constexpr float Counts = 0.5f;           // of a pixel's share
+constexpr double LightnessWeight = 0.5;  // of its difference, beside those of a and b
+
+using Colour = std::array<double, 3>;
+
+struct Term {
+    const char* word;
+    Colour srgb;  // a typical sample
+};
+
+constexpr std::array<Term, 11> Terms{
+    {{"red", {0.80, 0.10, 0.10}},
+     {"blue", {0.10, 0.22, 0.80}},
+     {"green", {0.15, 0.58, 0.18}},
+     {"yellow", {0.93, 0.83, 0.15}},
+     {"purple", {0.50, 0.15, 0.65}},
+     {"orange", {0.93, 0.48, 0.08}},
+     {"black", {0.07, 0.07, 0.07}},
+     {"white", {0.72, 0.72, 0.72}},  // in light and shade: black things are dark everywhere
+     {"brown", {0.42, 0.26, 0.13}},
+     {"grey", {0.50, 0.50, 0.50}},
+     {"pink", {0.95, 0.60, 0.70}}}};
+
+/// CIE 1976 L*a*b* of sRGB under D65 (IEC 61966-2-1, CIE 15).
+Colour lab(const Colour& srgb) {
+    const auto linear = [](double v) {
+        return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+    };
+    const double r = linear(srgb[0]), g = linear(srgb[1]), b = linear(srgb[2]);
+    const auto f = [](double t) {
+        constexpr double Edge = 6.0 / 29;
+        return t > Edge * Edge * Edge ? std::cbrt(t) : t / (3 * Edge * Edge) + 4.0 / 29;
+    };
+    const double x = f((0.4124 * r + 0.3576 * g + 0.1805 * b) / 0.9505),
+                 y = f(0.2126 * r + 0.7152 * g + 0.0722 * b),
+                 z = f((0.0193 * r + 0.1192 * g + 0.9505 * b) / 1.089);
+    return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
+}
+
+double distance(const Colour& a, const Colour& b) {
+    const double l = LightnessWeight * (a[0] - b[0]);
+    return l * l + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]);
+}
+
+struct Usual {
+    const char *thing, *colour;
+};
+
+/// Of things that models of few words may draw besides those that they look for, and of what is worn. A hat
+/// may be any.
+constexpr Usual UsualColours[] = {
+    {"rabbit", "white"},   {"horse", "brown"},     {"elephant", "gray"},   {"pig", "pink"},
+    {"lion", "ochre"},     {"penguin", "black"},   {"owl", "brown"},       {"frog", "green"},
+    {"turtle", "green"},   {"dinosaur", "green"},  {"snowman", "white"},   {"robot", "gray"},
+    {"pumpkin", "orange"}, {"cactus", "green"},    {"teapot", "white"},    {"rocket", "white"},
+    {"castle", "stone"},   {"lamp", "yellow"},     {"wings", "white"},     {"crown", "golden"},
+    {"halo", "golden"},    {"necklace", "golden"}, {"sunglasses", "black"}};
+
+bool is_vowel(char letter) { return std::string("aeiou").find(letter) != std::string::npos; }
+
+}  // namespace
+
+ColourVote::ColourVote(const std::vector<std::string>& known) {
+    for (std::size_t i = 0; i < Terms.size(); ++i)
+        if (knows(known, Terms[i].word)) terms_.push_back(i);
+    votes_.resize(terms_.size());
+}
+
+void ColourVote::add(const Image& picture, const Image& share) {
+    GSE_CHECK_EQ(picture.data.size(), share.data.size() * 3);
+    if (terms_.empty()) return;
+    std::vector<Colour> colours;
+    for (const auto term : terms_) colours.push_back(lab(Terms[term].srgb));
+    for (std::size_t i = 0; i < share.data.size(); ++i) {
+        if (!(share.data[i] > Counts)) continue;
+        const Colour pixel = lab({picture.data[i * 3], picture.data[i * 3 + 1], picture.data[i * 3 + 2]});
+        const auto nearest = std::min_element(
+            colours.begin(), colours.end(),
+            [&](const auto& a, const auto& b) { return distance(pixel, a) < distance(pixel, b); });
+        ++votes_[static_cast<std::size_t>(nearest - colours.begin())];
+    }
+}
+
+std::string ColourVote::winner() const {
+    const auto word = [&](std::size_t i) { return std::string(Terms[terms_[i]].word); };
+    const auto is_grey = [&](std::size_t i) {
+        return word(i) == "black" || word(i) == "white" || word(i) == "grey";
+    };
+    std::size_t greys = 0, most = 0;
+    for (std::size_t i = 0; i < votes_.size(); ++i) {
+        if (is_grey(i)) greys += votes_[i];
+        else most = std::max(most, votes_[i]);
+    }
+    std::string best;  // of those without a hue where they are more than any hue, else of the others
+    std::size_t least = 0;
+    for (std::size_t i = 0; i < votes_.size(); ++i)
+        if (is_grey(i) == (greys > most) && votes_[i] > least) least = votes_[i], best = word(i);
+    return best;
+}
+
+std::string colour_shown(const Image& picture, const Image& share, const std::vector<std::string>& known) {
+    ColourVote vote(known);
+    vote.add(picture, share);
+    return vote.winner();
+}
+
+bool is_described(const std::string& sentence, const std::string& thing) {
+    const auto words = words_of(sentence);
+    const auto at = first_word(sentence, thing);
+    if (at >= words.size()) return true;
+    if (at > 0 && (says_something(words[at - 1]) || words[at - 1] == "in" || words[at - 1] == "on"))
+        return true;                                 // "in flames": a state
+    const auto after = at + words_of(thing).size();  // "wings of gold", "a hat made of wood"
+    return after < words.size() && (words[after] == "of" || words[after] == "made");
+}
+
+std::string described_as(const std::string& sentence, const std::string& thing, const std::string& colour) {
+    auto words = words_of(sentence);
+    const auto at = first_word(sentence, thing);
+    if (at >= words.size() || colour.empty()) return sentence;
+    if (at > 0 && (words[at - 1] == "a" || words[at - 1] == "an"))
+        words[at - 1] = is_vowel(colour.front()) ? "an" : "a";
+    words.insert(words.begin() + static_cast<std::ptrdiff_t>(at), colour);
+    return joined(words);
+}
+
+std::string with_usual_colour(const std::string& sentence, const std::string& thing,
+                              const std::vector<std::string>& sayable) {
+    const auto usual = std::find_if(std::begin(UsualColours), std::end(UsualColours),
+                                    [&](const auto& entry) { return thing == entry.thing; });
+    if (sayable.empty() || usual == std::end(UsualColours) || !knows(sayable, usual->colour)) return sentence;
+    auto told = words_of(sentence);  // less what says nothing to the model ("big")
+    for (auto at = first_word(sentence, thing);
+         at > 0 && at < told.size() && says_something(told[at - 1]) && !knows(sayable, told[at - 1]); --at)
+        told.erase(told.begin() + static_cast<std::ptrdiff_t>(at - 1));
+    return is_described(joined(told), thing) ? sentence : described_as(sentence, thing, usual->colour);
+}
+
+}  // namespace gse::edit

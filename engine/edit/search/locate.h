@@ -1,0 +1,133 @@
+// From words to what may change: attention maps, masks and labels over all views (GSEditPro 3.2, method S3 to
+// S5).
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/progress.h"
+#include "engine/base/thread_pool.h"
+#include "engine/edit/interfaces/interfaces.h"
+#include "engine/edit/masks/search_outcome.h"
+#include "engine/edit/optimise/edit_loop.h"
+#include "engine/edit/placement/voxel_region.h"
+#include "engine/edit/request/request.h"
+#include "engine/edit/search/place_drawing.h"
+#include "engine/edit/search/view_renders.h"
+#include "engine/edit/search/vocabulary_ranker.h"
+#include "engine/edit/target_views/strategies/studio_background.h"
+#include "engine/localize/back_projection.h"
+#include "engine/raster/rasterizer.h"
+#include "engine/scene/scene.h"
+
+namespace gse::edit {
+
+/// What is looked at. `request` must have gone through validated().
+struct LocateInput {
+    const GaussianSet& gaussians;
+    const std::vector<View>& views;              // cameras at the size of the pictures
+    const std::vector<std::string>& view_words;  // per view, or empty
+    const EditRequest& request;
+    raster::Settings settings;
+    Vec3 up{0, -1, 0};     // world up; where the top of a thing is
+    Vec3 front{0, 0, -1};  // where it looks; for things that go before a face
+    /// [N] 0 or 1: the rows the edit is about, labelled by hand; nothing is looked for then. Null = the words
+    /// say.
+    const std::vector<std::uint8_t>* label = nullptr;
+    std::vector<std::string> known = {};                 // words of the model; empty = it takes any
+    std::vector<double> azimuths = {}, elevations = {};  // per view, as in EditView, or empty
+    std::optional<StudioBackground> ground =
+        {};  // what the networks are shown where the scene has nothing; none = its background
+};
+
+/// What the views look like, kept from one search to the next over the same scene and views; empty = to be
+/// filled.
+struct ViewMemory : ViewRenders {
+    /// Views that were asked a second time, by sentence and word: at another threshold the same, so that no
+    /// network is asked.
+    std::map<std::string, std::vector<std::size_t>> asked_again = {};
+    std::map<std::string, DrawnViews> drawn = {};  // by all that was drawn
+};
+
+struct ViewEvidence;
+
+/// The parts it calls. Both segmenters may be null: then the attention regions themselves are the masks.
+struct LocateTools {
+    raster::Rasterizer& rasterizer;
+    AttentionSource& attention;
+    Segmenter* segmenter = nullptr;
+    TextSegmenter* text_segmenter = nullptr;
+    JobControl job;
+    VocabularyRanker* recognition =
+        nullptr;                   // null: whether pictures show a word is judged by its attention alone
+    ViewMemory* memory = nullptr;  // may be null
+    ThreadPool* threads =
+        nullptr;  // views are segmented side by side: only for segmenters that allow it; may be null
+    /// Told of every view as it is attended, and again once its mask is made; views of one search come in any
+    /// order, and from several threads. May be empty.
+    std::function<void(std::size_t view, const ViewEvidence& evidence)> seen = {};
+    /// Draws what is added, to see where it goes: it is shown the scene
+    /// (TextToImage::supports_scene_conditioning()). Null: attention alone says where.
+    MultiViewEditor* drawing = nullptr;
+    bool plain_ground = true;  // what stands in nothing is shown to it on a plain ground
+};
+
+/// Everything one view contributed, for the window and the evidence pictures.
+struct ViewEvidence {
+    Image render;  // [H,W,3]
+    Image drawn;   // [H,W,3] where the new thing was drawn into it, to see where it goes; else empty
+    Image map;     // [H,W,1] attention of the word, maximum 1; 0 where a rival the user gave has more
+    Image lead;    // [H,W,1] how much more another named thing has, 0 = none; empty without rivals
+    Mask region;   // thresholded and cleaned attention
+    std::vector<PointPrompt> points;  // clicks handed to the segmenter
+    Mask mask;                        // the view's vote, not dilated
+    std::string
+        branch;  // what made the mask: "text", "points", "attention", "drawn", "anchor", "label" or "none"
+    double captured = 0;              // share of the region's attention inside the mask
+    bool trusted = false;             // the mask trims the attention: a segmenter made it that is trusted
+    bool failed = false;              // nothing was found: the view does not vote
+    ViewStep step = ViewStep::Found;  // where it failed
+};
+
+struct LocateResult {
+    EditMode mode = EditMode::Modify;
+    std::string reason;  // why this mode, for the log and the report
+    std::string word;    // the word that was looked for
+    std::vector<ViewEvidence> views;
+    localize::LabelWeights weights;  // of the thing the edit is about (in add mode: of the source)
+    Label label;                     // modify, replace: rows that may change; add: all zero
+    Label source_label;              // rows of the source word
+    VoxelRegion region;              // add mode: where the new thing goes
+    GaussianData seeds;              // add mode: new rows
+    VoxelRegion room;  // of what comes in the place of something else worn, elsewhere on its wearer (head.h);
+                       // empty otherwise
+    int failed_views = 0;
+    std::size_t broken_attention = 0;  // values of the attention that were not finite, and count as none
+    Confidence confidence;
+    bool on_ground = false;  // LocateInput::ground was there
+    SearchProblem problem = SearchProblem::None;
+    std::string message, remedy;  // of the problem: what came of the search, and what to do
+};
+
+/// Labels what the request is about. A search that comes to nothing is a result too, with its evidence and
+/// `problem` set: the views are then those of the word that was not found; the label is empty, but for
+/// `Unsure`, where it holds what was found. Throws Error only for input that cannot be looked at, a stop, and
+/// failures of the tools.
+LocateResult locate(const LocateInput& input, const LocateTools& tools);
+
+/// Throws Error (NotFound) with the message and the remedy of a search that came to nothing.
+void require_found(const LocateResult& located);
+
+/// Decides "auto" from the sentence and, when there is a text segmenter, from whether it finds the target
+/// word (A7). Returns the mode and the reason.
+std::pair<EditMode, std::string> decide_mode(const EditRequest& request,
+                                             std::optional<double> target_found_share);
+
+/// The plan of the edit loop from what was located: masks dilated as the request says and joined with the
+/// label's own render, so that a view whose mask missed part of the label does not pull it back.
+EditPlan make_plan(const LocateInput& input, const LocateResult& located, raster::Rasterizer& rasterizer);
+
+}  // namespace gse::edit

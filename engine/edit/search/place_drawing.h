@@ -1,0 +1,80 @@
+// Where something goes that the scene does not show yet, by drawing it: a model that is shown the scene draws
+// the thing into the views, anywhere around what it belongs to; what differs and draws the word's attention
+// is its place (views.md 10).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/edit/interfaces/interfaces.h"
+#include "engine/edit/placement/voxel_region.h"
+#include "engine/edit/request/request.h"
+
+namespace gse::edit {
+
+/// What is drawn into which views; lists are per view. Refers to all it is given.
+struct PlaceDrawing {
+    const std::vector<View>& views;
+    const std::vector<std::string>& view_words;  // or empty
+    const std::vector<double>& azimuths;         // as in EditView, or empty
+    const std::vector<double>& elevations;       // of as many views
+    const std::vector<Image>& renders;           // [H,W,3] in [0,1]
+    const std::vector<Image>& depths;            // [H,W,1], 0 = nothing there
+    const VoxelRegion& room;                     // where the thing may be
+    const EditRequest& request;
+    std::string word;  // of the sentence: what is new
+    std::uint64_t seed = 0;
+};
+
+/// Whether something is added whose place no word names ("beside the bear" does): then it can be seen by
+/// drawing it.
+bool draws_place(const EditRequest& request, EditMode mode);
+/// Denoising steps of one drawn view; one that is not guided counts half.
+double guided_steps_of_place(const EditRequest& request);
+
+/// Of everything that the drawn pictures follow from, but for the scene and the views.
+std::string drawing_key(const PlaceDrawing& drawing, const std::vector<std::uint8_t>& source_bits);
+
+/// Views that were drawn into.
+struct DrawnViews {
+    std::vector<std::size_t> views;  // of the drawing's, ascending
+    std::vector<Image> pictures;     // [H,W,3] in [0,1], as the model would have them
+    std::vector<Image> changes;      // as in EditedViews
+    std::vector<Image> outlines;     // the same
+};
+
+/// As many of the views as an edit redraws, those farthest from each other; none where the room is not seen.
+/// Throws Error (Cancelled, Model).
+DrawnViews draw_thing(const PlaceDrawing& drawing, MultiViewEditor& guidance, const JobControl& job);
+
+/// What a drawn view says.
+struct DrawnPlace {
+    Image map;  // [H,W,1] attention of the word in the drawn picture, maximum 1; or what the model tells of
+                // it, in [0,1]
+    Mask mask;  // the thing in it; empty of ones where the picture does not show it
+    std::size_t broken = 0;  // values of the attention that were not finite, and count as none
+};
+
+/// Of each drawn view. A threshold that the request sets is that of what the model tells, too: the share of a
+/// pixel that counts as the thing. Throws Error (Cancelled, NotFound).
+std::vector<DrawnPlace> find_drawn(const PlaceDrawing& drawing, const DrawnViews& drawn,
+                                   AttentionSource& attention, const JobControl& job);
+
+/// Where a redrawn picture shows a thing, by what the model tells of it ([H,W,1] in [0,1]): the share of each
+/// pixel of `inside` that is covered, in parts that are half covered somewhere. Holes filled, stray pixels
+/// gone.
+Image told_thing(const Image& outline, const Mask& inside);
+/// The pixels of which at least that share is covered.
+Mask covered_pixels(const Image& share, double least = 0.5);
+/// Where a redrawn picture shows a thing, by `map`, the attention of its word ([H,W,1], maximum 1; `level` is
+/// its threshold), and by how much the picture differs from the one without the thing, [H,W,1]: the pixels of
+/// `inside` that differ and have some attention. Holes filled, stray pixels gone.
+Mask changed_thing(const Image& change, const Mask& inside, const Image& map, double level);
+/// The same where only the picture `without` is known, not what the model makes of it: pixels with much
+/// attention count, too.
+Mask thing_in_picture(const Image& picture, const Image& without, const Mask& inside, const Image& map,
+                      double level);
+
+}  // namespace gse::edit

@@ -1,0 +1,83 @@
+// Ranks a word among all words by the angle between sentence and picture.
+#include "engine/edit/search/vocabulary_ranker.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "engine/base/check.h"
+#include "engine/base/hash.h"
+#include "engine/edit/request/request.h"
+
+namespace gse::edit {
+namespace {
+
+double cosine(const std::vector<float>& a, const std::vector<float>& b) {
+    const double ab = std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+    const double aa = std::inner_product(a.begin(), a.end(), a.begin(), 0.0);
+    const double bb = std::inner_product(b.begin(), b.end(), b.begin(), 0.0);
+    return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : 0;
+}
+
+std::string with_other(const std::string& sentence, const std::string& phrase, const std::string& other) {
+    auto terms = terms_of(sentence, {phrase});
+    std::replace(terms.begin(), terms.end(), phrase, other);
+    return joined(terms);
+}
+
+}  // namespace
+
+VocabularyRanker::VocabularyRanker(std::unique_ptr<ImageTextEncoder> score, std::vector<std::string> known)
+    : score_(std::move(score)) {
+    for (auto& word : known)
+        if (says_something(word)) known_.push_back(std::move(word));
+}
+
+const std::vector<float>& VocabularyRanker::vector_of(const std::string& sentence) {
+    auto found = vectors_.find(sentence);
+    if (found == vectors_.end()) found = vectors_.emplace(sentence, score_->text(sentence)).first;
+    return found->second;
+}
+
+const std::vector<float>& VocabularyRanker::vector_of(const Image& picture) {
+    Hash hash;
+    hash.image(picture);
+    auto found = seen_.find(hash.value());
+    if (found == seen_.end()) found = seen_.emplace(hash.value(), score_->image(picture)).first;
+    return found->second;
+}
+
+const std::vector<float>& VocabularyRanker::viewpoint(const Image& picture) {
+    GSE_CHECK(compares());
+    Hash hash;
+    hash.image(picture);
+    auto found = viewpoints_.find(hash.value());
+    if (found == viewpoints_.end())
+        found = viewpoints_.emplace(hash.value(), score_->viewpoint(picture)).first;
+    return found->second;
+}
+
+double VocabularyRanker::fit(const std::string& sentence, const std::vector<const Image*>& pictures) {
+    GSE_CHECK(compares() && !pictures.empty());
+    double sum = 0;
+    for (const Image* picture : pictures) sum += cosine(vector_of(*picture), vector_of(as_told(sentence)));
+    return sum / static_cast<double>(pictures.size());
+}
+
+double VocabularyRanker::of(const std::string& sentence, const std::string& word,
+                            const std::vector<const Image*>& pictures) {
+    if (!available() || pictures.empty()) return -1;
+    double below = 0, all = 0;
+    for (const Image* picture : pictures) {
+        const auto& seen = vector_of(*picture);
+        const double own = cosine(seen, vector_of(as_told(sentence)));
+        for (const auto& other : known_) {
+            if (has_word(word, other)) continue;  // the word, or a part of the phrase
+            below += cosine(seen, vector_of(with_other(sentence, word, other))) < own ? 1 : 0;
+            all += 1;
+        }
+    }
+    return all > 0 ? below / all : -1;
+}
+
+}  // namespace gse::edit

@@ -1,0 +1,43 @@
+// Whether pictures show what a word means, by the model's own picture encoder.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "engine/edit/interfaces/image_text_encoder.h"
+
+namespace gse::edit {
+
+/// Compares a word with all others that a model with a fixed vocabulary knows. Sentences and pictures are
+/// encoded once.
+class VocabularyRanker {
+public:
+    /// `score` null or an empty list of words: nobody can tell.
+    VocabularyRanker(std::unique_ptr<ImageTextEncoder> score, std::vector<std::string> known);
+    bool available() const { return compares() && !known_.empty(); }
+    /// Whether the model can compare pictures with sentences at all.
+    bool compares() const { return score_ != nullptr; }
+    /// ImageTextEncoder::viewpoint(); needs compares().
+    const std::vector<float>& viewpoint(const Image& picture);
+    /// Mean cosine of the sentence with the pictures, in [-1,1]; needs compares() and a picture.
+    double fit(const std::string& sentence, const std::vector<const Image*>& pictures);
+    /// Share of the other words that fit the pictures less in the place that the word (or phrase) has in the
+    /// sentence, in [0,1]; negative when nobody can tell.
+    double of(const std::string& sentence, const std::string& word,
+              const std::vector<const Image*>& pictures);
+
+private:
+    const std::vector<float>& vector_of(const std::string& sentence);
+    const std::vector<float>& vector_of(const Image& picture);
+
+    std::unique_ptr<ImageTextEncoder> score_;
+    std::vector<std::string> known_;
+    std::map<std::string, std::vector<float>> vectors_;                        // of sentences
+    std::unordered_map<std::uint64_t, std::vector<float>> seen_, viewpoints_;  // of pictures, by their hash
+};
+
+}  // namespace gse::edit

@@ -1,0 +1,292 @@
+// Rounds, orders and the sheet of targets.
+#include "engine/edit/target_views/dataset_update.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/error.h"
+#include "engine/base/log.h"
+#include "engine/edit/interfaces/stage_timer.h"
+#include "engine/edit/target_views/ground_hole_fill.h"
+#include "engine/edit/target_views/view_agreement.h"
+#include "engine/localize/clusters.h"
+
+namespace gse::edit {
+namespace {
+
+/// Every setting that the redrawn pictures follow from.
+std::string redraw_key(const EditRequest& request, EditMode mode, const std::string& of_model) {
+    const auto plan = round_plan(request, mode);
+    return fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", request.prompt, request.seed, plan.rounds,
+                       plan.views, plan.view_steps, plan.strength, plan.again_strength, plan.guided_until,
+                       of_model);
+}
+
+std::shared_ptr<const Image> shown_copy(const Image& image) {
+    const int longer = std::max(image.width, image.height);
+    if (longer <= ShownSide) return std::make_shared<const Image>(image);
+    const auto side = [&](int pixels) { return std::max(1, pixels * ShownSide / longer); };
+    return std::make_shared<const Image>(
+        localize::resize_image(image, side(image.width), side(image.height)));
+}
+
+std::ptrdiff_t index_of(const std::vector<std::size_t>& views, std::size_t view) {
+    const auto found = std::find(views.begin(), views.end(), view);
+    return found == views.end() ? -1 : found - views.begin();
+}
+
+}  // namespace
+
+DatasetUpdate::DatasetUpdate(const EditPlan& plan, const EditRequest& request, const EditTools& tools,
+                             const std::vector<Image>& originals, const DynamicMasks& masks,
+                             ShapeFinder* shapes)
+    : plan_(plan), request_(request), tools_(tools), originals_(originals), masks_(masks),
+      anew_(shapes != nullptr), rounds_(plan, request, *tools.views, shapes, tools.known),
+      key_(redraw_key(request, plan.mode, tools.redraw_key)) {}
+
+/// Whether the edit goes on in the middle of this round, with the same settings from the same cameras.
+bool DatasetUpdate::resumes(const RoundState& start, const std::vector<std::size_t>& visible) const {
+    const int round = std::min(tools_.start->iteration / request_.fit_steps,
+                               request_.rounds - 1);  // a polish comes behind the last one
+    if (start.key != key_ || start.round != round || (request_.polish_steps > 0 && !start.held)) return false;
+    for (std::size_t i = 0; i < start.views.size(); ++i) {
+        const auto view = start.views[i];
+        if (view >= plan_.views.size() || index_of(visible, view) < 0) return false;
+        if ((*start.begun)[i].view.camera != plan_.views[view].camera) return false;
+    }
+    return true;
+}
+
+void DatasetUpdate::choose(const std::vector<std::size_t>& visible) {
+    const auto* start = tools_.start != nullptr ? tools_.start->round.get() : nullptr;
+    if (start == nullptr || !resumes(*start, visible)) {
+        std::vector<Mask> masks;
+        for (std::size_t v = 0; v < plan_.views.size(); ++v) masks.push_back(masks_.mask(v));
+        return rounds_.choose(visible, masks);
+    }
+    rounds_.resume(*start);
+    for (std::size_t i = 0; i < start->views.size(); ++i) {
+        const auto view = start->views[i];
+        rounds_.replace(view, *start->edited[i], originals_[view], masks_.mask(view));
+    }
+    state_ = tools_.start->round;
+    weigh();
+    begin_sheet();
+}
+
+std::vector<HeldOutView> DatasetUpdate::draw_held_out() {
+    return state_ && state_->held ? rounds_.draw_held_out(*state_->held, tools_.job)
+                                  : std::vector<HeldOutView>{};
+}
+
+GaussianData DatasetUpdate::hidden(int sh_degree) const {
+    if (!state_ || plan_.mode != EditMode::Replace) return {};
+    auto rows = ground_hole_fill(*state_->begun, sh_degree);
+    if (rows.size() > 0) log::info("{} splats close the holes that the old thing leaves", rows.size());
+    return rows;
+}
+
+std::vector<std::size_t> DatasetUpdate::fitted() const {
+    if (!state_) return rounds_.views();
+    std::vector<std::size_t> views;
+    for (std::size_t i = 0; i < state_->views.size(); ++i)
+        if (!state_->dropped[i]) views.push_back(state_->views[i]);
+    return views;
+}
+
+/// Picture and depth of the surface; 0 where hardly anything is.
+void DatasetUpdate::draw(const GaussianSpans& rows, const Camera& camera, const raster::Settings& settings,
+                         Image& colour, Image& depth) {
+    tools_.rasterizer.forward(rows, camera, settings, output_);
+    colour = output_.colour;
+    for (auto& value : colour.data) value = std::clamp(value, 0.0f, 1.0f);
+    depth = output_.depth;
+    for (std::size_t i = 0; i < depth.data.size(); ++i)
+        depth.data[i] = output_.alpha.data[i] > 0.5f ? depth.data[i] / output_.alpha.data[i] : 0.0f;
+}
+
+EditView DatasetUpdate::begin_view(std::size_t v, const GaussianSpans& rows, const GaussianSpans& unlabelled,
+                                   const raster::Settings& settings) {
+    EditView view{{},
+                  originals_[v],
+                  {},
+                  masks_.mask(v),
+                  plan_.views[v],
+                  plan_.view_words.empty() ? std::string() : plan_.view_words[v]};
+    if (!plan_.azimuths.empty()) view.azimuth = plan_.azimuths[v], view.elevation = plan_.elevations[v];
+    draw(rows, view.view.camera, settings, view.rendered, view.depth);
+    for (auto& value : view.original.data) value = std::clamp(value, 0.0f, 1.0f);
+    if (anew_) {
+        draw(unlabelled, view.view.camera, settings, view.backdrop.picture, view.backdrop.depth);
+        fill_holes(view.backdrop, view.mask, output_.alpha);  // as it was drawn last
+    }
+    return view;
+}
+
+std::map<std::string, double> DatasetUpdate::redraw(int iteration, const GaussianSpans& rows,
+                                                    const GaussianSpans& unlabelled,
+                                                    const raster::Settings& settings) {
+    const StageTimer timer(seconds_);
+    auto begun = std::make_shared<std::vector<EditView>>();
+    for (const auto v : rounds_.views()) begun->push_back(begin_view(v, rows, unlabelled, settings));
+    auto scalars = rounds_.redraw(iteration, *begun, originals_, tools_.job);
+    std::erase_if(scalars, [](const auto& scalar) { return !std::isfinite(scalar.second); });
+    auto state = std::make_shared<RoundState>();
+    state->round = rounds_.round();
+    state->key = key_;
+    state->views = rounds_.views();
+    state->sentence = rounds_.sentence();
+    state->warnings = rounds_.warnings();
+    state->raised = rounds_.raised();
+    state->begun = begun;
+    if (request_.polish_steps > 0) {
+        auto held = std::make_shared<std::vector<EditView>>();
+        for (const auto v : rounds_.held_out()) held->push_back(begin_view(v, rows, unlabelled, settings));
+        state->held = std::move(held);
+        state->held_out = rounds_.held_out();
+    }
+    for (const auto view : state->views)
+        state->edited.push_back(std::make_shared<const Image>(rounds_.edited(view)));
+    state->attempts.assign(state->views.size(), 0);
+    state->dropped.assign(state->views.size(), anew_);
+    if (anew_)  // only views that show the new thing are fitted to
+        for (const auto i : rounds_.found().usable) state->dropped[i] = false;
+    state_ = std::move(state);
+    redrawn_ += state_->views.size();
+    weigh();
+    begin_sheet();
+    return scalars;
+}
+
+bool DatasetUpdate::ready(int iteration, const GaussianSpans& rows, const GaussianSpans& unlabelled,
+                          const raster::Settings& settings, std::map<std::string, double>& scalars) {
+    const auto before = state_;
+    if (rounds_.begins(iteration)) scalars = redraw(iteration, rows, unlabelled, settings);
+    if (tools_.target_orders) take_orders();
+    if (state_ == before) return false;
+    const std::vector<bool> none(state_->views.size(), false);
+    return (before ? before->dropped : none) != state_->dropped;
+}
+
+/// As long as there are orders: an artist may think about what came of the last ones.
+void DatasetUpdate::take_orders() {
+    for (auto orders = tools_.target_orders(); !orders.empty(); orders = tools_.target_orders()) {
+        auto next = std::make_shared<RoundState>(*state_);
+        bool changed = false;
+        for (const auto& order : orders) changed |= follow(order, *next);
+        if (changed) {
+            state_ = std::move(next);
+            weigh();
+        }
+        show_sheet();  // also where nothing has changed: the orders are done
+    }
+    if (tools_.job.stop_requested()) throw Error(ErrorCode::Cancelled, "the edit was stopped");
+}
+
+/// True when something has changed.
+bool DatasetUpdate::follow(const TargetOrder& order, RoundState& next) {
+    const auto found = order.round == next.round ? index_of(next.views, order.view) : -1;
+    if (found < 0) return false;  // of a round that is over
+    const auto index = static_cast<std::size_t>(found);
+    const bool drops = order.choice == TargetChoice::Drop;
+    if (drops && std::count(next.dropped.begin(), next.dropped.end(), false) <= 1) {
+        log::warning("the last redrawn view cannot be dropped: the scene is fitted to it");
+        return false;
+    }
+    const bool was_dropped = next.dropped[index];
+    next.dropped[index] = drops;
+    if (order.choice == TargetChoice::Redo) redo(index, next);
+    sheet_.views[index].dropped = next.dropped[index];
+    return order.choice == TargetChoice::Redo || was_dropped != drops;
+}
+
+void DatasetUpdate::redo(std::size_t index, RoundState& next) {
+    const StageTimer timer(seconds_);
+    const auto view = next.views[index];
+    ++next.attempts[index];
+    EditView begun = (*next.begun)[index];
+    begun.mask = masks_.mask(view);
+    try {
+        rounds_.redo(view, begun, next.attempts[index], originals_[view], tools_.job);
+    } catch (const Error& error) {
+        if (error.code() == ErrorCode::Cancelled) throw;
+        return log::warning("{} could not be redrawn and stays as it is: {}", plan_.views[view].name,
+                            error.what());
+    }
+    ++redrawn_;
+    next.edited[index] = std::make_shared<const Image>(rounds_.edited(view));
+    sheet_.views[index].attempt = next.attempts[index];
+    refresh_sheet(index);
+}
+
+double DatasetUpdate::check_colour(const GaussianSpans& rows, const raster::Settings& settings) {
+    if (!state_) return -1;
+    std::vector<double> of_views, of_scene;
+    for (const auto view : fitted()) {
+        tools_.rasterizer.forward(rows, plan_.views[view].camera, settings, output_);
+        for (auto& value : output_.colour.data) value = std::clamp(value, 0.0f, 1.0f);
+        of_views.push_back(mean_chroma(rounds_.target(view), masks_.mask(view)));
+        of_scene.push_back(mean_chroma(output_.colour, masks_.mask(view)));
+    }
+    const double kept = kept_chroma(std::move(of_views), of_scene);
+    if (const auto warning = warning_of_chroma(kept); !warning.empty()) {
+        log::warning("{}", warning);
+        sheet_.warnings.push_back(warning);
+        show_sheet();
+    }
+    return kept;
+}
+
+void DatasetUpdate::take_masks() {
+    if (!state_) return;
+    for (std::size_t i = 0; i < state_->views.size(); ++i) {
+        const auto view = state_->views[i];
+        rounds_.blend(view, originals_[view], masks_.mask(view));
+        refresh_sheet(i);
+    }
+    show_sheet();
+}
+
+/// Views that are fitted to say how much to believe each other; what is drawn anew is not where the depths
+/// are.
+void DatasetUpdate::weigh() {
+    if (anew_) return;
+    std::vector<EditView> views;
+    std::vector<Image> pictures;
+    for (std::size_t i = 0; i < state_->views.size(); ++i) {
+        if (state_->dropped[i]) continue;
+        views.push_back((*state_->begun)[i]);
+        pictures.push_back(*state_->edited[i]);
+    }
+    auto weights = trust_weights(views, pictures);
+    trust_.assign(plan_.views.size(), {});
+    for (std::size_t i = 0, next = 0; i < state_->views.size(); ++i)
+        if (!state_->dropped[i]) trust_[state_->views[i]] = std::move(weights[next++]);
+}
+
+void DatasetUpdate::begin_sheet() {
+    sheet_ = {state_->round, round_plan(request_, plan_.mode).rounds, {}, state_->sentence, state_->warnings};
+    for (std::size_t i = 0; i < state_->views.size(); ++i) {
+        sheet_.views.push_back({state_->views[i],
+                                shown_copy((*state_->begun)[i].rendered),
+                                {},
+                                state_->attempts[i],
+                                state_->dropped[i]});
+        refresh_sheet(i);
+    }
+    show_sheet();
+}
+
+void DatasetUpdate::refresh_sheet(std::size_t index) {
+    Image target = rounds_.target(state_->views[index]);
+    for (auto& value : target.data) value = std::clamp(value, 0.0f, 1.0f);
+    sheet_.views[index].after = shown_copy(target);
+}
+
+void DatasetUpdate::show_sheet() const {
+    if (tools_.targets) tools_.targets(sheet_);
+}
+
+}  // namespace gse::edit

@@ -1,0 +1,92 @@
+// One colour times how bright a pixel is beside the others.
+#include "engine/edit/target_views/strategies/default_ground_colour.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "engine/edit/request/colour_word.h"
+#include "engine/edit/request/words.h"
+
+namespace gse::edit {
+namespace {
+
+// Shade is the luminance over the median of all views, to this power (a dark scan is lit unevenly), within
+// these limits.
+constexpr float ShadePower = 0.5f, DarkestShade = 0.45f, BrightestShade = 1.12f;
+
+float luminance(const Image& picture, std::size_t pixel) {  // Rec. 709
+    return 0.2126f * picture.data[pixel * 3] + 0.7152f * picture.data[pixel * 3 + 1] +
+           0.0722f * picture.data[pixel * 3 + 2];
+}
+
+/// Of what all masks hold; 0 where they hold nothing.
+float median_luminance(const std::vector<EditView>& views) {
+    std::vector<float> values;
+    for (const auto& view : views)
+        for (std::size_t p = 0; p < view.mask.data.size(); ++p)
+            if (view.mask.data[p] != 0) values.push_back(luminance(view.original, p));
+    if (values.empty()) return 0;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+}  // namespace
+
+std::optional<std::array<float, 3>> ground_colour(const std::string& word) {
+    // Means of what engine/synth paints; of those that the encoder has no word for, by eye.
+    static const std::map<std::string, std::array<float, 3>> colours{
+        {"snow", {0.88f, 0.93f, 0.99f}},  {"sand", {0.85f, 0.73f, 0.50f}}, {"grass", {0.36f, 0.62f, 0.15f}},
+        {"water", {0.13f, 0.56f, 0.70f}}, {"ice", {0.66f, 0.86f, 0.96f}},  {"mud", {0.33f, 0.21f, 0.13f}},
+        {"gravel", {0.55f, 0.54f, 0.52f}}};
+    const auto found = colours.find(word);
+    return found == colours.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::optional<std::array<float, 3>> usual_look(const EditRequest& request, EditMode mode) {
+    if (mode != EditMode::Modify || is_described(request.prompt, request.target)) return std::nullopt;
+    return ground_colour(request.target);
+}
+
+double gone_towards(const std::array<float, 3>& colour, const ViewTargets& round) {
+    constexpr float changed = 0.02f;
+    constexpr double near = 0.1;  // of the RGB cube's side: nothing can be said of where the pictures went
+    std::array<double, 3> before{}, after{};
+    double pixels = 0;
+    for (const auto& view : round.views)
+        for (std::size_t p = 0; p < view.before->data.size() && !view.dropped; p += 3) {
+            float most = 0;
+            for (std::size_t c = 0; c < 3; ++c)
+                most = std::max(most, std::abs(view.after->data[p + c] - view.before->data[p + c]));
+            if (most <= changed) continue;
+            ++pixels;
+            for (std::size_t c = 0; c < 3; ++c)
+                before[c] += view.before->data[p + c], after[c] += view.after->data[p + c];
+        }
+    double left = 0, all = 0;
+    for (std::size_t c = 0; c < 3 && pixels > 0; ++c) {
+        left += std::pow(after[c] / pixels - colour[c], 2);
+        all += std::pow(before[c] / pixels - colour[c], 2);
+    }
+    if (pixels == 0) return 0;
+    return std::sqrt(all) < near ? 1 : 1 - std::sqrt(left / all);
+}
+
+EditedViews DefaultGroundColour::edit(const std::vector<EditView>& views, const EditViewsRequest&,
+                                      const JobControl&) {
+    EditedViews targets;
+    const float median = std::max(median_luminance(views), 1e-3f);
+    for (const auto& view : views) {
+        Image& image = targets.images.emplace_back(view.rendered);
+        for (std::size_t p = 0; p < view.mask.data.size(); ++p) {
+            if (view.mask.data[p] == 0) continue;
+            const float shade = std::clamp(std::pow(luminance(view.original, p) / median, ShadePower),
+                                           DarkestShade, BrightestShade);
+            for (std::size_t c = 0; c < 3; ++c) image.data[p * 3 + c] = std::min(colour_[c] * shade, 1.0f);
+        }
+    }
+    return targets;
+}
+
+}  // namespace gse::edit

@@ -1,0 +1,38 @@
+// Grounds that look much the same everywhere: snow is white, whoever draws it.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "engine/edit/interfaces/interfaces.h"
+#include "engine/edit/interfaces/view_targets.h"
+#include "engine/edit/request/request.h"
+
+namespace gse::edit {
+
+/// The colour, display values in [0,1], of a ground by its word; none where it has no usual one.
+std::optional<std::array<float, 3>> ground_colour(const std::string& word);
+
+/// That of the ground that a validated request makes of another ("snow" for the grass); none where it makes
+/// something else, where that has no usual colour, or where the sentence says what it is like ("red sand").
+std::optional<std::array<float, 3>> usual_look(const EditRequest& request, EditMode mode);
+
+/// How much of the way to the colour redrawn views have gone, of what changed in them: 1 = all of it; below 0
+/// = away from it. 1 where they began near it.
+double gone_towards(const std::array<float, 3>& colour, const ViewTargets& round);
+
+/// Draws without a model: what the masks hold gets the colour, in the light and shade in which the unedited
+/// scene shows it.
+class DefaultGroundColour final : public MultiViewEditor {
+public:
+    explicit DefaultGroundColour(std::array<float, 3> colour) : colour_(colour) {}
+    EditedViews edit(const std::vector<EditView>& views, const EditViewsRequest& input,
+                     const JobControl& job) override;
+    bool supports_appearance_editing() const override { return true; }
+
+private:
+    std::array<float, 3> colour_;
+};
+
+}  // namespace gse::edit

@@ -1,0 +1,332 @@
+// Farthest views and feathered masks.
+#include "engine/edit/target_views/view_round.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/base/check.h"
+#include "engine/base/log.h"
+#include "engine/base/random.h"
+#include "engine/edit/interfaces/broken_values.h"
+#include "engine/edit/request/colour_word.h"
+#include "engine/edit/request/scales.h"
+#include "engine/localize/clusters.h"
+
+namespace gse::edit {
+namespace {
+
+Mask eroded(Mask mask, double radius_px) {
+    for (auto& bit : mask.data) bit = bit != 0 ? 0 : 1;
+    mask = localize::dilate(mask, radius_px);
+    for (auto& bit : mask.data) bit = bit != 0 ? 0 : 1;
+    return mask;
+}
+
+constexpr double FeatherPx = 3;                 // of a picture of ReferenceSide (views.md 8.6)
+constexpr std::uint64_t ColourStream = 39000;   // of the request's seed
+constexpr double StrengthRaise = 0.1;           // of redrawing that hardly changed anything (views.md 12)
+constexpr std::uint64_t HeldOutStream = 37000;  // the same, + the round
+constexpr double LeastCover =
+    0.01;  // of the picture: smaller things are not worth a redrawn view (views.md 8)
+
+/// The pictures that the model draws, one per view; what is not finite in them is counted and stays as the
+/// scene is.
+EditedViews drawn_by(MultiViewEditor& guidance, const std::vector<EditView>& views,
+                     const EditViewsRequest& input, const JobControl& job) {
+    auto drawn = guidance.edit(views, input, job);
+    if (const auto broken = mend_broken(views, drawn.images); broken > 0) {
+        drawn.scalars["broken_values"] = static_cast<double>(broken);
+        log::warning("{} values of the redrawn views were not finite; the scene stays as it was there",
+                     broken);
+    }
+    return drawn;
+}
+
+}  // namespace
+
+namespace {
+
+/// Gives a field the value that suits, unless it was set.
+template <class T> void suit(T& field, const T& otherwise, const T& value) {
+    if (field == otherwise) field = value;
+}
+
+/// What gets another shape is no longer bound to the old one.
+void free_geometry(EditRequest& request) {
+    const EditRequest usual;
+    suit(request.geometry_share, usual.geometry_share, 1.0);
+    suit(request.colour_coupling, usual.colour_coupling, 0.0);
+    for (const auto anchor : {&EditRequest::anchor_position, &EditRequest::anchor_rotation,
+                              &EditRequest::anchor_opacity, &EditRequest::anchor_scale})
+        suit(request.*anchor, usual.*anchor, 0.0);
+}
+
+void grow_often(EditRequest& request, int fit_steps) {
+    constexpr int GrowthsPerRound = 6;
+    const EditRequest usual;
+    suit(request.densify_percent, usual.densify_percent, 0.1);
+    suit(request.max_growth, usual.max_growth, 4.0);
+    suit(request.max_aspect, usual.max_aspect, 6.0);
+    suit(request.rate_colour, usual.rate_colour,
+         0.012);  // the hull's colours are near; faster ones follow single views
+    if (request.densify_every > 0)
+        request.densify_every = request.densify_from = std::max(1, fit_steps / GrowthsPerRound);
+}
+
+}  // namespace
+
+EditRequest restyling(EditRequest request, EditMode mode) {
+    if (mode != EditMode::Modify) return request;
+    suit(request.view_strength, EditRequest().view_strength, 1.0);
+    request.view_steps = request.restyle_steps;
+    return request;
+}
+
+EditRequest loop_request(EditRequest request, EditMode mode, bool by_views,
+                         bool supports_appearance_editing) {
+    if (supports_appearance_editing) request = restyling(std::move(request), mode);
+    const auto plan = round_plan(request, mode);
+    if (mode == EditMode::Replace || (by_views && plan.anew)) free_geometry(request);
+    if (!by_views) return request;
+    request.iterations = plan.rounds * plan.fit_steps;
+    request.rounds = plan.rounds;
+    request.fit_steps = plan.fit_steps;
+    request.dynamic_mask = request.look_again = false;
+    if (plan.anew) {
+        grow_often(request, plan.fit_steps);
+    } else if (request.densify_every > 0) {
+        request.densify_every = request.densify_from = std::max(1, plan.fit_steps / 2);
+    }
+    request.densify_until = 1 - 0.5 / plan.rounds;
+    return request;
+}
+
+std::vector<std::size_t> views_to_redraw(const std::vector<View>& views, const std::vector<double>& covered,
+                                         std::size_t count) {
+    GSE_CHECK_EQ(views.size(), covered.size());
+    const double most = covered.empty() ? 0 : *std::max_element(covered.begin(), covered.end());
+    if (!(most > 0)) return {};
+    const double least = std::min(LeastCover, most);
+    std::vector<std::size_t> chosen{
+        static_cast<std::size_t>(std::max_element(covered.begin(), covered.end()) - covered.begin())};
+    std::vector<double> distance(views.size(), std::numeric_limits<double>::infinity());
+    while (chosen.size() < count) {
+        const Vec3 last = views[chosen.back()].camera.centre();
+        distance[chosen.back()] = -1;
+        std::size_t farthest = views.size();
+        for (std::size_t v = 0; v < views.size(); ++v) {
+            distance[v] = std::min(distance[v], length(views[v].camera.centre() - last));
+            const bool counts = covered[v] >= least && distance[v] >= 0;
+            if (counts && (farthest == views.size() || distance[v] > distance[farthest])) farthest = v;
+        }
+        if (farthest == views.size()) break;
+        chosen.push_back(farthest);
+    }
+    std::sort(chosen.begin(), chosen.end());
+    return chosen;
+}
+
+std::vector<std::size_t> views_to_hold_out(const std::vector<View>& views, const std::vector<double>& covered,
+                                           const std::vector<std::size_t>& redrawn, std::size_t count) {
+    GSE_CHECK_EQ(views.size(), covered.size());
+    std::vector<std::size_t> taken = redrawn, held;
+    const auto free_distance = [&](std::size_t v) {  // negative: not to be had
+        if (covered[v] < LeastCover) return -1.0;
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const auto other : taken) {
+            if (other == v) return -1.0;
+            nearest = std::min(nearest, length(views[v].camera.centre() - views[other].camera.centre()));
+        }
+        return nearest;
+    };
+    while (held.size() < count) {
+        std::size_t farthest = 0;
+        double most = -1;
+        for (std::size_t v = 0; v < views.size(); ++v)
+            if (const double distance = free_distance(v); distance > most) most = distance, farthest = v;
+        if (most < 0) break;
+        held.push_back(farthest);
+        taken.push_back(farthest);
+    }
+    std::sort(held.begin(), held.end());
+    return held;
+}
+
+Image blend_inside(const Image& edited, const Image& original, const Mask& mask, double feather_px) {
+    GSE_CHECK_EQ(edited.data.size(), original.data.size());
+    GSE_CHECK_EQ(mask.data.size(), original.pixel_count());
+    Image result = original;
+    const int rings = static_cast<int>(std::ceil(feather_px));
+    Mask inside = mask;
+    std::vector<float> share(mask.data.size(), 0.0f);
+    for (int ring = 0; ring <= rings; ++ring) {  // one step of the ramp for every pixel from the rim
+        for (std::size_t i = 0; i < share.size(); ++i)
+            if (inside.data[i] != 0) share[i] += 1.0f / static_cast<float>(rings + 1);
+        if (ring < rings) inside = eroded(inside, 1);
+    }
+    for (std::size_t i = 0; i < share.size(); ++i) {
+        if (mask.data[i] == 0) continue;
+        for (std::size_t c = 0; c < 3; ++c)
+            result.data[i * 3 + c] =
+                share[i] * edited.data[i * 3 + c] + (1 - share[i]) * original.data[i * 3 + c];
+    }
+    return result;
+}
+
+ViewRounds::ViewRounds(const EditPlan& plan, const EditRequest& request, MultiViewEditor& guidance,
+                       ShapeFinder* shapes, std::vector<std::string> known)
+    : plan_(plan), request_(request), guidance_(guidance), shapes_(shapes), known_(std::move(known)),
+      targets_(plan.views.size()), edited_(plan.views.size()) {}
+
+void ViewRounds::choose(const std::vector<std::size_t>& visible, const std::vector<Mask>& masks) {
+    std::vector<View> views;
+    std::vector<double> covered;
+    for (const auto v : visible) {
+        views.push_back(plan_.views[v]);
+        covered.push_back(static_cast<double>(masks[v].count()) / static_cast<double>(masks[v].data.size()));
+    }
+    views_.clear();
+    held_out_.clear();
+    const auto redrawn =
+        views_to_redraw(views, covered, static_cast<std::size_t>(round_plan(request_, plan_.mode).views));
+    for (const auto index : redrawn) views_.push_back(visible[index]);
+    if (request_.polish_steps == 0) return;
+    for (const auto index : views_to_hold_out(views, covered, redrawn, HeldOutViews))
+        held_out_.push_back(visible[index]);
+}
+
+bool ViewRounds::begins(int iteration) const { return round_ < 0 || iteration / request_.fit_steps > round_; }
+
+std::vector<HeldOutView> ViewRounds::draw_held_out(const std::vector<EditView>& begun,
+                                                   const JobControl& job) {
+    if (begun.empty()) return {};
+    const auto stream = HeldOutStream + static_cast<std::uint64_t>(round_);
+    auto drawn = drawn_by(guidance_, begun, input(stream), job);
+    std::vector<HeldOutView> held;
+    for (std::size_t i = 0; i < begun.size(); ++i) {
+        if (shapes_ != nullptr &&
+            !shapes_->take_out(begun[i], drawn, i, Random::stream(request_.seed, stream + 1 + i).next()))
+            continue;
+        held.push_back({begun[i].view.camera, begun[i].mask,
+                        blend_inside(drawn.images[i], begun[i].original, begun[i].mask,
+                                     FeatherPx * begun[i].original.width / ReferenceSide)});
+    }
+    return held;
+}
+
+/// What this round is asked to be; `stream` of the request's seed.
+EditViewsRequest ViewRounds::input(std::uint64_t stream) const {
+    const auto plan = round_plan(request_, plan_.mode);
+    EditViewsRequest asked{round_,
+                           plan.rounds,
+                           plan.steps_of(round_),
+                           std::min(1.0, plan.strength_of(round_) + raised_),
+                           Random::stream(request_.seed, stream).next(),
+                           shapes_ != nullptr,
+                           sentence_,
+                           plan.guided_until};
+    if (plan_.mode == EditMode::Add) asked.tells_changes = true, asked.noise = request_.add_noise;
+    return asked;
+}
+
+/// Where the sentence leaves open what colour the new thing has, it is the one that the search has drawn it
+/// in most; else the view with most room for it is drawn first. The word for it is told to all.
+void ViewRounds::name_colour(const std::vector<EditView>& views, const JobControl& job) {
+    const auto told = as_told(request_.prompt);
+    if (shapes_ == nullptr || views.empty() || is_described(told, shapes_->word())) return;
+    const auto colour = plan_.drawn_colour.empty() ? colour_of_key_view(views, job) : plan_.drawn_colour;
+    if (colour.empty()) return;
+    sentence_ = described_as(told, shapes_->word(), colour);
+    log::info(
+        "the sentence names no colour for \"{}\"; most of what was drawn is {}: all views are drawn as "
+        "\"{}\"",
+        shapes_->word(), colour, sentence_);
+}
+
+std::string ViewRounds::colour_of_key_view(const std::vector<EditView>& views, const JobControl& job) {
+    const auto key = std::max_element(views.begin(), views.end(), [](const auto& a, const auto& b) {
+        return a.mask.count() < b.mask.count();
+    });
+    const auto drawn = drawn_by(guidance_, {*key}, input(ColourStream), job);
+    ++extra_pictures_;
+    return shapes_->colour_in(*key, drawn, Random::stream(request_.seed, ColourStream + 1).next(), known_);
+}
+
+/// The pictures of a round. Where most of them hardly differ from the scene, they are drawn once more,
+/// further from it.
+EditedViews ViewRounds::draw(const std::vector<EditView>& views, const JobControl& job) {
+    const auto asked = input(40000 + static_cast<std::uint64_t>(round_));
+    auto drawn = drawn_by(guidance_, views, asked, job);
+    auto agreement = view_agreement(views, drawn.images);
+    if (drawn.unfinished) agreement.unchanged = 0;
+    if (shapes_ == nullptr && raised_ == 0 && asked.strength < 1 && hardly_edited(agreement)) {
+        raised_ = StrengthRaise;
+        extra_pictures_ += views.size();
+        log::info(
+            "{:.0f} % of the redrawn views hardly differ from the scene: they are redrawn with strength "
+            "{:.2f}",
+            100 * agreement.unchanged, std::min(1.0, asked.strength + raised_));
+        drawn = drawn_by(guidance_, views, input(40000 + static_cast<std::uint64_t>(round_)), job);
+        agreement = view_agreement(views, drawn.images);
+    }
+    judge(agreement, drawn);
+    return drawn;
+}
+
+/// Says what is suspicious about the pictures as the model drew them.
+void ViewRounds::judge(const ViewAgreement& agreement, EditedViews& drawn) {
+    drawn.scalars.merge(agreement.scalars());
+    warnings_ = warnings_of(agreement, shapes_ != nullptr);
+    for (const auto& warning : warnings_) log::warning("{}", warning);
+}
+
+std::map<std::string, double> ViewRounds::redraw(int iteration, const std::vector<EditView>& views,
+                                                 const std::vector<Image>& originals, const JobControl& job) {
+    GSE_CHECK_EQ(views.size(), views_.size());
+    round_ = iteration / request_.fit_steps;
+    if (round_ == 0) name_colour(views, job);
+    auto drawn = draw(views, job);
+    if (shapes_ != nullptr) {
+        found_ = shapes_->cut_out(views, drawn, round_, job);
+        drawn.scalars.merge(found_.scalars);
+    }
+    for (std::size_t i = 0; i < views.size(); ++i)
+        replace(views_[i], std::move(drawn.images[i]), originals[views_[i]], views[i].mask);
+    return std::move(drawn.scalars);
+}
+
+void ViewRounds::redo(std::size_t view, const EditView& begun, int attempt, const Image& original,
+                      const JobControl& job) {
+    constexpr std::uint64_t first = 1u << 20, most_views = 1u << 20,
+                            most_rounds = 64;  // streams that nothing else draws from
+    const auto stream =
+        first +
+        (static_cast<std::uint64_t>(attempt) * most_rounds + static_cast<std::uint64_t>(round_)) *
+            most_views +
+        view;
+    auto drawn = drawn_by(guidance_, {begun}, input(stream), job);
+    if (shapes_ != nullptr)
+        shapes_->take_out(begun, drawn, 0, Random::stream(request_.seed, stream + 1).next());
+    replace(view, std::move(drawn.images.front()), original, begun.mask);
+}
+
+void ViewRounds::replace(std::size_t view, Image edited, const Image& original, const Mask& mask) {
+    edited_[view] = std::move(edited);
+    blend(view, original, mask);
+}
+
+void ViewRounds::resume(const RoundState& start) {
+    round_ = start.round;
+    sentence_ = start.sentence;
+    views_ = start.views;
+    held_out_ = start.held_out;
+    raised_ = start.raised;
+}
+
+void ViewRounds::blend(std::size_t view, const Image& original, const Mask& mask) {
+    if (edited_[view].data.empty()) return;
+    targets_[view] = blend_inside(edited_[view], original, mask, FeatherPx * original.width / ReferenceSide);
+}
+
+}  // namespace gse::edit

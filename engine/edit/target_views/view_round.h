@@ -1,0 +1,124 @@
+// A round of view guidance around the model's part: which views are redrawn, and what the scene is fitted to
+// (views.md 8).
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "engine/edit/interfaces/interfaces.h"
+#include "engine/edit/interfaces/view_targets.h"
+#include "engine/edit/optimise/edit_loop.h"
+#include "engine/edit/optimise/polish.h"
+#include "engine/edit/optimise/preservation_loss.h"
+#include "engine/edit/request/request.h"
+#include "engine/edit/target_views/shape_round.h"
+#include "engine/edit/target_views/view_agreement.h"
+
+namespace gse::edit {
+
+/// Of fits to redrawn views, which do not agree: the absolute difference alone is the median over them.
+constexpr PreservationWeights FitWeights{1, 0, 10};
+
+/// The request as the loop goes by it, with what suits the kind of edit. With view guidance the steps are
+/// those of the fits, what is fitted has no mask to follow, and growth comes once in the middle of each round
+/// (views.md 8). What gets another shape may move, every splat for itself and without anchors, and grows
+/// often (views.md 17); settings that differ from the program's defaults stay as they are.
+/// `supports_appearance_editing`: what redraws the views does
+/// (MultiViewEditor::supports_appearance_editing()).
+EditRequest loop_request(EditRequest request, EditMode mode, bool by_views,
+                         bool supports_appearance_editing = false);
+/// What of that follows from `supports_appearance_editing` alone: shapes are shown, so that views begin from
+/// noise alone, in steps of their own number.
+EditRequest restyling(EditRequest request, EditMode mode);
+
+/// Indices of the views to redraw, ascending: farthest-point sample of the cameras among those of which what
+/// may change covers a share of the picture, starting with the view that shows most of it. `covered`: share
+/// of each view's picture.
+std::vector<std::size_t> views_to_redraw(const std::vector<View>& views, const std::vector<double>& covered,
+                                         std::size_t count);
+
+constexpr std::size_t HeldOutViews = 2;  // that a polish is judged by (views.md 13)
+
+/// Of the other views that show as much, those farthest from the ones that are redrawn (and from each other),
+/// at most `count`.
+std::vector<std::size_t> views_to_hold_out(const std::vector<View>& views, const std::vector<double>& covered,
+                                           const std::vector<std::size_t>& redrawn, std::size_t count);
+
+/// F edited + (1 - F) original, where F is the mask, feathered inwards by `feather_px`: outside the mask the
+/// original stays bit by bit.
+Image blend_inside(const Image& edited, const Image& original, const Mask& mask, double feather_px);
+
+/// The rounds of an edit: which views are redrawn, and what the scene is fitted to meanwhile.
+class ViewRounds {
+public:
+    /// `shapes` cuts out of the redrawn views what has a new shape; null where nothing has.
+    /// `known`: words of the model; empty = it takes any.
+    ViewRounds(const EditPlan& plan, const EditRequest& request, MultiViewEditor& guidance,
+               ShapeFinder* shapes = nullptr, std::vector<std::string> known = {});
+
+    /// Picks the views to redraw from those in which the edit is seen.
+    void choose(const std::vector<std::size_t>& visible, const std::vector<Mask>& masks);
+    const std::vector<std::size_t>& views() const { return views_; }
+    /// Views that are not redrawn but could be; see views_to_hold_out().
+    const std::vector<std::size_t>& held_out() const { return held_out_; }
+    /// What the model would have made of them in this round, as `begun` when it began; without those that do
+    /// not show a new shape.
+    std::vector<HeldOutView> draw_held_out(const std::vector<EditView>& begun, const JobControl& job);
+    /// Whether a round begins with this iteration.
+    bool begins(int iteration) const;
+    int round() const { return round_; }  // -1 = none has begun
+    /// Has the views redrawn, in the order of views(); `originals` of all views of the plan. Returns what the
+    /// model tells.
+    std::map<std::string, double> redraw(int iteration, const std::vector<EditView>& views,
+                                         const std::vector<Image>& originals, const JobControl& job);
+    /// Has one of them redrawn once more, from a seed of its own for every `attempt` from 1 on.
+    void redo(std::size_t view, const EditView& begun, int attempt, const Image& original,
+              const JobControl& job);
+    /// Another picture for a view of this round.
+    void replace(std::size_t view, Image edited, const Image& original, const Mask& mask);
+    /// Goes on in the middle of a round in which these views were redrawn; their pictures come by replace().
+    void resume(const RoundState& start);
+    /// By how much the views were redrawn further from the render than was asked, because they hardly
+    /// changed.
+    double raised() const { return raised_; }
+    /// What the model is told where the artist's sentence leaves the new thing's colour open; else empty.
+    const std::string& sentence() const { return sentence_; }
+    /// Pictures that were asked for beside one of each of views() a round: for the colour, and where a first
+    /// try hardly changed.
+    std::size_t extra_pictures() const { return extra_pictures_; }
+    /// What is suspicious about the pictures of the last round.
+    const std::vector<std::string>& warnings() const { return warnings_; }
+    /// What the last round found of the new shape.
+    const CutOut& found() const { return found_; }
+    /// Another mask: what was redrawn counts inside it.
+    void blend(std::size_t view, const Image& original, const Mask& mask);
+    /// What the scene is fitted to: redrawn inside the mask, the original outside.
+    const Image& target(std::size_t view) const { return targets_[view]; }
+    /// As the model would have it.
+    const Image& edited(std::size_t view) const { return edited_[view]; }
+
+private:
+    EditViewsRequest input(std::uint64_t stream) const;
+    EditedViews draw(const std::vector<EditView>& views, const JobControl& job);
+    void judge(const ViewAgreement& agreement, EditedViews& drawn);
+    void name_colour(const std::vector<EditView>& views, const JobControl& job);
+    std::string colour_of_key_view(const std::vector<EditView>& views, const JobControl& job);
+
+    const EditPlan& plan_;
+    const EditRequest& request_;
+    MultiViewEditor& guidance_;
+    ShapeFinder* shapes_;
+    std::vector<std::string> known_;
+    std::string sentence_;
+    CutOut found_;
+    std::vector<std::string> warnings_;
+    std::vector<std::size_t> views_, held_out_;
+    std::vector<Image> targets_, edited_;  // of the plan's views; empty for those that are not redrawn
+    double raised_ = 0;
+    std::size_t extra_pictures_ = 0;
+    int round_ = -1;
+};
+
+}  // namespace gse::edit

@@ -1,0 +1,217 @@
+// Draws edits from all held-out combinations.
+#include "engine/laboratory/eval/eval_suite.h"
+
+#include <algorithm>
+#include <set>
+
+#include "engine/base/check.h"
+#include "engine/base/error.h"
+
+namespace gse::bench {
+namespace {
+
+using synth::SceneSpec;
+
+bool is_substance(const std::string& material) {
+    return material == "wooden" || material == "stone" || material == "golden";
+}
+
+/// What comes is called by.
+struct Vocabulary {
+    const std::vector<std::string>& objects = synth::object_words();
+    const std::vector<std::string>& accessories = synth::accessory_words();
+};
+
+/// Words of an edit without seed, ground and accessory colour.
+struct Combination {
+    SceneSpec source, target;
+    std::string key() const {
+        const auto words =
+            source.object + ' ' + source.material + ' ' + target.material + ' ' + target.accessory;
+        return source.object == target.object ? words : words + ' ' + target.object;
+    }
+};
+
+void for_each_spec(const Vocabulary& vocabulary, const auto& visit) {
+    auto accessories = vocabulary.accessories;
+    accessories.insert(accessories.begin(), "");
+    for (const auto& object : vocabulary.objects)
+        for (const auto& material : synth::material_words())
+            for (const auto& accessory : accessories) {
+                SceneSpec spec;
+                spec.object = object;
+                spec.material = material;
+                spec.accessory = accessory;
+                visit(spec);
+            }
+}
+
+/// Another material, a colour or a substance; with or without an accessory that stays.
+std::vector<Combination> material_changes(bool substance, bool with_accessory) {
+    std::vector<Combination> list;
+    for_each_spec({}, [&](const SceneSpec& target) {
+        if (!synth::held_out(target) || is_substance(target.material) != substance) return;
+        if (target.accessory.empty() == with_accessory) return;
+        for (const auto& material : synth::material_words()) {
+            SceneSpec source = target;
+            source.material = material;
+            // Without accessories hardly two materials of one object are held out: there only the target is.
+            if (material != target.material && (!with_accessory || synth::held_out(source)))
+                list.push_back({source, target});
+        }
+    });
+    return list;
+}
+
+std::vector<Combination> additions(const std::vector<std::string>& accessories) {
+    std::vector<Combination> list;
+    for_each_spec({synth::object_words(), accessories}, [&](const SceneSpec& target) {
+        if (target.accessory.empty() || !synth::held_out(target)) return;
+        SceneSpec source = target;
+        source.accessory.clear();
+        list.push_back({source, target});
+    });
+    return list;
+}
+
+std::vector<Combination> ground_changes() {
+    std::vector<Combination> list;
+    for_each_spec({}, [&](const SceneSpec& spec) {
+        if (synth::held_out(spec)) list.push_back({spec, spec});
+    });
+    return list;
+}
+
+/// Another object in the place of one; the new one's combination is held out.
+std::vector<Combination> replacements(const std::vector<std::string>& objects, bool same_material) {
+    std::vector<Combination> list;
+    for_each_spec({objects, synth::accessory_words()}, [&](const SceneSpec& target) {
+        if (!target.accessory.empty() || !synth::held_out(target)) return;
+        for (const auto& object : synth::object_words())
+            for (const auto& material : synth::material_words()) {
+                if (object == target.object || (material == target.material) != same_material) continue;
+                SceneSpec source = target;
+                source.object = object;
+                source.material = material;
+                list.push_back({source, target});
+            }
+    });
+    return list;
+}
+
+const std::string& pick(const std::vector<std::string>& words, Random& random) {
+    return words[random.below(words.size())];
+}
+
+/// A colour for the accessory that differs from both materials; sometimes its natural look.
+std::string accessory_colour(const Combination& words, Random& random) {
+    const auto& colours = synth::accessory_colour_words(words.target.accessory);
+    constexpr double natural_share = 0.15;  // as in random specs
+    if (colours.empty() || random.uniform() < natural_share) return {};
+    while (true) {
+        const auto& colour = pick(colours, random);
+        if (colour != words.source.material && colour != words.target.material) return colour;
+    }
+}
+
+/// A combination that was not used yet, if there is one.
+Combination choose(std::vector<Combination> list, std::set<std::string>& used, Random& random) {
+    GSE_CHECK(!list.empty());
+    std::vector<Combination> fresh;
+    for (const auto& combination : list)
+        if (!used.contains(combination.key())) fresh.push_back(combination);
+    const auto& from = fresh.empty() ? list : fresh;
+    const Combination chosen = from[random.below(from.size())];
+    used.insert(chosen.key());
+    return chosen;
+}
+
+constexpr const char* ColourRemap = "dye";
+
+/// Colours that the bundled model does not look for: they are dyed, or (the metals) drawn.
+const std::vector<std::string>& dyed_materials() {
+    static const std::vector<std::string> words{"pink", "brown", "gray", "turquoise", "silver", "bronze"};
+    return words;
+}
+
+std::vector<Combination> combinations_of(const std::string& kind, bool drawn_words, Random& random) {
+    if (kind == "add")
+        return additions(drawn_words ? synth::more_accessory_words() : synth::accessory_words());
+    if (kind == "ground") return ground_changes();
+    if (kind == "replace")
+        return replacements(drawn_words ? synth::more_object_words() : synth::object_words(),
+                            random.uniform() < 0.5);
+    if (kind == ColourRemap) return material_changes(false, random.uniform() < 0.5);
+    const bool with_accessory = random.uniform() < 0.5;
+    return material_changes(kind == "material", with_accessory);
+}
+
+EvalCase make_case(const std::string& kind, bool drawn_words, std::set<std::string>& used, Random random) {
+    Combination words = choose(combinations_of(kind, drawn_words, random), used, random);
+    if (kind == ColourRemap) words.target.material = pick(dyed_materials(), random);
+    const std::uint64_t seed = random.next();
+    const std::string ground = pick(synth::ground_words(), random);
+    words.target.accessory_colour = accessory_colour(words, random);
+    if (!words.source.accessory.empty()) words.source.accessory_colour = words.target.accessory_colour;
+    for (auto* spec : {&words.source, &words.target}) {
+        spec->seed = seed;
+        spec->ground = ground;
+    }
+    while (kind == "ground" && words.target.ground == ground)
+        words.target.ground = pick(synth::ground_words(), random);
+    EvalCase edit{
+        kind, words.source, words.target, synth::full_caption(words.target).text, words.source.object, {},
+        {}};
+    if (kind == "ground") {
+        edit.word = ground;
+        edit.target_word = words.target.ground;
+        edit.part = synth::Part::Ground;
+    } else {
+        edit.target_word = kind == "add"       ? words.target.accessory
+                           : kind == "replace" ? words.target.object
+                                               : words.target.material;
+        edit.part = kind == "add" ? synth::Part::Accessory : synth::Part::Object;
+    }
+    return edit;
+}
+
+std::string list_of(const std::vector<std::string>& words) {
+    std::string list;
+    for (const auto& word : words) list += (list.empty() ? "" : ", ") + word;
+    return list;
+}
+
+}  // namespace
+
+const std::vector<std::string>& eval_kinds() {
+    static const std::vector<std::string> kinds{"recolour", "material", "add", "ground", "replace"};
+    return kinds;
+}
+
+std::vector<EvalCase> make_suite(std::uint64_t seed, int count, const std::vector<std::string>& kinds,
+                                 bool drawn_words) {
+    auto known = eval_kinds();
+    known.emplace_back(ColourRemap);  // only where it is asked for
+    for (const auto& kind : kinds)
+        if (std::find(known.begin(), known.end(), kind) == known.end())
+            throw Error(ErrorCode::InvalidArgument, "there is no kind of edit named \"" + kind + "\"",
+                        "use " + list_of(known));
+    if (kinds.empty())
+        throw Error(ErrorCode::InvalidArgument, "no kind of edit is named", "use " + list_of(known));
+    constexpr std::uint64_t OfWhatStays = 40000, OfReplacements = 50000, OfDyes = 60000;  // random streams
+    std::vector<EvalCase> suite;
+    std::set<std::string> used, used_to_replace, used_to_dye;
+    std::uint64_t others = 0, replacements = 0, dyes = 0;
+    for (int i = 0; i < count; ++i) {
+        const auto& kind = kinds[static_cast<std::size_t>(i) % kinds.size()];
+        suite.push_back(
+            kind == "replace" ? make_case(kind, drawn_words, used_to_replace,
+                                          Random::stream(seed, OfReplacements + replacements++))
+            : kind == ColourRemap
+                ? make_case(kind, drawn_words, used_to_dye, Random::stream(seed, OfDyes + dyes++))
+                : make_case(kind, drawn_words, used, Random::stream(seed, OfWhatStays + others++)));
+    }
+    return suite;
+}
+
+}  // namespace gse::bench

@@ -1,0 +1,36 @@
+// The synthetic edits that eval measures a model on: source scene, sentence and true edited scene.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/laboratory/synth/synth.h"
+
+namespace gse::bench {
+
+/// One edit with its ground truth.
+struct EvalCase {
+    std::string kind;  // "recolour", "material", "add", "ground", "replace" or "dye"
+    synth::SceneSpec source;
+    synth::SceneSpec target;                 // same seed: the same scene but for what the sentence changes
+    std::string prompt;                      // describes the target
+    std::string word;                        // the source word
+    std::string target_word;                 // the new word
+    synth::Part part = synth::Part::Object;  // what changes; in the source scene, or new in the target
+};
+
+/// What an edit may be about.
+const std::vector<std::string>& eval_kinds();
+
+/// `count` edits, the kinds in turn. The target's combination of object, material and accessory is always one
+/// that training never saw; for recolour and material edits of scenes with an accessory (half of them) the
+/// source's is too. "replace" puts another object, of the same material or another, in the place of one
+/// without an accessory. Scene seeds are drawn from `seed`. Combinations repeat only when there are no
+/// others. Edits that replace are drawn apart: the others are the same with and without them. `drawn_words`:
+/// what is added or comes in a thing's place is one of synth::more_accessory_words() or more_object_words(),
+/// in a colour or material of the others. Throws Error for an unknown kind.
+std::vector<EvalCase> make_suite(std::uint64_t seed, int count, const std::vector<std::string>& kinds,
+                                 bool drawn_words = false);
+
+}  // namespace gse::bench

@@ -1,0 +1,206 @@
+// Puts ground, object and accessory together as labelled Gaussians, and the camera that looks at them.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/base/error.h"
+#include "engine/laboratory/synth/ground.h"
+#include "engine/laboratory/synth/models.h"
+#include "engine/laboratory/synth/synth.h"
+#include "engine/laboratory/synth/words.h"
+
+namespace gse::synth {
+namespace {
+
+// Shares of the budget; fixed, so that an accessory changes nothing else.
+constexpr double GroundShare = 0.32;
+constexpr double ObjectShare = 0.50;
+constexpr double AccessoryShare = 0.18;
+constexpr int SmallestBudget = 500;
+constexpr int LargestBudget = 2'000'000;
+
+// Random streams of a scene's seed.
+enum Stream : std::uint64_t {
+    LightStream = 1,
+    PoseStream = 2,
+    TextureStream = 3,
+    ObjectStream = 100,
+    AccessoryStream = 200,
+    GroundStream = 300,
+    OpacityStream = 400,
+    SampleStream = 500
+};
+
+/// Half a turn about z: model space (y up) to world space (y down); the front stays at -z.
+Vec3 to_world(const Vec3& model) { return {-model.x, -model.y, model.z}; }
+
+/// Turn and size of the object (and its accessory) in the scene.
+struct Pose {
+    Mat3 turn = Mat3::identity();
+    double size = 1;
+    Vec3 shift{};
+};
+
+/// Of what is another in another variant of a scene.
+Random own_stream(const SceneSpec& spec, std::uint64_t index) {
+    return Random::stream(spec.seed + 0x9e3779b97f4a7c15ULL * spec.variant, index);
+}
+
+/// The first that a pose is drawn with.
+double turn_of(Random& random, const SceneSpec& spec) { return random.uniform(-0.22, 0.22) + spec.heading; }
+
+Pose make_pose(Random random, const SceneSpec& spec) {
+    Pose pose;
+    pose.turn = rotation_y(turn_of(random, spec));
+    pose.size = random.uniform(0.93, 1.05) * spec.size;
+    pose.shift = {random.uniform(-0.04, 0.04), 0, random.uniform(-0.04, 0.04)};
+    return pose;
+}
+
+void place(std::vector<SurfacePoint>& points, const Pose& pose) {
+    for (auto& point : points) {
+        point.position = pose.turn * point.position * pose.size + pose.shift;
+        point.normal = pose.turn * point.normal;
+        point.spacing *= pose.size;
+    }
+}
+
+/// Colours of the points; textures follow the object's own space, light the scene's.
+std::vector<Vec3> colours_of(std::span<const SurfacePoint> own, std::span<const SurfacePoint> placed,
+                             std::span<const Shape> shapes, const Material& material, const Light& light) {
+    std::vector<Vec3> colours(own.size());
+    for (std::size_t i = 0; i < own.size(); ++i) {
+        const Shape& shape = shapes[own[i].shape];
+        SurfacePoint point = own[i];
+        point.normal = placed[i].normal;
+        colours[i] = shade(shape.paint_at ? shape.paint_at(own[i]) : shape.paint, material, light, point);
+    }
+    return colours;
+}
+
+/// Writes Gaussians of one part behind each other into the arrays of a scene.
+class Writer {
+public:
+    explicit Writer(SynthScene& scene) : scene_(scene) {}
+
+    void add(std::span<const SurfacePoint> points, std::span<const Vec3> colours, Part part, Random random) {
+        for (std::size_t i = 0; i < points.size(); ++i) add_one(points[i], colours[i], part, random);
+    }
+    GaussianData take() { return std::move(data_); }
+
+private:
+    void add_one(const SurfacePoint& point, const Vec3& colour, Part part, Random& random) {
+        constexpr double Wide = 0.72, Narrow = 0.62, Thin = 0.10;  // standard deviations over the spacing
+        const Vec3 position = to_world(point.position);
+        const Vec3 normal = to_world(point.normal);
+        const Quat turn = quaternion(rotation_to(normal));  // local y is the thin axis
+        const double opacity = random.uniform(0.92, 0.97);
+        for (const double value : {position.x, position.y, position.z})
+            data_.position.push_back(static_cast<float>(value));
+        for (const double factor : {Wide, Thin, Narrow})
+            data_.log_scale.push_back(static_cast<float>(std::log(factor * point.spacing)));
+        for (const double value : {turn.w, turn.x, turn.y, turn.z})
+            data_.rotation.push_back(static_cast<float>(value));
+        data_.opacity_logit.push_back(static_cast<float>(std::log(opacity / (1 - opacity))));
+        for (const double value : {colour.x, colour.y, colour.z})
+            data_.sh.push_back(static_cast<float>(sh_from_colour(value)));
+        scene_.parts.push_back(part);
+    }
+
+    SynthScene& scene_;
+    GaussianData data_;
+};
+
+LabelSet labels_of(const std::vector<Part>& parts) {
+    LabelSet set;
+    constexpr std::pair<const char*, Part> Names[] = {
+        {"ground", Part::Ground}, {"object", Part::Object}, {"accessory", Part::Accessory}};
+    for (const auto& [name, part] : Names) {
+        std::vector<float> weight(parts.size());
+        for (std::size_t i = 0; i < parts.size(); ++i) weight[i] = parts[i] == part ? 1.0f : 0.0f;
+        set.labels.push_back(make_label(name, std::move(weight), 0.5f));
+    }
+    return set;
+}
+
+constexpr double TargetHeight = 0.59;  // a little above the middle of the figure: room for a hat
+
+struct Frame {
+    double zoom = 1;
+    int width = 0, height = 0;
+};
+
+Camera camera_at(const Vec3& target, double azimuth, double elevation, const Frame& frame) {
+    constexpr double Fov = std::numbers::pi / 4;
+    constexpr double Distance = 2.1;  // a figure of 1 unit fills about 60 % of the frame
+    OrbitParameters orbit;
+    orbit.centre = target;
+    orbit.radius = Distance / std::max(frame.zoom, 1e-3);
+    orbit.elevation = elevation;
+    const double aspect = static_cast<double>(frame.width) / std::max(frame.height, 1);
+    orbit.fov_x = 2 * std::atan(std::tan(0.5 * Fov) * std::max(aspect, 1.0));
+    return orbit_camera(orbit, azimuth, frame.width, frame.height);
+}
+
+}  // namespace
+
+SynthScene generate(const SceneSpec& spec) {
+    require_known_words(spec);
+    SynthScene result;
+    result.spec = spec;
+    const auto stream = [&](std::uint64_t index) { return Random::stream(spec.seed, index); };
+    const auto share = [&](double fraction) {
+        return static_cast<int>(fraction * std::clamp(spec.gaussian_budget, SmallestBudget, LargestBudget));
+    };
+    const std::uint64_t object_index = word_index(object_words(), more_object_words(), spec.object);
+    const Light light = make_light(stream(LightStream));
+    const Pose pose = make_pose(own_stream(spec, PoseStream), spec);
+    const Model model = make_object(spec.object, own_stream(spec, ObjectStream + object_index));
+    const Material material = make_material(spec.material, own_stream(spec, TextureStream));
+
+    const auto own =
+        sample_surface(model.shapes, {}, share(ObjectShare), stream(SampleStream + object_index));
+    auto placed = own;
+    place(placed, pose);
+    const GroundSample ground =
+        make_ground(spec.ground, share(GroundShare), placed, light,
+                    stream(GroundStream + word_index(ground_words(), more_ground_words(), spec.ground)));
+    Writer writer(result);
+    writer.add(ground.points, ground.colours, Part::Ground, stream(OpacityStream));
+    writer.add(placed, colours_of(own, placed, model.shapes, material, light), Part::Object,
+               stream(OpacityStream + 1));
+    if (!spec.accessory.empty()) {
+        const std::uint64_t index = word_index(accessory_words(), more_accessory_words(), spec.accessory);
+        const auto shapes = make_accessory(spec.accessory, model.anchor, stream(AccessoryStream + index));
+        const Material dye = make_material(accessory_material(spec), stream(AccessoryStream + 50));
+        const auto own_worn =
+            sample_surface(shapes, model.shapes, share(AccessoryShare), stream(SampleStream + 50 + index));
+        auto worn = own_worn;
+        place(worn, pose);
+        writer.add(worn, colours_of(own_worn, worn, shapes, dye, light), Part::Accessory,
+                   stream(OpacityStream + 2));
+    }
+    const Vec3 face = (model.anchor.top * 2.0 + model.anchor.eyes) / 3.0;
+    result.head = to_world(pose.turn * face * pose.size + pose.shift);
+    result.scene.gaussians = GaussianSet(writer.take());
+    result.scene.info.format = "synthetic";
+    result.scene.info.up_known = true;
+    result.scene.labels = labels_of(result.parts);
+    return result;
+}
+
+double turn_of(const SceneSpec& spec) {
+    Random random = own_stream(spec, PoseStream);
+    return turn_of(random, spec);
+}
+
+Camera scene_camera(const SynthScene&, double azimuth, double elevation, double zoom, int width, int height) {
+    return camera_at({0, -TargetHeight, 0}, azimuth, elevation, {zoom, width, height});
+}
+
+Camera head_camera(const SynthScene& scene, double azimuth, double elevation, double zoom, int width,
+                   int height) {
+    return camera_at(scene.head, azimuth, elevation, {zoom, width, height});
+}
+
+}  // namespace gse::synth

@@ -1,0 +1,24 @@
+// Labels for splats that no view sees (undersides, insides): they take the opinion of the nearest splats that
+// are seen.
+#pragma once
+
+#include "engine/base/thread_pool.h"
+#include "engine/localize/back_projection.h"
+
+namespace gse::localize {
+
+struct SpreadParameters {
+    int neighbours = 8;              // seen rows that are asked
+    double least_evidence_px = 0.5;  // rows with no more than this are unseen
+    double reach_share =
+        0.15;          // of the diagonal of the clearly labelled rows: no opinion is taken from farther away
+    double tau = 0.5;  // what counts as labelled
+};
+
+/// Sets the weight of every unseen row to the mean weight of its nearest seen neighbours, weighted by their
+/// evidence over distance, and marks it in `inferred`. Rows with a position that is not finite, or out of
+/// reach, keep what they have. The same for any number of threads (null = one); O(N log N).
+void propagate_labels_knn(const GaussianSpans& gaussians, const SpreadParameters& parameters,
+                          LabelWeights& weights, ThreadPool* threads = nullptr);
+
+}  // namespace gse::localize

@@ -1,0 +1,150 @@
+// The networks as a plug-in: the program loads libgse_neural.so (and with it torch) only when an edit begins.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/base/answer_cache.h"
+#include "engine/base/fields.h"
+#include "engine/base/progress.h"
+#include "engine/edit/interfaces/image_text_encoder.h"
+#include "engine/edit/interfaces/interfaces.h"
+#include "engine/neural/api/attention_parameters.h"
+#include "engine/neural/api/bundle_kind.h"
+#include "engine/neural/api/dreambooth_parameters.h"
+#include "engine/neural/api/lora_spec.h"
+#include "engine/neural/api/network_use.h"
+#include "engine/neural/api/sds_parameters.h"
+#include "engine/neural/starter/starter_trainer.h"
+
+namespace gse::neural {
+
+/// How a sample is drawn from the model.
+struct SampleRequest {
+    std::string prompt;
+    std::string negative_prompt;
+    int steps = 30;
+    double guidance_scale = 5;
+    double strength = 1.0;              // img2img only: share of the steps that are run
+    double image_guidance_scale = 1.5;  // of models that edit pictures
+    std::uint64_t seed = 0;
+};
+
+struct TunedModel;
+
+/// A loaded text-to-image model (tokenizer, text encoder, UNet, VAE, scheduler). It never changes, so that
+/// threads and jobs may share it.
+class TextToImage {
+public:
+    virtual ~TextToImage() = default;
+    virtual std::unique_ptr<edit::AttentionSource> attention(const AttentionParameters& parameters) const = 0;
+    std::unique_ptr<edit::AttentionSource> attention() const { return attention(AttentionParameters{}); }
+    virtual std::unique_ptr<edit::Guidance> guidance(const std::string& prompt,
+                                                     const SdsParameters& parameters) const = 0;
+    /// Redraws views of a scene under the prompt; scale, negative prompt, view words and what is taken off
+    /// are as `parameters` say.
+    virtual std::unique_ptr<edit::MultiViewEditor> views(const std::string& prompt,
+                                                         const SdsParameters& parameters) const = 0;
+    /// Whether its views() are shown the backdrops where they draw anew: they then know where in a scene a
+    /// new thing goes.
+    virtual bool supports_scene_conditioning() const { return false; }
+    /// Whether its views() give things another look by a network that is shown them
+    /// (edit::MultiViewEditor::supports_appearance_editing()).
+    virtual bool supports_appearance_editing() const { return false; }
+    /// Words the model was trained on; empty = an open vocabulary.
+    virtual std::vector<std::string> known_words() const = 0;
+    /// Words that only its views() are told besides: what they stand for can be drawn, but not looked for.
+    virtual std::vector<std::string> drawn_words() const { return {}; }
+    /// Side of the square images the model works at.
+    virtual int image_size() const = 0;
+    virtual std::string name() const = 0;
+    /// How views are redrawn by it.
+    virtual BundleKind kind() const = 0;
+    virtual Image sample(const SampleRequest& request) const = 0;
+    virtual Image img2img(const Image& image, const SampleRequest& request) const = 0;
+    /// The bundle's text-image encoder; null when it has none.
+    virtual std::unique_ptr<edit::ImageTextEncoder> image_text_encoder() const { return nullptr; }
+
+    /// DreamBooth: a model of its own that has learned what the pictures show under `instance_prompt`, while
+    /// pictures of `class_prompt`, drawn from the loaded weights first, keep what it knows. Begins at the
+    /// loaded weights, also where this model is a tuned one. The class's pictures are taken from `memory` (of
+    /// the loaded weights; may be null) and kept there. Throws Error (Cancelled) on a stop request.
+    virtual TunedModel tune(const DreamBoothParameters& parameters, std::span<const Image> instance,
+                            const std::string& instance_prompt, const std::string& class_prompt,
+                            const JobControl& job, AnswerCache* memory) const = 0;
+    TunedModel tune(const DreamBoothParameters& parameters, std::span<const Image> instance,
+                    const std::string& instance_prompt, const std::string& class_prompt,
+                    const JobControl& job) const;
+    /// The tuning as a file that load_tuning() gives back bit by bit: low-rank factors, or all weights. False
+    /// where there is none, or it would be larger. Throws Error (Unwritable).
+    virtual bool save_tuning(const std::filesystem::path& path, std::uint64_t most_bytes) const = 0;
+    /// The model that save_tuning() was asked of, from one with the same loaded weights. Throws Error.
+    virtual std::shared_ptr<TextToImage> load_tuning(const std::filesystem::path& path) const = 0;
+    /// The tuning as a file (kohya's names). Throws Error (InvalidArgument) unless this is a model tuned with
+    /// a rank.
+    virtual void save_lora(const std::filesystem::path& path) const = 0;
+    /// A model of its own: the loaded weights, tuned by a file. Throws Error (NotFound, Malformed, Model).
+    virtual std::shared_ptr<TextToImage> load_lora(const std::filesystem::path& path,
+                                                   double strength) const = 0;
+    std::shared_ptr<TextToImage> load_lora(const std::filesystem::path& path) const {
+        return load_lora(path, 1.0);
+    }
+};
+
+/// What tune() gives.
+struct TunedModel {
+    std::shared_ptr<TextToImage> model;
+    TuneReport report;
+};
+
+inline TunedModel TextToImage::tune(const DreamBoothParameters& parameters, std::span<const Image> instance,
+                                    const std::string& instance_prompt, const std::string& class_prompt,
+                                    const JobControl& job) const {
+    return tune(parameters, instance, instance_prompt, class_prompt, job, nullptr);
+}
+
+/// What a model is loaded with.
+struct ModelOptions {
+    std::string device = "cpu";
+    /// Merged into the weights, in order; one that was distilled (lora_mark()) only into those that redraw
+    /// views and sample. At strength 0 it is read and checked, and no more.
+    std::vector<LoraSpec> loras = {};
+    /// Folder of the tiny autoencoder; empty = as the model says, or "taesd" beside its weights; "none" =
+    /// none.
+    std::string taesd = {};
+    /// fp32, bf16, or auto: bf16 for the UNet where it was measured to be faster (precision.h).
+    std::string precision = "auto";
+};
+
+/// Everything the program asks of engine/neural.
+class Api {
+public:
+    virtual ~Api() = default;
+    /// Loads a diffusers folder or a single-file checkpoint. Throws Error (Model, NotFound); what is wrong
+    /// with a LoRA is said before any weight is read.
+    virtual std::unique_ptr<TextToImage> load_model(const std::filesystem::path& path,
+                                                    const ModelOptions& options) = 0;
+    /// Cuts masks out of pictures: SAM or MobileSAM, from a file or a folder. May be used from several
+    /// threads. Throws Error (NotFound, Malformed, Unsupported, Model).
+    virtual std::unique_ptr<edit::Segmenter> load_segmenter(const std::filesystem::path& path,
+                                                            const std::string& device) = 0;
+    /// Finds nouns in pictures: CLIPSeg, from a folder. The same of threads and errors.
+    virtual std::unique_ptr<edit::TextSegmenter> load_text_segmenter(const std::filesystem::path& folder,
+                                                                     const std::string& device) = 0;
+    virtual void train_starter(const StarterTrainParameters& parameters, const StarterSource& source,
+                               const std::filesystem::path& work, const std::filesystem::path& output,
+                               const JobControl& job) = 0;
+    /// Threads inside one network operation; 0 = one per core.
+    virtual void set_threads(int count) = 0;
+    /// What the calling thread has asked of the networks since it began.
+    virtual NetworkUse use() const = 0;
+};
+
+}  // namespace gse::neural
+
+/// The plug-in's one symbol; the object lives as long as the process.
+extern "C" gse::neural::Api* gse_neural_api();

@@ -1,0 +1,25 @@
+// A loaded text-to-image model behind the torch-free interface of api.h.
+#pragma once
+
+#include "engine/neural/api/api.h"
+
+namespace gse::neural {
+
+/// Loads a diffusers folder or a single-file checkpoint (.safetensors) to a device ("cpu", "cuda", "cuda:1").
+/// Throws Error (Model, NotFound, Malformed) with one sentence that names the file and, if it is a tensor,
+/// its name.
+std::unique_ptr<TextToImage> load_model(const std::filesystem::path& path, const ModelOptions& options);
+inline std::unique_ptr<TextToImage> load_model(const std::filesystem::path& path, const char* device) {
+    return load_model(path, ModelOptions{device});
+}
+
+/// Threads inside one network operation; 0 = one per hardware thread. More threads than free cores make small
+/// networks slower, not faster.
+void set_threads(int count);
+
+/// Threads of OpenBLAS, which has its own beside torch's; nothing happens with another library.
+void set_blas_threads(int count);
+/// One, unless a model that was loaded has set them: for work that callers share out themselves.
+void prefer_one_blas_thread();
+
+}  // namespace gse::neural

@@ -1,0 +1,67 @@
+// Text to image, image to image and score distillation on a loaded model; tensors in, tensors out.
+#pragma once
+
+#include <functional>
+
+#include "engine/base/progress.h"
+#include "engine/base/random.h"
+#include "engine/neural/diffusion/conditioning.h"
+#include "engine/neural/weights/model_bundle.h"
+
+namespace gse::neural {
+
+/// One denoising run; the rows of a UNet call are as Conditioning says.
+struct DenoiseJob {
+    Sampler* sampler = nullptr;
+    std::int64_t first = 0;             // first step done
+    double guidance_scale = 7.5;        // 1 = only the positive prompt is run
+    torch::Tensor context;              // [2,T,D] negative, positive
+    torch::Tensor picture;              // [1,C,h,w] of a model that takes one; see picture_latents()
+    double image_guidance_scale = 1.5;  // of such a model
+    std::uint64_t seed = 0;             // of samplers that need fresh noise, unless `noise` gives it
+    std::function<torch::Tensor(std::int64_t step)> noise;
+    AttentionCapture* capture = nullptr;
+    std::function<void(std::int64_t step, const torch::Tensor& latents)> after_step;
+    const JobControl* control = nullptr;  // Cancelled is thrown on a stop request
+};
+
+/// Standard normal tensor on the CPU, the same on every machine.
+torch::Tensor seeded_noise(torch::IntArrayRef shape, std::uint64_t seed);
+
+/// Walks `latents` [1,C,h,w] to the clean sample, without a graph.
+torch::Tensor denoise(const ModelBundle& bundle, torch::Tensor latents, const DenoiseJob& job);
+
+/// How a kind of model walks from noise to a picture.
+SamplerKind sampler_of(BundleKind kind);
+
+/// Which autoencoder: the VAE, or the tiny one where the model has it.
+enum class Codec { Full, Quick };
+
+/// Images are [B,3,H,W] in [0,1]; latents are scaled (what the UNet sees). Encoding takes the posterior's
+/// mean.
+torch::Tensor image_to_latents(const ModelBundle& bundle, const torch::Tensor& image,
+                               Codec codec = Codec::Full);
+torch::Tensor latents_to_image(const ModelBundle& bundle, const torch::Tensor& latents,
+                               Codec codec = Codec::Full);
+/// What a model that takes a picture is told of it: the same mean, not scaled; undefined for other models.
+torch::Tensor picture_latents(const ModelBundle& bundle, const torch::Tensor& image);
+
+/// Score distillation on scaled latents.
+struct SdsStep {
+    torch::Tensor noise;  // [1,C,h,w]
+    std::int64_t timestep = 0;
+    double guidance_scale = 7.5;
+    torch::Tensor context;              // [2,T,D] negative, positive
+    torch::Tensor picture = {};         // of a model that takes one
+    double image_guidance_scale = 1.5;  // of such a model
+};
+struct SdsResult {
+    torch::Tensor noisy_latents;
+    torch::Tensor epsilon_negative, epsilon_positive;  // of classifier-free guidance only
+    double weight = 0;                                 // 1 - alphas_cumprod[t]
+    torch::Tensor gradient;                            // weight * (guided epsilon - noise), not reduced
+};
+/// Without a graph: the gradient is meant to be injected at `latents`.
+SdsResult sds_gradient(const ModelBundle& bundle, const torch::Tensor& latents, const SdsStep& step);
+
+}  // namespace gse::neural

@@ -1,0 +1,74 @@
+// View guidance by a diffusion model: all views of a round go from a noised render to the prompt in a few
+// DDIM steps, with noise that lies on the scene's surface (views.md 8 and 9.1; DDIM: Song et al. 2021, eq.
+// 12).
+#pragma once
+
+#include <map>
+#include <memory>
+
+#include "engine/edit/interfaces/interfaces.h"
+#include "engine/neural/api/sds_parameters.h"
+#include "engine/neural/diffusion/latent_cache.h"
+#include "engine/neural/diffusion/pipelines.h"
+#include "engine/neural/layers/buffer_cache.h"
+
+namespace gse::neural {
+
+/// Timesteps of an img2img run of `steps` steps from `strength` of a schedule of `total` steps: strength (S -
+/// i) / S, i = 0..S-1, rounded to the schedule, descending, none twice.
+std::vector<std::int64_t> redraw_timesteps(double strength, int steps, std::int64_t total);
+
+/// The same for a kind of model (views.md 4 and 10), of which a distilled one knows some levels only: of an
+/// LCM or TCD those of its table up to the strength; of a Turbo model trailing ones, at least the quarters it
+/// was trained on. Never none; at most `steps`.
+std::vector<std::int64_t> redraw_levels(BundleKind kind, const NoiseSchedule& schedule, double strength,
+                                        int steps);
+
+class DiffusionViews final : public edit::MultiViewEditor {
+public:
+    /// `shapes`: the same model with what it learned for drawing new things; null = it has learned nothing of
+    /// that kind. `supports_appearance_editing`: that draws known things in another look, too.
+    DiffusionViews(std::shared_ptr<const ModelBundle> bundle, std::string prompt, SdsParameters parameters,
+                   std::shared_ptr<const ModelBundle> shapes = nullptr,
+                   bool supports_appearance_editing = false);
+    edit::EditedViews edit(const std::vector<edit::EditView>& views, const edit::EditViewsRequest& input,
+                           const JobControl& job) override;
+    bool supports_appearance_editing() const override { return restyles_; }
+
+private:
+    struct Batch;
+    /// Whether what draws new things draws this round.
+    bool shown_scene(const edit::EditViewsRequest& input) const {
+        return shapes_ != nullptr && (input.anew || restyles_);
+    }
+    edit::EditedViews redraw(const std::vector<edit::EditView>& views, const edit::EditViewsRequest& input,
+                             const JobControl& job);
+    Batch prepare(const std::vector<edit::EditView>& views, const edit::EditViewsRequest& input);
+    void denoise(Batch& batch, const std::vector<edit::EditView>& views, const edit::EditViewsRequest& input,
+                 const JobControl& job) const;
+    edit::EditedViews finish(const Batch& batch, const std::vector<edit::EditView>& views,
+                             const edit::EditViewsRequest& input) const;
+    torch::Tensor contexts(const std::vector<edit::EditView>& views, const std::string& prompt, bool exact);
+    /// Noise [K,C,h,w] on the scene's surface.
+    torch::Tensor noise(const std::vector<edit::EditView>& views, std::uint64_t seed) const;
+    /// Guided output of the UNet for latents [K,C,h,w], in pieces that fit into memory.
+    torch::Tensor output(const UNet& unet, const torch::Tensor& x, std::int64_t timestep,
+                         const Conditioning& conditioning) const;
+    /// The same of what draws new things: in each of `groups` the views see each other. `outline`, where not
+    /// null, gets what it tells of them.
+    torch::Tensor output_together(const torch::Tensor& x, std::int64_t timestep,
+                                  const Conditioning& conditioning,
+                                  const std::vector<std::vector<std::int64_t>>& groups,
+                                  torch::Tensor* outline) const;
+
+    BufferHolder buffers_;  // goes last
+    std::shared_ptr<const ModelBundle> bundle_, shapes_;
+    std::string prompt_;
+    SdsParameters parameters_;
+    const bool restyles_;
+    const bool apart_;  // views are shared out among threads, not operations
+    std::map<std::pair<bool, std::string>, torch::Tensor> encoded_;  // [1,T,D], one per sentence and network
+    LatentCache originals_;  // of the unedited views: the same in every round
+};
+
+}  // namespace gse::neural

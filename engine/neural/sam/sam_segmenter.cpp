@@ -1,0 +1,89 @@
+// Clicks to prompts, and embeddings that are remembered.
+#include "engine/neural/sam/sam_segmenter.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/base/check.h"
+#include "engine/neural/diffusion/picture_cache.h"
+#include "engine/neural/layers/images.h"
+#include "engine/neural/layers/torch_errors.h"
+#include "engine/neural/sam/sam_model.h"
+#include "engine/neural/weights/model_bundle.h"
+
+namespace gse::neural {
+namespace {
+
+constexpr std::size_t MostPictures = 64;  // 4 MB each with SAM's weights
+
+class SamSegmenter final : public edit::Segmenter {
+public:
+    SamSegmenter(SamModel model, const torch::Device& device)
+        : model_(std::move(model)), device_(device), pictures_(MostPictures) {}
+
+    Mask segment(const Image& image, const std::vector<edit::PointPrompt>& points,
+                 const std::optional<edit::BoxPrompt>& box, const Image&) override {
+        GSE_CHECK_EQ(image.channels, 3);
+        Mask mask(image.width, image.height);
+        if (points.empty() && !box) return mask;
+        return guard_torch("cutting out a mask", [&] {
+            const torch::NoGradGuard no_grad;
+            const auto found =
+                model_->masks(embedding(image), model_->encode(prompts(image, points, box)), false);
+            const auto inside = (model_->enlarge(found.logits, image.height, image.width) > 0)
+                                    .to(torch::kUInt8)
+                                    .cpu()
+                                    .contiguous();
+            std::copy_n(inside.data_ptr<std::uint8_t>(), mask.data.size(), mask.data.begin());
+            return std::move(mask);
+        });
+    }
+    bool trusted() const override { return true; }
+    std::string name() const override { return model_->shape().name; }
+
+private:
+    /// A click at x (pixel centres at .5) is at x s in the encoder's picture, and its prompts have their
+    /// centres at 0.
+    SamPrompts prompts(const Image& image, const std::vector<edit::PointPrompt>& points,
+                       const std::optional<edit::BoxPrompt>& box) const {
+        const double scale = model_->scale(image.height, image.width);
+        SamPrompts prompts;
+        if (points.empty()) {
+            prompts.boxes = torch::tensor({box->x0, box->y0, box->x1, box->y1}, torch::kFloat32)
+                                .mul_(scale)
+                                .sub_(0.5)
+                                .view({1, 4})
+                                .to(device_);
+            return prompts;
+        }
+        std::vector<float> places;
+        std::vector<std::int64_t> labels;
+        for (const auto& point : points) {
+            places.push_back(static_cast<float>(point.x * scale - 0.5));
+            places.push_back(static_cast<float>(point.y * scale - 0.5));
+            labels.push_back(point.positive ? 1 : 0);
+        }
+        prompts.points = torch::tensor(places).view({1, -1, 2}).to(device_);
+        prompts.labels = torch::tensor(labels, torch::kInt64).view({1, -1}).to(device_);
+        return prompts;
+    }
+
+    torch::Tensor embedding(const Image& image) {
+        return pictures_.get(image, [&] { return model_->embed(model_->pixels(to_tensor(image, device_))); });
+    }
+
+    SamModel model_;
+    torch::Device device_;
+    PictureCache<torch::Tensor> pictures_;
+};
+
+}  // namespace
+
+std::unique_ptr<edit::Segmenter> load_sam_segmenter(const std::filesystem::path& path,
+                                                    const std::string& device) {
+    const auto where = parse_device(device);
+    return guard_torch("loading the segmenter",
+                       [&] { return std::make_unique<SamSegmenter>(load_sam(path, where), where); });
+}
+
+}  // namespace gse::neural

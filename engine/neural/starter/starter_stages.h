@@ -1,0 +1,124 @@
+// The stages of the starter model: the VAE, text encoder and UNet on its latents, the image-text encoder.
+#pragma once
+
+#include "engine/neural/clip/clip_model.h"
+#include "engine/neural/diffusion/text_encoder.h"
+#include "engine/neural/diffusion/unet.h"
+#include "engine/neural/diffusion/vae.h"
+#include "engine/neural/starter/starter_training.h"
+
+namespace gse::neural {
+
+/// Structure of the starter model.
+struct StarterConfigs {
+    VaeConfig vae;
+    TextEncoderConfig text;
+    UNetConfig unet;
+    ClipConfig clip;
+};
+inline constexpr int StarterTokenCount = 32;  // model_max_length of the tokenizer
+StarterConfigs starter_configs(const StarterTrainParameters& parameters, const StarterVocabulary& vocabulary);
+
+/// Trains the VAE and leaves the averaged weights in it.
+void train_vae(AutoencoderKl& vae, const StarterTrainParameters& parameters, const StarterPictures& pictures,
+               const std::filesystem::path& work, const JobControl& job);
+
+/// Posterior means of all pictures, [N,4,G,G] float, before scaling; also their standard deviation.
+struct StarterLatents {
+    torch::Tensor mean;
+    double deviation = 1;
+};
+StarterLatents encode_pictures(AutoencoderKl& vae, const StarterTrainParameters& parameters,
+                               const StarterPictures& pictures);
+
+struct StarterNetworks {
+    ClipTextEncoder text{nullptr};
+    UNet unet{nullptr};
+};
+
+/// The networks a run begins with.
+struct StarterParts {
+    AutoencoderKl vae{nullptr};
+    StarterNetworks networks;
+    double scaling_factor = 0;  // of the VAE's latents; 0 = not known before they are seen
+};
+StarterParts fresh_parts(const StarterConfigs& configs, std::uint64_t seed);
+/// The weights of a starter folder; words that are new to it begin untrained. Throws Error when its structure
+/// is another or it has words that `vocabulary` has not.
+StarterParts initial_parts(const std::filesystem::path& folder, const StarterConfigs& configs,
+                           const StarterVocabulary& vocabulary);
+
+/// The folder's network for new things, or its UNet with its LoRA for them and the inputs that go with it,
+/// where it has them; else with inputs that say nothing.
+UNet initial_shapes(const std::filesystem::path& folder, UNet unet);
+
+/// Ids of the tokens of `vocabulary` that are new to the folder's model. Throws Error as initial_parts()
+/// does.
+std::vector<std::int64_t> fresh_tokens(const std::filesystem::path& folder,
+                                       const StarterVocabulary& vocabulary);
+
+/// The image-text encoder of a starter folder, or fresh weights where it has none. Throws Error as
+/// initial_parts() does.
+ClipModel initial_clip(const std::filesystem::path& folder, const ClipConfig& config,
+                       const StarterVocabulary& vocabulary);
+
+/// Replaces the text encoder and UNet by their mean with another's: the ends of two runs with falling
+/// learning rates lie on the rim of one basin, their mean within (stochastic weight averaging, Izmailov et
+/// al. 2018). Throws Error when the other's VAE is not the same: its UNet would speak of other latents.
+void average_networks(StarterParts& parts, StarterParts& other, const std::filesystem::path& folder);
+
+/// What the UNet stage works on. `preview`, if set, receives the averaged networks at every checkpoint.
+struct UNetTraining {
+    const StarterConfigs& configs;
+    const StarterTrainParameters& parameters;
+    const StarterPictures& pictures;
+    const StarterLatents& latents;
+    const StarterSource& source;
+    const StarterVocabulary& vocabulary;
+    std::function<void(StarterNetworks& networks)> preview;
+    StarterPictures before = {};  // those of source.before(), where there are any
+    StarterLatents before_latents = {};
+};
+
+/// Trains text encoder and UNet (v-prediction) with the attention losses and leaves the averaged weights in
+/// them.
+void train_unet(StarterNetworks& networks, const UNetTraining& training, const std::filesystem::path& work,
+                const JobControl& job);
+
+/// Trains the UNet's weights (not its biases and norms) and the embeddings of the tokens `fresh` for pictures
+/// that are asked for from an exact side, and leaves the averaged ones in `networks`. The text encoder's
+/// other weights stay as they are.
+void train_shapes(StarterNetworks& networks, const UNetTraining& training,
+                  const std::vector<std::int64_t>& fresh, const std::filesystem::path& work,
+                  const JobControl& job);
+
+/// What the contrastive stage works on; `pictures` are those of `twins`.
+struct ClipTraining {
+    const StarterTrainParameters& parameters;
+    const StarterPictures& pictures;
+    const StarterTwins& twins;
+    const StarterVocabulary& vocabulary;
+};
+
+/// Trains the image-text encoder and leaves the averaged weights in it.
+void train_clip(ClipModel& clip, const ClipTraining& training, const std::filesystem::path& work,
+                const JobControl& job);
+/// Writes config.json and model.safetensors (fp16) as transformers does; the tokenizer is the bundle's.
+void export_clip(const ClipModel& clip, const std::filesystem::path& folder);
+
+/// What a starter's gseditpro.json names and its folder holds where there is one: a LoRA for drawing new
+/// things.
+inline constexpr const char* ShapeLoraFile = "shapes.safetensors";
+/// The embedding of cameras beside it, and how many views are denoised together.
+inline constexpr const char* ShapeCamerasFile = "shape_cameras.safetensors";
+inline constexpr std::int64_t ShapeViews = 4;
+
+/// Where a starter that draws new things with a network of its own keeps it.
+inline constexpr const char* ShapeUnetFolder = "shapes";
+
+/// Writes the diffusers folder in fp16; with `parameters.shapes`, `networks.unet` as the difference to the
+/// initial model's, or in eight bits where that has a network of its own for new things.
+void export_starter(const UNetTraining& training, AutoencoderKl& vae, StarterNetworks& networks,
+                    const std::filesystem::path& output);
+
+}  // namespace gse::neural

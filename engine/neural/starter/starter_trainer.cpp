@@ -1,0 +1,162 @@
+// Runs the stages of the starter model in order.
+#include "engine/neural/starter/starter_trainer.h"
+
+#include <thread>
+
+#include "engine/base/error.h"
+#include "engine/base/file.h"
+#include "engine/base/log.h"
+#include "engine/neural/diffusion/scene_views.h"
+#include "engine/neural/starter/starter_stages.h"
+
+namespace gse::neural {
+
+namespace {
+
+constexpr int ClipProjection = 96;  // numbers per picture or sentence
+constexpr int ClipPatches = 8;      // patches along a side
+
+}  // namespace
+
+StarterConfigs starter_configs(const StarterTrainParameters& parameters,
+                               const StarterVocabulary& vocabulary) {
+    StarterConfigs configs;
+    const int c = parameters.vae_channels;
+    configs.vae.block_out_channels = {c, 3 * c, 6 * c};
+    configs.vae.layers_per_block = 1;
+    configs.vae.latent_channels = 4;
+    configs.vae.norm_num_groups = 8;
+    configs.vae.sample_size = parameters.image_size;
+
+    configs.text.vocab_size = vocabulary.size;
+    configs.text.hidden_size = parameters.text_width;
+    configs.text.intermediate_size = 4 * parameters.text_width;
+    configs.text.num_hidden_layers = 3;
+    configs.text.num_attention_heads = 4;
+    configs.text.max_position_embeddings = StarterTokenCount;
+    configs.text.hidden_act = "quick_gelu";
+    configs.text.bos_token_id = vocabulary.bos;
+    configs.text.eos_token_id = vocabulary.eos;
+
+    const int u = parameters.unet_channels;
+    configs.unet.sample_size = parameters.image_size / 4;
+    configs.unet.in_channels = configs.unet.out_channels = 4;
+    configs.unet.block_out_channels = {u, u * 8 / 5, u * 2};
+    configs.unet.layers_per_block = 1;
+    configs.unet.down_block_types = {"CrossAttnDownBlock2D", "CrossAttnDownBlock2D", "DownBlock2D"};
+    configs.unet.up_block_types = {"UpBlock2D", "CrossAttnUpBlock2D", "CrossAttnUpBlock2D"};
+    configs.unet.heads = {u / 40, u / 20, u / 16};
+    configs.unet.cross_attention_dim = parameters.text_width;
+    configs.unet.norm_num_groups = 16;
+
+    configs.clip.text = configs.text;
+    configs.clip.text.num_hidden_layers = 2;
+    configs.clip.text.with_projection = true;
+    configs.clip.projection_dim = configs.clip.text.projection_dim = ClipProjection;
+    auto& vision = configs.clip.vision;
+    vision.image_size = parameters.image_size;
+    vision.patch_size = parameters.image_size / ClipPatches;
+    vision.hidden_size = parameters.clip_width;
+    vision.intermediate_size = 4 * parameters.clip_width;
+    vision.num_hidden_layers = 4;
+    vision.num_attention_heads = 4;
+    return configs;
+}
+
+namespace {
+
+bool trains(int steps, double minutes) { return steps > 0 || minutes > 0; }
+
+StarterTrainParameters checked(StarterTrainParameters parameters, const StarterSource& source) {
+    if (parameters.initial.empty() && parameters.shapes)
+        throw Error(ErrorCode::InvalidArgument, "a LoRA for shapes needs a model beside which it works",
+                    "name it with --initial");
+    if (parameters.threads == 0)
+        parameters.threads = parameters.device == "cpu"
+                                 ? static_cast<int>(std::max(1u, std::thread::hardware_concurrency()))
+                                 : 1;
+    if (parameters.shapes) {  // the model beside the LoRA stays as it is
+        parameters.vae_minutes = parameters.clip_minutes = 0;
+        parameters.vae_steps = parameters.clip_steps = 0;
+    }
+    const bool all = trains(parameters.vae_steps, parameters.vae_minutes) &&
+                     trains(parameters.unet_steps, parameters.unet_minutes);
+    if (trains(parameters.clip_steps, parameters.clip_minutes) && source.twins() == nullptr)
+        throw Error(ErrorCode::InvalidArgument,
+                    "the picture source has no twins to train the image-text encoder on",
+                    "give it neither minutes nor steps");
+    if (parameters.initial.empty() && !all)
+        throw Error(ErrorCode::InvalidArgument, "a part of the model would stay untrained",
+                    "give every stage minutes or steps, or name the model to keep it from with --initial");
+    if (parameters.initial.empty() && !parameters.average.empty())
+        throw Error(ErrorCode::InvalidArgument, "there is nothing to average with",
+                    "name the other model with --initial");
+    return parameters;
+}
+
+/// Trains the image-text encoder into `folder`, or takes over what the initial model has.
+void add_clip(const StarterTrainParameters& parameters, const StarterSource& source,
+              const std::filesystem::path& work, const std::filesystem::path& folder, const JobControl& job) {
+    const bool trained = trains(parameters.clip_steps, parameters.clip_minutes);
+    const auto kept = std::filesystem::path(parameters.initial) / "clip/model.safetensors";
+    if (!trained && (parameters.initial.empty() || !std::filesystem::exists(kept))) return;
+    const auto vocabulary = build_vocabulary(source.vocabulary());
+    torch::manual_seed(parameters.seed + 2);
+    ClipModel clip =
+        initial_clip(parameters.initial, starter_configs(parameters, vocabulary).clip, vocabulary);
+    if (trained) {
+        auto twin_parameters = parameters;
+        twin_parameters.pictures = parameters.clip_pictures;
+        const auto pictures = load_or_render_pictures(twin_parameters, *source.twins(), work, job);
+        train_clip(clip, {parameters, pictures, *source.twins(), vocabulary}, work, job);
+    }
+    export_clip(clip, folder);
+}
+
+}  // namespace
+
+void train_starter(const StarterTrainParameters& requested, const StarterSource& source,
+                   const std::filesystem::path& work, const std::filesystem::path& output,
+                   const JobControl& job) {
+    const StarterTrainParameters parameters = checked(requested, source);
+    const bool new_vae = trains(parameters.vae_steps, parameters.vae_minutes);
+    const bool new_unet = trains(parameters.unet_steps, parameters.unet_minutes);
+    const auto vocabulary = build_vocabulary(source.vocabulary());
+    auto configs = starter_configs(parameters, vocabulary);
+    auto parts = parameters.initial.empty() ? fresh_parts(configs, parameters.seed)
+                                            : initial_parts(parameters.initial, configs, vocabulary);
+    if (!parameters.average.empty()) {
+        auto other = initial_parts(parameters.average, configs, vocabulary);
+        average_networks(parts, other, parameters.average);
+    }
+    if (parameters.shapes) parts.networks.unet = initial_shapes(parameters.initial, parts.networks.unet);
+    std::filesystem::create_directories(work);
+    StarterPictures pictures;
+    if (new_vae || new_unet) pictures = load_or_render_pictures(parameters, source, work, job);
+
+    if (new_vae) train_vae(parts.vae, parameters, pictures, work, job);
+    StarterLatents latents;
+    if (new_vae || new_unet) latents = encode_pictures(parts.vae, parameters, pictures);
+    if (!new_vae) latents.deviation = 1.0 / parts.scaling_factor;  // what the UNet was trained with
+    log::info("latents have a standard deviation of {:.3f}", latents.deviation);
+
+    configs.vae.scaling_factor = new_vae ? 1.0 / latents.deviation : parts.scaling_factor;
+    UNetTraining training{configs, parameters, pictures, latents, source, vocabulary, {}, {}, {}};
+    if (new_unet && parameters.shapes && source.before() != nullptr) {
+        training.before = load_or_render_pictures(parameters, *source.before(), work, job);
+        training.before_latents = encode_pictures(parts.vae, parameters, training.before);
+    }
+    // The unfinished model can be tried while the training goes on.
+    training.preview = [&](StarterNetworks& averaged) {
+        export_starter(training, parts.vae, averaged, work / "preview");
+    };
+    if (new_unet && parameters.shapes)
+        train_shapes(parts.networks, training, fresh_tokens(parameters.initial, vocabulary), work, job);
+    else if (new_unet) train_unet(parts.networks, training, work, job);
+    export_starter(training, parts.vae, parts.networks, output);
+    pictures = {};
+    add_clip(parameters, source, work, output / "clip", job);
+    log::info("the model is in {}", output.string());
+}
+
+}  // namespace gse::neural

@@ -1,0 +1,244 @@
+// Low-rank changes: making, checking, merging and writing them.
+#include "engine/neural/weights/lora.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+#include <string_view>
+
+#include "engine/base/error.h"
+#include "engine/base/random.h"
+#include "engine/neural/layers/parallel_for_batches.h"
+#include "engine/neural/weights/safetensors.h"
+
+namespace gse::neural {
+namespace {
+
+constexpr std::string_view LoraUNetPrefix = "lora_unet_", LoraTextPrefix = "lora_te_";
+constexpr std::string_view LoraDown = ".lora_down.weight", LoraUp = ".lora_up.weight", LoraAlpha = ".alpha";
+constexpr std::array<std::string_view, 8> TargetEndings{".to_q",   ".to_k",   ".to_v",   ".to_out.0",
+                                                        ".q_proj", ".k_proj", ".v_proj", ".out_proj"};
+
+std::string flat_name(std::string name) {
+    std::replace(name.begin(), name.end(), '.', '_');
+    return name;
+}
+
+torch::Tensor uniform(torch::IntArrayRef shape, double bound, Random& random) {
+    auto tensor = torch::empty(shape, torch::kFloat32);
+    float* values = tensor.data_ptr<float>();
+    for (std::int64_t i = 0; i < tensor.numel(); ++i)
+        values[i] = static_cast<float>(random.uniform(-bound, bound));
+    return tensor;
+}
+
+using Shape = std::vector<std::int64_t>;
+
+/// A matrix and a 1x1 convolution hold the same numbers.
+Shape matrix_shape(const torch::Tensor& tensor) {
+    Shape shape(tensor.sizes().begin(), tensor.sizes().end());
+    if (shape.size() == 4 && shape[2] == 1 && shape[3] == 1) shape.resize(2);
+    return shape;
+}
+
+bool fits(const LoraFactor& factor, const torch::Tensor& weight) {
+    const auto rank = factor.rank();
+    const Shape whole = matrix_shape(weight);
+    Shape down = whole;
+    down[0] = rank;
+    if (factor.mid.defined()) {
+        Shape mid = whole;
+        if (mid.size() == 4) mid[0] = mid[1] = rank;
+        if (mid.size() != 4 || matrix_shape(factor.mid) != mid) return false;
+        down.resize(2);
+    }
+    return matrix_shape(factor.down) == down && matrix_shape(factor.up) == Shape{whole[0], rank};
+}
+
+/// Weights of the network by their layer's flat name; handles to them.
+std::map<std::string, torch::Tensor> weights_by_layer(const torch::nn::Module& network) {
+    std::map<std::string, torch::Tensor> weights;
+    for (const auto& item : network.named_parameters()) {
+        constexpr std::string_view ending = ".weight";
+        const auto& name = item.key();
+        if (name.ends_with(ending) && item.value().dim() >= 2)
+            weights.emplace(flat_name(name.substr(0, name.size() - ending.size())), item.value());
+    }
+    return weights;
+}
+
+/// The weight with its change, some rows after the other, so that what is in between stays near the
+/// processor: as whole matrices it goes to memory and back five times.
+torch::Tensor changed_in_parts(const torch::Tensor& weight, const LoraFactor& factor, double strength) {
+    constexpr std::int64_t numbers_at_once = 1 << 18;
+    const auto up = factor.up.to(torch::kFloat32).flatten(1) * (factor.scale() * strength),
+               down = factor.down.to(torch::kFloat32).flatten(1);
+    const auto before = weight.flatten(1);
+    auto changed = torch::empty_like(weight);
+    auto after = changed.view({before.size(0), before.size(1)});
+    const auto rows = std::max<std::int64_t>(1, numbers_at_once / before.size(1));
+    for (std::int64_t first = 0; first < before.size(0); first += rows) {
+        const auto count = std::min(rows, before.size(0) - first);
+        auto part = before.narrow(0, first, count).to(torch::kFloat32, false, true);
+        after.narrow(0, first, count).copy_(part.addmm_(up.narrow(0, first, count), down));
+    }
+    return changed;
+}
+
+std::string shape_text(const torch::Tensor& tensor) {
+    return fmt::format("[{}]", fmt::join(tensor.sizes(), ","));
+}
+
+}  // namespace
+
+torch::Tensor LoraFactor::change_of(const torch::Tensor& weight) const {
+    const auto left = up.to(torch::kFloat32).flatten(1), right = down.to(torch::kFloat32).flatten(1);
+    if (!mid.defined()) return (left.mm(right) * scale()).view(weight.sizes());
+    // out x rank, rank x rank x kernel, rank x in: one matrix product on either side of the middle.
+    const auto rows =
+        left.mm(mid.to(torch::kFloat32).flatten(1)).view({left.size(0), mid.size(1), -1});  // [out,r,kk]
+    return (rows.transpose(1, 2).matmul(right).transpose(1, 2) * scale())
+        .reshape(weight.sizes());  // [out,in,kk]
+}
+
+std::vector<LoraTarget> lora_targets(const torch::nn::Module& network) {
+    std::vector<LoraTarget> targets;
+    for (const auto& item : network.named_modules()) {
+        const auto linear = std::dynamic_pointer_cast<LinearImpl>(item.value());
+        if (!linear) continue;
+        if (std::any_of(TargetEndings.begin(), TargetEndings.end(),
+                        [&](auto ending) { return item.key().ends_with(ending); }))
+            targets.push_back({flat_name(item.key()), Linear(linear)});
+    }
+    return targets;
+}
+
+std::vector<LoraFactor> new_lora(const std::vector<LoraTarget>& targets, std::int64_t rank,
+                                 std::uint64_t seed) {
+    std::vector<LoraFactor> factors;
+    Random random(seed);
+    for (const auto& target : targets) {
+        const auto& weight = target.linear->weight;
+        const auto in = weight.flatten(1).size(1);
+        // As the reference initialises a linear layer (Kaiming uniform with a = sqrt 5).
+        const double bound = 1.0 / std::sqrt(static_cast<double>(in));
+        LoraFactor factor;
+        factor.layer = target.layer;
+        factor.down = uniform({rank, in}, bound, random).to(weight.device());
+        factor.up = torch::zeros({weight.size(0), rank}, factor.down.options());
+        factor.alpha = static_cast<double>(rank);
+        factors.push_back(std::move(factor));
+    }
+    return factors;
+}
+
+void check_lora(const torch::nn::Module& network, const std::vector<LoraFactor>& factors,
+                const std::filesystem::path& path) {
+    const auto weights = weights_by_layer(network);
+    std::size_t unknown = 0;
+    const LoraFactor* first_unknown = nullptr;
+    for (const auto& factor : factors) {
+        const auto& name = factor.key.empty() ? factor.layer : factor.key;
+        const auto found = weights.find(factor.layer);
+        if (found == weights.end()) {
+            if (unknown++ == 0) first_unknown = &factor;
+        } else if (!fits(factor, found->second)) {
+            throw Error(
+                ErrorCode::Model,
+                fmt::format("the LoRA's change of \"{}\" has another shape: {} and {} do not make {}", name,
+                            shape_text(factor.down), shape_text(factor.up), shape_text(found->second)),
+                "it was made for a model of another size: use it with the model it was made for", path);
+        }
+    }
+    if (first_unknown == nullptr) return;
+    const auto& name = first_unknown->key.empty() ? first_unknown->layer : first_unknown->key;
+    throw Error(
+        ErrorCode::Model,
+        fmt::format("the LoRA changes a layer the model does not have, \"{}\" ({} of {} are not there)", name,
+                    unknown, factors.size()),
+        "it was made for another kind of model: use it with the one it was made for", path);
+}
+
+void merge_lora(torch::nn::Module& network, const std::vector<LoraFactor>& factors, double strength) {
+    const torch::NoGradGuard no_grad;
+    check_lora(network, factors);
+    auto weights = weights_by_layer(network);
+    const auto merge = [&](const LoraFactor& factor) {
+        auto& weight = weights.at(factor.layer);
+        auto here = factor;
+        for (auto* part : {&here.down, &here.up, &here.mid})
+            if (part->defined()) *part = part->to(weight.device());
+        weight.set_data(
+            here.mid.defined()
+                ? (weight.to(torch::kFloat32) + here.change_of(weight) * strength).to(weight.scalar_type())
+                : changed_in_parts(weight, here, strength));
+    };
+    std::set<std::string> layers;
+    for (const auto& factor : factors) layers.insert(factor.layer);
+    const bool apart =
+        layers.size() == factors.size() && (weights.empty() || weights.begin()->second.device().is_cpu());
+    const std::int64_t threads =
+        apart ? part_threads() : 1;  // layers are of all sizes: each takes every n-th
+    for_parts(threads, apart, [&](std::int64_t begin, std::int64_t end) {
+        for (auto first = begin; first < end; ++first)
+            for (auto i = static_cast<std::size_t>(first); i < factors.size();
+                 i += static_cast<std::size_t>(threads))
+                merge(factors[i]);
+    });
+}
+
+std::vector<LoraFactor> lora_between(const torch::nn::Module& before, const torch::nn::Module& after,
+                                     std::int64_t rank) {
+    const torch::NoGradGuard no_grad;
+    const auto from = weights_by_layer(before);
+    std::vector<LoraFactor> factors;
+    for (const auto& [layer, to] : weights_by_layer(after)) {
+        const auto change = (to - from.at(layer)).to(torch::kCPU, torch::kFloat32).contiguous();
+        if (!(change.abs().max().item<float>() > 0)) continue;
+        const auto [u, s, v] = torch::linalg_svd(change.flatten(1), false);
+        const auto kept = std::min(rank, s.size(0));
+        const auto root = s.narrow(0, 0, kept).sqrt();
+        LoraFactor factor;
+        factor.layer = layer;
+        factor.up = (u.narrow(1, 0, kept) * root).contiguous();
+        factor.down = (root.unsqueeze(1) * v.narrow(0, 0, kept)).contiguous();
+        if (change.dim() == 4) {
+            factor.down = factor.down.view({kept, change.size(1), change.size(2), change.size(3)});
+            factor.up = factor.up.view({change.size(0), kept, 1, 1});
+        }
+        factor.alpha = static_cast<double>(kept);
+        factors.push_back(std::move(factor));
+    }
+    return factors;
+}
+
+void write_lora(const std::filesystem::path& path, const LoraWeights& weights, torch::ScalarType type) {
+    NamedTensors tensors;
+    const auto add = [&](std::string_view prefix, const std::vector<LoraFactor>& factors) {
+        for (const auto& factor : factors) {
+            const auto stem = std::string(prefix) + factor.layer;
+            const auto plain = [type](const torch::Tensor& t) {
+                return t.detach().to(torch::kCPU, type).contiguous();
+            };
+            tensors.emplace_back(stem + std::string(LoraAlpha),
+                                 torch::tensor(static_cast<float>(factor.alpha)));
+            tensors.emplace_back(stem + std::string(LoraDown), plain(factor.down));
+            tensors.emplace_back(stem + std::string(LoraUp), plain(factor.up));
+        }
+    };
+    add(LoraUNetPrefix, weights.unet);
+    add(LoraTextPrefix, weights.text);
+    std::map<std::string, std::string> metadata{{"ss_network_module", "networks.lora"}};
+    if (!weights.unet.empty()) {
+        metadata["ss_network_dim"] = std::to_string(weights.unet.front().rank());
+        metadata["ss_network_alpha"] = fmt::format("{}", weights.unet.front().alpha);
+    }
+    write_safetensors(path, tensors, metadata);
+}
+
+}  // namespace gse::neural

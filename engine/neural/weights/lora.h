@@ -1,0 +1,74 @@
+// Low-rank changes of weights (LoRA, Hu et al. 2021; LoCon for convolutions) and the files they travel in.
+#pragma once
+
+#include <torch/torch.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "engine/neural/layers/layers.h"
+
+namespace gse::neural {
+
+/// W + alpha / r * up down, for one layer; with a middle, up mid down.
+struct LoraFactor {
+    std::string layer;   // its name with "_" for "."; "down_blocks_0_attentions_0_..._attn1_to_q"
+    torch::Tensor down;  // [r,in], or [r,in,k,k] for a convolution ([r,in,1,1] with a middle)
+    torch::Tensor up;    // [out,r], or [out,r,1,1]
+    double alpha = 1;
+    torch::Tensor mid = {};  // [r,r,k,k] of a convolution in Tucker form (LyCORIS), else undefined
+    std::string key = {};    // the beginning of its tensors' names in the file it was read from
+
+    std::int64_t rank() const { return down.size(0); }
+    double scale() const { return alpha / static_cast<double>(rank()); }
+    /// alpha / r * up (mid) down, shaped like the weight, fp32.
+    torch::Tensor change_of(const torch::Tensor& weight) const;
+};
+
+/// All changes of one model.
+struct LoraWeights {
+    std::vector<LoraFactor> unet, text;
+    std::filesystem::path path = {};  // the file they were read from
+};
+
+/// A layer of a network that a LoRA changes.
+struct LoraTarget {
+    std::string layer;
+    Linear linear{nullptr};
+};
+
+/// The attention projections: to_q, to_k, to_v, to_out.0 of the UNet; q_proj, k_proj, v_proj, out_proj of the
+/// text encoder.
+std::vector<LoraTarget> lora_targets(const torch::nn::Module& network);
+
+/// Factors for these layers: `down` drawn from `seed`, `up` zero, so nothing changes yet; alpha = rank.
+std::vector<LoraFactor> new_lora(const std::vector<LoraTarget>& targets, std::int64_t rank,
+                                 std::uint64_t seed);
+
+/// The change from one network's weights to those of another of the same structure, as far as `rank` holds
+/// it: per weight matrix or convolution the leading part of the singular value decomposition (Eckart and
+/// Young 1936). Layers that are the same are left out.
+std::vector<LoraFactor> lora_between(const torch::nn::Module& before, const torch::nn::Module& after,
+                                     std::int64_t rank);
+
+/// Throws Error (Model) when a layer that is to change is not in the network (which may be on torch::kMeta),
+/// or has another shape; `path` is the file that the changes come from.
+void check_lora(const torch::nn::Module& network, const std::vector<LoraFactor>& factors,
+                const std::filesystem::path& path = {});
+
+/// Adds the changes, `strength` times, to the network's weights (given new memory: no other network sees it),
+/// in fp32 whatever the weights' type. Throws as check_lora() does, before anything is changed.
+void merge_lora(torch::nn::Module& network, const std::vector<LoraFactor>& factors, double strength);
+
+/// lora_unet_<layer>.lora_down.weight, .lora_up.weight, .alpha; lora_te_<layer> for the text encoder.
+void write_lora(const std::filesystem::path& path, const LoraWeights& weights,
+                torch::ScalarType type = torch::kFloat32);
+
+/// Reads kohya's and LyCORIS' names (lora_unet_*, with a middle too), PEFT's (unet.*.lora_A) and those of
+/// diffusers before it (unet.*.processor.to_q_lora.down, unet.*.to_q.lora.down), also mixed. A missing alpha
+/// is the rank. Throws Error (NotFound, Malformed, Unsupported, Model) with one sentence that names the file
+/// and the tensor: other kinds of adapters, incomplete, misshapen or non-finite ones; then nothing is read.
+LoraWeights read_lora(const std::filesystem::path& path);
+
+}  // namespace gse::neural

@@ -1,0 +1,65 @@
+// Safetensors files: reading tensor by tensor with every malformed file refused, and atomic writing.
+#pragma once
+
+#include <torch/torch.h>
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/base/file.h"
+#include "engine/neural/weights/tensor_file.h"
+
+namespace gse::neural {
+
+/// One open file.
+class SafetensorsFile final : public TensorFile {
+public:
+    struct Entry {
+        torch::Dtype dtype = torch::kFloat32;
+        std::vector<std::int64_t> shape;
+        std::size_t begin = 0, end = 0;  // bytes in the data part
+    };
+
+    /// Throws Error (NotFound, Unreadable, Malformed).
+    explicit SafetensorsFile(const std::filesystem::path& path);
+
+    const std::filesystem::path& path() const override { return path_; }
+    KeyShapes shapes() const override;
+    const std::map<std::string, Entry>& entries() const { return entries_; }
+    const std::map<std::string, std::string>& metadata() const { return metadata_; }
+    bool contains(const std::string& name) const { return entries_.contains(name); }
+    /// Bytes of all tensors as they are stored.
+    std::uint64_t data_bytes() const { return file_.size() - data_begin_; }
+
+    torch::Tensor tensor(const std::string& name) const override;
+    /// One of quantized() as the numbers that it stands for. Throws Error as the others, and (Malformed) when
+    /// its scales do not fit.
+    void copy_to(const std::string& name, torch::Tensor target) const override;
+
+private:
+    torch::Tensor read(const Entry& entry) const;
+
+    std::filesystem::path path_;
+    InputFile file_;
+    std::size_t data_begin_ = 0;
+    std::map<std::string, Entry> entries_;
+    std::map<std::string, std::string> metadata_;
+};
+
+using NamedTensors = std::vector<std::pair<std::string, torch::Tensor>>;
+
+/// What follows the name of a quantized tensor in that of its scales.
+inline constexpr const char* QuantizationScale = "_scale";
+/// Matrices and kernels in eight bits: whole numbers of -127 to 127 and, behind each tensor, one factor per
+/// row (its first dimension), by which they are multiplied; each number is off by half a factor at most.
+/// Everything else in fp16.
+NamedTensors quantized(const NamedTensors& tensors);
+
+/// Writes the tensors in the given order, atomically. Throws Error (Unwritable).
+void write_safetensors(const std::filesystem::path& path, const NamedTensors& tensors,
+                       const std::map<std::string, std::string>& metadata = {});
+
+}  // namespace gse::neural

@@ -1,0 +1,151 @@
+// Digests of files, and the text made of them.
+#include "engine/pipeline/models/model_identity.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <vector>
+
+#include "engine/base/digest.h"
+#include "engine/base/error.h"
+#include "engine/base/file.h"
+#include "engine/neural/api/lora_spec.h"
+#include "engine/pipeline/models/model_words.h"
+#include "engine/pipeline/models/neural_loader.h"
+#include "engine/pipeline/models/recipe_model.h"
+
+namespace gse::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t PieceBytes = std::size_t{1} << 20;
+constexpr std::array<std::string_view, 4> ModelEndings{".safetensors", ".json", ".txt",
+                                                       ".bin"};  // nothing else of a model is read
+
+std::string digest_of(const fs::path& path) {
+    const InputFile file(path);
+    std::vector<std::byte> piece(PieceBytes);
+    Digest digest;
+    for (std::uint64_t at = 0; at < file.size(); at += PieceBytes) {
+        const auto bytes = static_cast<std::size_t>(std::min<std::uint64_t>(PieceBytes, file.size() - at));
+        file.read(at, std::span(piece).first(bytes));
+        digest.bytes(piece.data(), bytes);
+    }
+    return digest.hex();
+}
+
+/// The digest, from memory where size, times and place say that the file is the one it was taken of.
+std::string contents_of(const fs::path& path, AnswerCache& memory) {
+    struct stat status {};
+    if (stat(path.c_str(), &status) != 0) return digest_of(path);  // which says what is wrong
+    const auto seconds = [](const timespec& time) {
+        return fmt::format("{}.{:09}", time.tv_sec, time.tv_nsec);
+    };
+    const auto question = fmt::format("contents of {}: device {}, file {}, {} bytes, changed {} and {}",
+                                      fs::absolute(path).string(), status.st_dev, status.st_ino,
+                                      status.st_size, seconds(status.st_mtim), seconds(status.st_ctim));
+    if (auto known = memory.find(question)) return *known;
+    auto digest = digest_of(path);
+    memory.keep(question, digest);
+    return digest;
+}
+
+bool belongs_to_model(const fs::path& path) {
+    return std::find(ModelEndings.begin(), ModelEndings.end(), path.extension().string()) !=
+           ModelEndings.end();
+}
+
+/// One line per file below a folder: its name there and its contents.
+std::string contents_below(const fs::path& folder, AnswerCache& memory) {
+    std::vector<std::string> lines;
+    std::error_code failure;
+    for (fs::recursive_directory_iterator
+             at(folder, fs::directory_options::follow_directory_symlink, failure),
+         end;
+         !failure && at != end; at.increment(failure))
+        if (at->is_regular_file(failure) && belongs_to_model(at->path()))
+            lines.push_back(at->path().lexically_relative(folder).generic_string() + " " +
+                            contents_of(at->path(), memory));
+    if (failure)
+        throw Error(ErrorCode::Unreadable, "the folder cannot be read (" + failure.message() + ")", "",
+                    folder);
+    std::sort(lines.begin(), lines.end());
+    return fmt::format("{}\n", fmt::join(lines, "\n"));
+}
+
+/// A checkpoint has its configurations, and the tiny autoencoder, beside it.
+std::string contents_beside(const fs::path& checkpoint, AnswerCache& memory) {
+    std::string text = "weights " + contents_of(checkpoint, memory) + "\n";
+    std::vector<std::string> lines;
+    const auto folder = fs::absolute(checkpoint).parent_path();
+    for (const auto& entry : fs::directory_iterator(folder))
+        if (entry.is_regular_file() && entry.path().extension() == ".json")
+            lines.push_back(entry.path().filename().string() + " " + contents_of(entry.path(), memory));
+    std::sort(lines.begin(), lines.end());
+    text += fmt::format("{}\n", fmt::join(lines, "\n"));
+    if (fs::is_directory(folder / "taesd")) text += contents_below(folder / "taesd", memory);
+    return text;
+}
+
+/// The folder of a tiny autoencoder that the job or the model names outside of the model; empty = none.
+fs::path named_taesd(const JobParameters& job, const fs::path& folder) {
+    if (!job.taesd.empty()) return job.taesd == "none" ? fs::path() : fs::path(job.taesd);
+    const auto facts = model_json(folder / "gseditpro.json");
+    if (!facts.is_object() || !facts.contains("taesd") || !facts["taesd"].is_string()) return {};
+    const auto name = facts["taesd"].get<std::string>();
+    return name.empty() || name == "none" ? fs::path() : folder / name;
+}
+
+/// Libraries choose other kernels on another processor, which round differently.
+std::string processor() {
+    std::ifstream stream("/proc/cpuinfo");
+    std::string line;
+    while (std::getline(stream, line))
+        if (line.starts_with("model name")) return line;
+    return {};
+}
+
+std::string library_line(AnswerCache& memory) {
+    const auto library = neural_library();
+    return library.empty() ? std::string() : "library " + contents_of(library, memory) + "\n";
+}
+
+std::string digest_of_text(const std::string& text) {
+    Digest digest;
+    digest.text(text);
+    return digest.hex();
+}
+
+}  // namespace
+
+std::string segmenter_identity(const fs::path& path, const std::string& device, AnswerCache& memory,
+                               int version) {
+    return digest_of_text(fmt::format("segmenter, version {}\n{}\n{}device {}\n", version, processor(),
+                                      library_line(memory), device) +
+                          (fs::is_directory(path) ? contents_below(path, memory)
+                                                  : "weights " + contents_of(path, memory) + "\n"));
+}
+
+std::string model_identity(const JobParameters& job, AnswerCache& memory, int version) {
+    const auto path = model_path(job);
+    const bool folder = fs::is_directory(path);
+    std::string text =
+        fmt::format("version {}\n{}\nname {}\n", version, processor(), path.filename().string());
+    text += library_line(memory);
+    text += fmt::format("device {}, precision {}, tiny autoencoder {}\n", job.device, job.precision,
+                        job.taesd == "none" ? "off" : "on");
+    text += folder ? contents_below(path, memory) : contents_beside(path, memory);
+    if (const auto tiny = named_taesd(job, folder ? path : path.parent_path());
+        !tiny.empty() && fs::is_directory(tiny))
+        text += "tiny autoencoder\n" + contents_below(tiny, memory);
+    for (const auto& lora : neural::find_loras(job.lora))  // its name may say that it was distilled
+        text += fmt::format("lora {} {} {}\n", static_cast<int>(neural::lora_mark(lora.file)), lora.strength,
+                            contents_of(lora.file, memory));
+    return digest_of_text(text);
+}
+
+}  // namespace gse::pipeline

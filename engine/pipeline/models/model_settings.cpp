@@ -1,0 +1,67 @@
+// A model's profile in a recipe.
+#include "engine/pipeline/models/model_settings.h"
+
+#include "engine/pipeline/models/installed.h"
+
+namespace gse::pipeline {
+
+#ifdef GSE_NEURAL
+neural::ModelProfile profile_of(const JobParameters& job) {
+    return neural::model_profile(job.model.empty() ? starter_model_path() : std::filesystem::path(job.model),
+                                 neural::find_loras(job.lora));
+}
+#else
+neural::ModelProfile profile_of(const JobParameters&) { return {}; }
+#endif
+
+void apply_profile(const neural::ModelProfile& profile, EditRecipe& recipe,
+                   const std::set<std::string>& set_by_user) {
+    nlohmann::ordered_json stated = nlohmann::ordered_json::object();
+    recipe.sources.clear();
+    for (const auto& entry : profile.entries) {
+        const auto name = entry.part + "." + entry.field;
+        if (set_by_user.contains(name)) continue;
+        stated[entry.part][entry.field] = entry.value;
+        recipe.sources[name] = entry.source;
+    }
+    const auto set = [&](const char* part, auto& parameters) {
+        if (stated.contains(part)) fields_from_json(parameters, stated[part]);
+    };
+    set("job", recipe.job);
+    set("request", recipe.request);
+    set("guidance", recipe.guidance);
+    set("attention", recipe.attention);
+    set("dreambooth", recipe.dreambooth);
+    for (const auto& name : set_by_user) recipe.sources[name] = "user";
+}
+
+std::set<std::string> changed_settings(const EditRecipe& now, const EditRecipe& before) {
+    std::set<std::string> names;
+    const auto compare = [&](const std::string& part, const auto& value, const auto& other) {
+        const auto values = fields_to_json(value), defaults = fields_to_json(other);
+        for (const auto& [name, set] : values.items())
+            if (set != defaults[name]) names.insert(part + "." + name);
+    };
+    compare("request", now.request, before.request);
+    compare("dreambooth", now.dreambooth, before.dreambooth);
+    compare("guidance", now.guidance, before.guidance);
+    compare("attention", now.attention, before.attention);
+    if (now.job.threads != before.job.threads) names.insert("job.threads");
+    return names;
+}
+
+nlohmann::ordered_json settings_from(const EditRecipe& recipe) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    const auto parts = recipe_to_json(recipe);
+    for (const auto& [part, fields] : parts.items()) {
+        if (!fields.is_object()) continue;
+        for (const auto& [field, value] : fields.items()) {
+            const auto source = recipe.sources.find(part + "." + field);
+            if (source != recipe.sources.end())
+                list.push_back({{"field", source->first}, {"value", value}, {"source", source->second}});
+        }
+    }
+    return list;
+}
+
+}  // namespace gse::pipeline

@@ -1,0 +1,57 @@
+// What a search saw, as pictures for the window, and how they come in while it still looks.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "engine/base/image.h"
+#include "engine/edit/search/locate.h"
+
+namespace gse::pipeline {
+
+/// Attention in false colour (dark blue to yellow) over a dimmed render.
+std::shared_ptr<const Image> coloured_map(const Image& render, const Image& map);
+
+/// The mask tinted over a dimmed render.
+std::shared_ptr<const Image> masked_picture(const Image& render, const Mask& mask);
+
+/// What a search found in one view; the pictures are made once, ready for the screen. Null pictures have not
+/// come yet.
+struct SeenView {
+    std::string name;
+    std::shared_ptr<const Image> render;        // [H,W,3]
+    bool drawn = false;                         // it shows what was drawn into the view to see where it goes
+    std::shared_ptr<const Image> map;           // [H,W,1] attention in [0,1]
+    std::shared_ptr<const Image> map_coloured;  // [H,W,3] the map in false colour over the render
+    std::shared_ptr<const Mask> mask;           // null until it is made
+    std::shared_ptr<const Image> mask_picture;  // [H,W,3] mask over the render
+    std::vector<edit::PointPrompt> points;
+    std::string branch;  // what made the mask
+    double captured = 0;
+    bool failed = false;
+    edit::ViewStep step = edit::ViewStep::Found;  // where it failed
+    Camera camera;
+};
+
+SeenView seen_view(const View& view, const edit::ViewEvidence& evidence);
+/// The same view after another threshold: what was rendered and attended stays as it is on the screen.
+SeenView refreshed(SeenView shown, const edit::ViewEvidence& evidence);
+
+/// Views of a search that is under way: filled by the threads that look, taken by the one that shows.
+class ArrivingViews {
+public:
+    /// A view of a search from `count` of them; one from another place than the one of that number before
+    /// begins a new search.
+    void add(const View& view, std::size_t index, std::size_t count, const edit::ViewEvidence& evidence);
+    /// True when something came since it was last asked; `views` is then what there is, with gaps.
+    bool take(std::vector<SeenView>& views);
+
+private:
+    std::mutex mutex_;
+    std::vector<SeenView> views_;
+    bool news_ = false;
+};
+
+}  // namespace gse::pipeline

@@ -1,0 +1,48 @@
+// Films of any row of cameras, and camera paths as JSON.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "engine/base/progress.h"
+#include "engine/pipeline/run/scene_tools.h"
+#include "engine/scene/camera_key.h"
+
+namespace gse::pipeline {
+
+/// What is filmed. With `second` every frame shows `first` on the left half and `second` on the right.
+struct FilmRequest {
+    std::vector<Camera> cameras;  // one per frame, all of one size
+    GaussianSet first;
+    std::shared_ptr<const GaussianSet> second;
+    raster::Settings settings;
+    bool transparent = false;  // PNG frames only
+    double fps = 30;
+};
+
+/// Writes .mp4 or .webm, or PNG frames into a folder when `output` has no extension. A stopped or failed film
+/// leaves nothing. Throws Error (Cancelled, Unwritable, Unsupported).
+void write_film(const std::filesystem::path& output, const FilmRequest& request, const JobControl& job);
+
+/// Cameras of a turn around `orbit`.
+std::vector<Camera> turn_cameras(const OrbitParameters& orbit, const TurntableParameters& turn,
+                                 double start_degrees, int width, int height);
+
+/// The picture with straight alpha [H,W,4]: colour without the background.
+Image transparent_picture(const raster::ForwardOutput& output);
+
+/// {"version", "clip_duration", "keyframes": [{"time", "position", "rotation" (w,x,y,z camera to world),
+/// "focal_length_mm" (of a 36 mm wide sensor), "easing" (a number of Easing)}]}, the path file other editors
+/// read (formats.md 4.4).
+void save_camera_path(const std::filesystem::path& path, const std::vector<CameraKey>& keys);
+/// Throws Error (Malformed). Sizes are not part of the format: cameras come as width x height.
+std::vector<CameraKey> load_camera_path(const std::filesystem::path& path, int width, int height);
+
+/// The longest film of a path: nine hours at 30 frames a second.
+constexpr int MostFilmFrames = 1'000'000;
+/// A smooth walk through the keys (positions Catmull-Rom, rotations slerp), `fps` frames a second. Throws
+/// Error (InvalidArgument) when that is more than MostFilmFrames.
+std::vector<Camera> path_cameras(const std::vector<CameraKey>& keys, double fps, int width, int height);
+
+}  // namespace gse::pipeline

@@ -1,0 +1,125 @@
+// Sums a scene up.
+#include "engine/pipeline/report/scene_report.h"
+
+#include <fmt/format.h>
+
+#include <sstream>
+
+#include "engine/base/error.h"
+#include "engine/base/path_text.h"
+#include "engine/base/print.h"
+#include "engine/io/image_file.h"
+#include "engine/io/project_file.h"
+#include "engine/io/scene_io.h"
+#include "engine/pipeline/run/scene_tools.h"
+
+namespace gse::pipeline {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json list_of(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
+
+Json report_of(const Scene& scene, const std::filesystem::path& path, std::size_t cameras) {
+    const SceneStatistics statistics = compute_statistics(scene.gaussians);
+    Json json;
+    json["file"] = text_of_path(path.string());
+    json["format"] = scene.info.format;
+    json["splats"] = scene.gaussians.size();
+    json["sh_degree"] = scene.gaussians.sh_degree();
+    json["attribute_mb"] = static_cast<double>(scene.gaussians.byte_size()) / 1e6;
+    json["cameras"] = cameras;
+    json["up"] = list_of(scene.info.up);
+    json["up_known"] = scene.info.up_known;
+    json["antialiased"] = scene.info.antialiased;
+    json["mean_opacity"] = statistics.mean_opacity;
+    json["bounds"] = {{"low", list_of(statistics.bounds_low)}, {"high", list_of(statistics.bounds_high)}};
+    json["robust_bounds"] = {{"low", list_of(statistics.robust_low)},
+                             {"high", list_of(statistics.robust_high)}};
+    json["lint"] = {{"nan", statistics.nan_rows},
+                    {"infinite", statistics.infinite_rows},
+                    {"giant", statistics.giant_rows},
+                    {"invisible", statistics.invisible_rows},
+                    {"zero_quaternion", statistics.zero_quaternion_rows}};
+    json["labels"] = Json::array();
+    for (const auto& label : scene.labels.labels) json["labels"].push_back(label.name);
+    json["warnings"] = scene.info.warnings;
+    return json;
+}
+
+/// How a picture was made.
+Json picture_report(const std::filesystem::path& path) {
+    const auto size = read_image_size(path);
+    if (!size)
+        throw Error(ErrorCode::Malformed, "the picture does not begin like a PNG",
+                    "the file is damaged or misnamed", path);
+    Json json;
+    json["file"] = text_of_path(path.string());
+    json["width"] = size->width;
+    json["height"] = size->height;
+    json["text"] = Json::object();
+    for (const auto& [keyword, text] : read_png_text(path)) json["text"][keyword] = text;
+    return json;
+}
+
+/// The recipe is for programs, and fills a screen.
+std::string for_people(const std::string& keyword, const std::string& text) {
+    return keyword == "Recipe"
+               ? "all settings: edit --recipe takes them from this picture, --json prints them"
+               : text;
+}
+
+/// A line for every line of a text.
+std::string picture_report_text(const Json& json) {
+    std::string text =
+        fmt::format("{}\n  size          {} x {}\n", printable(json["file"].get<std::string>()),
+                    json["width"].get<int>(), json["height"].get<int>());
+    if (json["text"].empty()) text += "  text          none\n";
+    for (const auto& [keyword, value] : json["text"].items()) {
+        std::istringstream lines(for_people(keyword, value.get<std::string>()));
+        std::string name = printable(keyword);
+        for (std::string line; std::getline(lines, line); name.clear())
+            text += fmt::format("  {:<13} {}\n", name, printable(line));
+    }
+    return text;
+}
+
+}  // namespace
+
+Json scene_report(const std::filesystem::path& path) {
+    if (path.extension() == ".png") return picture_report(path);
+    const Scene scene = load_scene(path);
+    Json report = report_of(scene, path, scene_cameras(path, "").size());
+    if (is_project_file(path))
+        for (const auto& edit : read_project_summary(path).stack)
+            report["edits"].push_back(edit.name + (edit.enabled ? "" : " (off)"));
+    return report;
+}
+
+std::string report_text(const Json& json) {
+    if (json.contains("text")) return picture_report_text(json);
+    std::string text;
+    const auto line = [&](auto format, const auto&... values) {
+        text += fmt::format(fmt::runtime(format), shown(values)...);
+    };
+    const auto number = [&](const char* key) { return json["lint"][key].get<std::size_t>(); };
+    line("{}\n", json["file"].get<std::string>());
+    line("  format        {}, SH degree {}\n", json["format"].get<std::string>(),
+         json["sh_degree"].get<int>());
+    line("  splats        {} ({:.1f} MB of attributes)\n", json["splats"].get<std::size_t>(),
+         json["attribute_mb"].get<double>());
+    line("  cameras       {}\n", json["cameras"].get<std::size_t>());
+    line("  bounds        {} to {}\n", json["bounds"]["low"].dump(), json["bounds"]["high"].dump());
+    line("  robust bounds {} to {}\n", json["robust_bounds"]["low"].dump(),
+         json["robust_bounds"]["high"].dump());
+    line("  up            {}{}\n", json["up"].dump(), json["up_known"].get<bool>() ? "" : " (assumed)");
+    line("  lint          {} NaN, {} infinite, {} giant, {} invisible, {} zero quaternions\n", number("nan"),
+         number("infinite"), number("giant"), number("invisible"), number("zero_quaternion"));
+    if (json.contains("edits"))
+        for (const auto& edit : json["edits"]) line("  edit          {}\n", edit.get<std::string>());
+    for (const auto& label : json["labels"]) line("  label         {}\n", label.get<std::string>());
+    for (const auto& warning : json["warnings"]) line("  warning       {}\n", warning.get<std::string>());
+    return text;
+}
+
+}  // namespace gse::pipeline

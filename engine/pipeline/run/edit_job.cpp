@@ -1,0 +1,368 @@
+// Loads, locates, edits.
+#include "engine/pipeline/run/edit_job.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/base/check.h"
+#include "engine/base/clock.h"
+#include "engine/base/error.h"
+#include "engine/base/log.h"
+#include "engine/base/log_quiet.h"
+#include "engine/edit/request/vocabulary.h"
+#include "engine/edit/target_views/strategies/colour_remap.h"
+#include "engine/localize/focus.h"
+#include "engine/pipeline/models/neural_loader.h"
+#include "engine/pipeline/models/probe.h"
+#include "engine/pipeline/run/scene_loading.h"
+
+namespace gse::pipeline {
+namespace {
+
+constexpr std::size_t InstanceViews = 12;  // renders a tuning learns from (method 2.6: 8 to 16)
+constexpr double NearInstance =
+    0.6;  // share of the fitted distance of every other one, where views are automatic
+
+/// The first label of a scene file.
+std::vector<std::uint8_t> label_of(const Scene& scene, const std::filesystem::path& path) {
+    if (!scene.labels.labels.empty()) {
+        const auto& bits = *scene.labels.labels.front().bits;
+        if (std::find(bits.begin(), bits.end(), std::uint8_t{1}) != bits.end()) return bits;
+    }
+    throw Error(ErrorCode::InvalidArgument, "no splat of the scene is labelled",
+                "use a PLY whose float column \"label\" is 1 where the edit may change something", path);
+}
+
+/// What the box of --cut-out holds.
+std::vector<std::uint8_t> labelled_by_box(const Scene& scene, const EditRecipe& recipe,
+                                          edit::Segmenter* segmenter, const JobControl& control) {
+    const auto& job = recipe.job;
+    auto request = cut_out_request(job.cut_out, scene, job.up);
+    request.ground = edit::names_ground(recipe.request.source);
+    auto bits = cut_out(drawable(scene.gaussians), request, segmenter, control);
+    if (std::find(bits.begin(), bits.end(), std::uint8_t{1}) != bits.end()) return bits;
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("nothing is seen in the box \"{}\" of --cut-out", job.cut_out),
+                "look at what gseditpro render shows with the same azimuth, elevation and zoom");
+}
+
+/// So that a recipe that was written elsewhere names the same files. Throws Error for one that is not there.
+std::vector<std::string> absolute_loras(const JobParameters& job) {
+    std::vector<std::string> texts;
+    for (auto lora : neural::find_loras(job.lora)) {
+        lora.file = std::filesystem::absolute(lora.file).lexically_normal();
+        texts.push_back(neural::lora_text(lora));
+    }
+    return texts;
+}
+
+}  // namespace
+
+std::vector<float> splat_attention(EditJob& job) {
+    const auto& set = job.drawn();
+    std::vector<double> inside(set.size()), all(set.size());
+    for (std::size_t v = 0; v < job.views().size(); ++v)
+        job.painter().rasterizer().contributions(set.spans(), job.views()[v].camera, job.plan().settings,
+                                                 job.located().views[v].map, inside, all);
+    std::vector<float> result(set.size());
+    for (std::size_t row = 0; row < result.size(); ++row)
+        result[row] = all[row] > 0 ? static_cast<float>(std::clamp(inside[row] / all[row], 0.0, 1.0)) : 0.0f;
+    return result;
+}
+
+void warn_unknown_words(const std::vector<std::string>& words, const std::vector<std::string>& known) {
+    if (known.empty()) return;
+    for (const auto& word : words) {
+        if (std::find(known.begin(), known.end(), word) != known.end()) continue;
+        const auto nearest = edit::nearest_words(word, known, 1);
+        if (nearest.empty()) log::warning("the model does not know the word \"{}\" and leaves it out", word);
+        else
+            log::warning(
+                "the model does not know the word \"{}\" and leaves it out; the nearest it knows is \"{}\"",
+                word, nearest.front());
+    }
+}
+
+EditJob::EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCache> cache)
+    : recipe_(std::move(recipe)), control_(std::move(control)) {
+    check_recipe(nullptr);
+    if (recipe_.job.use_label && !recipe_.job.cut_out.empty())
+        throw Error(ErrorCode::InvalidArgument, "--use-label and --cut-out both say what may change",
+                    "leave one of them out");
+    times_.begin("load_scene");
+    recipe_.job.scene = std::filesystem::absolute(recipe_.job.scene).lexically_normal().string();
+    recipe_.job.lora = absolute_loras(recipe_.job);
+    for (auto* weights : {&recipe_.job.segmenter, &recipe_.job.text_segmenter})
+        if (!weights->empty()) *weights = std::filesystem::absolute(*weights).lexically_normal().string();
+    auto [scene, cameras, notes] = load_scene_with_cameras(recipe_.job.scene, recipe_.job.cameras);
+    for (const auto& note : notes) log::warning("{}", note);
+    if (recipe_.job.use_label) hints_.label = label_of(scene, recipe_.job.scene);
+    times_.end();
+    GivenCameras given;
+    given.cameras = std::move(cameras);
+    times_.begin("load_model");
+    auto model = open_recipe_model(recipe_.job, cache);
+    auto segmenters = open_segmenters(recipe_.job, cache);
+    times_.end();
+    if (!recipe_.job.cut_out.empty()) {
+        times_.begin("cut_out");
+        hints_.label = labelled_by_box(scene, recipe_, segmenters.clicks.get(), control_);
+        times_.end();
+    }
+    begin(std::move(scene), std::move(model), std::move(segmenters), given);
+}
+
+EditJob::EditJob(EditRecipe recipe, EditJobInput input, JobControl control)
+    : recipe_(std::move(recipe)), control_(std::move(control)) {
+    hints_.said = std::move(input.said);
+    hints_.label = std::move(input.label);
+    auto model = std::move(input.model);
+    if (recipe_.use_dreambooth && input.tuned) {
+        model = std::move(input.tuned->model);
+        tuning_ = std::move(input.tuned->report);
+    }
+    check_recipe(model.get());
+    GSE_CHECK(input.view_words.empty() || input.view_words.size() == input.cameras.size());
+    GivenCameras given;
+    for (std::size_t i = 0; i < input.view_words.size(); ++i)
+        given.words[input.cameras[i].name] = input.view_words[i];
+    given.cameras = std::move(input.cameras);
+    begin(std::move(input.scene), std::move(model), std::move(input.segmenters), given);
+}
+
+void EditJob::check_recipe(const neural::TextToImage* model) {
+    auto& request = recipe_.request;
+    hints_.target_open = request.target.empty() && !request.source.empty();
+    if (hints_.target_open)
+        request.target = edit::guessed_target(request.prompt, edit::as_told(request.source), hints_.said);
+    recipe_.request = edit::validated(recipe_.request);
+    check_fields(recipe_.job);
+    check_fields(recipe_.guidance);
+    check_fields(recipe_.attention);
+    check_fields(recipe_.dreambooth);
+    const auto known = model != nullptr ? model->known_words() : model_words(model_path(recipe_.job));
+    const auto drawn = !edit::edits_by_views(recipe_.request) ? std::vector<std::string>{}
+                       : model != nullptr                     ? edit::with_dyes(model->drawn_words(), known)
+                                                              : drawn_words(model_path(recipe_.job));
+    edit::require_known_words(recipe_.request, known, drawn,
+                              recipe_.job.brings_label() || !hints_.label.empty());
+    check_length();
+    parse_colour(recipe_.request.background);
+    parse_up(recipe_.job.up, {});
+    parse_front(recipe_.job.front);
+    parse_front(recipe_.job.looked_from, "--looked-from");
+    raster::require_rasterizer(recipe_.job.rasterizer);
+}
+
+/// The text encoder has so many places; what stands behind them has no effect.
+void EditJob::check_length() const {
+    const auto words = edit::words_of(recipe_.request.prompt);
+    const auto read = words_read(model_path(recipe_.job), words);
+    if (read >= words.size()) return;
+    for (const auto& word : {recipe_.request.source, recipe_.request.target}) {
+        const auto first = edit::first_word(recipe_.request.prompt, word);
+        if (first < words.size() && first + edit::words_of(word).size() > read)
+            throw Error(
+                ErrorCode::InvalidArgument,
+                fmt::format("the model reads {} words of a sentence and stops before \"{}\"", read, word),
+                "shorten the sentence, or move the word forward");
+    }
+    log::warning("the model reads {} words of the sentence: from \"{}\" on nothing counts", read,
+                 words[read]);
+}
+
+void EditJob::begin(Scene scene, std::shared_ptr<neural::TextToImage> model, Segmenters segmenters,
+                    const GivenCameras& given) {
+    workplace_ =
+        std::make_unique<RunContext>(std::move(scene), std::move(model), recipe_.job, std::move(segmenters));
+    auto words = edit::words_of(recipe_.request.prompt);
+    for (auto& word : edit::words_of(recipe_.request.source)) words.push_back(std::move(word));
+    std::sort(words.begin(), words.end());
+    words.erase(std::unique(words.begin(), words.end()), words.end());
+    const auto known = workplace_->model().known_words();
+    warn_unknown_words(words, edit::edits_by_views(recipe_.request)
+                                  ? edit::promptable_vocabulary(
+                                        known, edit::with_dyes(workplace_->model().drawn_words(), known))
+                                  : known);
+    views_ = std::make_shared<const Views>(choose_views(workplace_->scene(), recipe_, given));
+    if (views_->automatic && !given.cameras.empty())
+        log::info("{} stored views are too few to search from: an orbit around the scene is used",
+                  given.cameras.size());
+    located_ = std::make_shared<const Located>();
+    edited_ = std::make_shared<const Edited>();
+}
+
+std::string EditJob::model_prompt() const { return edit::as_told(recipe_.request.prompt); }
+
+std::vector<Image> EditJob::instance_pictures() {
+    const Views& chosen = *views_;
+    std::vector<View> views = farthest_views(chosen.views, InstanceViews);
+    if (chosen.automatic) {
+        const int side = recipe_.request.image_size;
+        const auto closer =
+            orbit_views(nearer(chosen.orbit, NearInstance), static_cast<int>(views.size()), side, side);
+        for (std::size_t i = 1; i < views.size(); i += 2) views[i] = closer[i];
+    }
+    std::vector<Image> pictures;
+    for (const auto& view : views)
+        pictures.push_back(
+            workplace_->painter().paint(drawn().spans(), view.camera, render_settings()).colour);
+    return pictures;
+}
+
+void EditJob::tune() {
+    times_.begin("dreambooth");
+    auto tuned =
+        model().tune(recipe_.dreambooth, instance_pictures(), edit::instance_sentence(recipe_.request),
+                     edit::without_identifier(model_prompt()), control_);
+    workplace_->take_model(std::move(tuned.model));
+    tuning_ = std::move(tuned.report);
+    times_.end();
+    log::info(
+        "{} {:.0f} s: loss on the scene {:.3f} to {:.3f}, on what the model knew {:.3f} to {:.3f}",
+        times_.networks("dreambooth").flop > 0 ? "tuned in" : "the tuning was read from the cache; it took",
+        tuning_->seconds, tuning_->instance_before, tuning_->instance_after, tuning_->prior_before,
+        tuning_->prior_after);
+}
+
+std::optional<neural::TunedModel> EditJob::tuned() const {
+    return tuning_ ? std::optional(neural::TunedModel{workplace_->shared_model(), *tuning_}) : std::nullopt;
+}
+
+/// What was found takes the place of what was found before, with the settings it was found for.
+void EditJob::take(Located located) {
+    recipe_ = located.recipe;
+    views_ = std::make_shared<const Views>(located.views);
+    located_ = std::make_shared<const Located>(std::move(located));
+    plan_.reset();
+}
+
+void EditJob::locate() {
+    if (recipe_.use_dreambooth && !tuning_) tune();
+    times_.begin("locate");
+    take(pipeline::locate(*workplace_, recipe_, *views_, hints_, control_));
+    plan();
+    times_.end();
+    const auto& result = located();
+    const auto labelled = std::count(result.label.bits->begin(), result.label.bits->end(), std::uint8_t{1});
+    log::info("mode {} ({}); {} of {} splats labelled, {} new", edit::mode_name(result.mode), result.reason,
+              labelled, scene().gaussians.size(), result.seeds.size());
+    if (const auto use = times_.networks("locate"); use.cached > 0)
+        log::info("located with {}", use_text(use));
+}
+
+/// The same from the views chosen already; the networks are asked only about pictures they have not seen.
+void EditJob::look_again(const EditRecipe& recipe) {
+    times_.begin("locate");
+    take(pipeline::locate_again(*workplace_, *located_, recipe, control_));
+    times_.end();
+}
+
+double EditJob::attention_threshold() const {
+    const double asked = recipe_.request.attention_threshold;
+    return asked > 0 ? asked : workplace_->stated_threshold();
+}
+
+void EditJob::locate_again(double attention_threshold, const std::string& left_out) {
+    EditRecipe recipe = recipe_;
+    recipe.request.left_out = left_out;
+    recipe.request.attention_threshold = attention_threshold;
+    look_again(recipe);
+}
+
+void EditJob::locate_anyway() {
+    EditRecipe recipe = recipe_;
+    recipe.request.least_confidence = 0;
+    look_again(recipe);
+}
+
+void EditJob::correct_label(const std::vector<std::uint8_t>& bits) {
+    GSE_CHECK_EQ(bits.size(), scene().gaussians.size());
+    Located corrected = with_label(*located_, bits);
+    corrected.recipe = recipe_;
+    take(std::move(corrected));
+}
+
+void EditJob::use_label(const std::vector<std::uint8_t>& bits) {
+    GSE_CHECK_EQ(bits.size(), scene().gaussians.size());
+    times_.begin("locate");
+    take(locate_by_label(*workplace_, *located_, bits, control_));
+    times_.end();
+}
+
+void EditJob::take_settings(const EditRecipe& recipe, bool relabels) {
+    const auto request = edit::validated(recipe.request);
+    const edit::LabelThresholds before = recipe_.request;
+    static_cast<edit::LoopSettings&>(recipe_.request) = request;
+    recipe_.request.tau = request.tau;
+    recipe_.guidance = recipe.guidance;
+    plan_.reset();  // how far masks are grown, and whether the label counts at all
+    if (before.attention_threshold != request.attention_threshold || before.left_out != request.left_out ||
+        (relabels && before.tau != request.tau))
+        locate_again(request.attention_threshold, request.left_out);
+}
+
+const edit::EditPlan& EditJob::plan() {
+    if (!plan_) plan_ = plan_of(*workplace_, *located_, recipe_);
+    return *plan_;
+}
+
+OrbitParameters EditJob::film_orbit() const {
+    // What was changed or added, and what it belongs to, with room around.
+    std::vector<std::uint8_t> bits = result().label;
+    const auto& source = located().source_label.bits;
+    if (source)
+        for (std::size_t row = 0; row < source->size(); ++row)
+            if ((*source)[row] != 0 && result().base_to_new[row] >= 0)
+                bits[static_cast<std::size_t>(result().base_to_new[row])] = 1;
+    constexpr double Around = 1.3, FromViews = 1.25;  // of the radius
+    OrbitParameters orbit = localize::focus_orbit(drawn_result(), bits, views_->orbit);
+    double most = FromViews * views_->orbit.radius;       // a stray row is not worth stepping back for
+    if (source && located().mode == edit::EditMode::Add)  // the views may have been about its head only
+        most = std::max(most, Around * localize::focus_orbit(drawn(), *source, views_->orbit).radius);
+    orbit.radius = std::min(Around * orbit.radius, most);
+    return orbit;
+}
+
+double EditJob::film_front() const {
+    return views_->front_read ? *views_->front_read : parse_front(recipe_.job.front).value_or(0);
+}
+
+void EditJob::run(const EditObserver& observer) {
+    times_.begin("edit");
+    const double start = wall_seconds();
+    Edited edited = edit_scene(*workplace_, *located_, plan(), recipe_, observer, control_);
+    edited.seconds = wall_seconds() - start;
+    edited_ = std::make_shared<const Edited>(std::move(edited));
+    times_.end();
+    log::info("edited in {:.1f} s ({} steps): {}; with what came before it {}", edited_->seconds,
+              result().history.size(), use_text(edited_->use), use_text(times_.networks()));
+}
+
+Edited EditJob::probe(const ProbeSize& size) {
+    const log::Quiet nothing_said;  // of how well a few steps did: they only tell what a step takes
+    EditRecipe plain = recipe_;
+    plain.request.iterations = plain.request.fit_steps = size.steps;
+    plain.request.dynamic_mask = plain.request.look_again = plain.request.early_stop = false;
+    plain.request.densify_every = 0;
+    plain.request.rounds = plain.request.shape_rounds = plain.request.add_rounds = size.early ? 2 : 1;
+    plain.request.shape_fit_steps = size.steps;
+    plain.request.edited_views = plain.request.shape_views = size.edited_views;
+    plain.request.view_steps = plain.request.restyle_steps = plain.request.shape_steps = size.view_steps;
+    plain.request.polish_steps = size.polish;
+    JobControl quiet;
+    std::stop_source redrawn;
+    const std::stop_callback stopped(control_.stop, [&] { redrawn.request_stop(); });
+    quiet.stop = redrawn.get_token();
+    EditObserver observer;
+    if (size.early) observer.targets = [&](const edit::ViewTargets&) { redrawn.request_stop(); };
+    const ProbeScene part = probe_scene(scene().gaussians, plan());
+    const double start = wall_seconds();
+    Edited edited = edit_scene(*workplace_, part.set, *located_, part.plan, plain, observer, quiet);
+    edited.seconds = wall_seconds() - start;
+    return edited;
+}
+
+}  // namespace gse::pipeline

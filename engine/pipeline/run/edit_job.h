@@ -1,0 +1,166 @@
+// One run of locate or edit from files to files: what the commands and the window both call.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/neural/api/api.h"
+#include "engine/pipeline/models/installed.h"
+#include "engine/pipeline/models/model_words.h"
+#include "engine/pipeline/models/recipe_model.h"
+#include "engine/pipeline/models/segmenters.h"
+#include "engine/pipeline/run/loop.h"
+#include "engine/pipeline/run/recipe.h"
+#include "engine/pipeline/run/search.h"
+#include "engine/pipeline/run/stage_times.h"
+
+namespace gse::pipeline {
+
+/// What a job works on when it is in memory already.
+struct EditJobInput {
+    Scene scene;
+    std::vector<View> cameras;  // fewer than LeastViewpoints = an orbit is fitted
+    std::shared_ptr<neural::TextToImage> model;
+    std::vector<std::uint8_t> label = {};  // [N] made by hand: says where when the words do not; empty = none
+    std::vector<std::string> view_words =
+        {};  // one for each of `cameras` where it is known; else from the recipe's front
+    std::optional<neural::TunedModel> tuned =
+        {};  // what another job learned of this scene for these words and settings
+    std::vector<std::string> said = {};  // words that the scene is known to show: no news
+    Segmenters segmenters = {};
+};
+
+/// A run from stage to stage (views.h, search.h, loop.h): keeps what each came to and how long it took.
+class EditJob {
+public:
+    /// Checks the request, reads the scene, loads the model, chooses the views. Throws Error before anything
+    /// is written. `cache`: see open_recipe_model().
+    EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCache> cache = nullptr);
+    /// The same for what is in memory; the recipe's files are not read.
+    EditJob(EditRecipe recipe, EditJobInput input, JobControl control);
+
+    /// DreamBooth: from here on this job works with a model of its own, which learned the scene from renders
+    /// of its views. locate() begins with it when the recipe asks for it.
+    void tune();
+    /// Works out which word is new where the recipe does not say, looks from all views, moves in on what was
+    /// found, looks again. With a label made by hand, a word that the model does not know is not looked for,
+    /// and one that is not found does no harm. A search that comes to nothing is a result too: see found().
+    void locate();
+    /// Whether something may change: located().problem says why not.
+    bool found() const { return located_->found(); }
+    /// Labels what an unsure search found all the same.
+    void locate_anyway();
+    /// The same from the views chosen already, with another attention threshold, or without some views
+    /// (`left_out` of the request): no network is asked anything.
+    void locate_again(double attention_threshold, const std::string& left_out);
+    void locate_again(double attention_threshold) {
+        locate_again(attention_threshold, recipe_.request.left_out);
+    }
+    /// Who is told of the views while locate() looks; empty = nobody.
+    void watch_views(ViewWatch watch) { workplace_->watch_views(std::move(watch)); }
+    /// The attention threshold in force: the request's, or what the model states.
+    double attention_threshold() const;
+    /// What may change, corrected by hand (modify mode): [N] 0 or 1.
+    void correct_label(const std::vector<std::uint8_t>& bits);
+    /// For words that no view shows: this label alone says what may change, [N] 0 or 1.
+    void use_label(const std::vector<std::uint8_t>& bits);
+    /// Runs the edit loop.
+    void run(const EditObserver& observer = {});
+    /// Runs a plain loop of that many steps, for its time; where views lead it, that many are redrawn first.
+    /// Of a large scene on a part of the splats, see probe_scene().
+    struct ProbeSize {
+        int steps = 1, edited_views = 1, view_steps = 1, polish = 0;
+        bool early = false;  // only redraws, as in a round that is not the last; no step follows
+    };
+    Edited probe(const ProbeSize& size);
+    /// Replaces where to report and what stops (a job that located goes on to edit).
+    void set_control(JobControl control) { control_ = std::move(control); }
+    /// Takes the settings of the loop and of the guidance, and the label's thresholds, of a recipe with the
+    /// same search_key(): no network is asked. `relabels` = false: an artist's own label is used, which
+    /// follows no share of the votes.
+    void take_settings(const EditRecipe& recipe, bool relabels = true);
+
+    const EditRecipe& recipe() const { return recipe_; }
+    const Scene& scene() const { return workplace_->scene(); }
+    /// The scene and the result as pictures and figures are made from them: without what cannot be drawn.
+    const GaussianSet& drawn() const { return workplace_->drawn(); }
+    const GaussianSet& drawn_result() const { return edited_->drawn; }
+    /// Splats of the scene that cannot be drawn; the edit leaves them as they are.
+    std::size_t unusable() const { return workplace_->unusable(); }
+    const std::vector<View>& views() const { return views_->views; }
+    const edit::LocateResult& located() const { return located_->result; }
+    /// What the loop is told: made anew when label or settings have changed.
+    const edit::EditPlan& plan();
+    const edit::EditResult& result() const { return edited_->result; }
+    const Edited& edited() const { return *edited_; }
+    /// The redrawn views of every round, where the edit was led by them.
+    const std::vector<edit::ViewTargets>& targets() const { return edited_->targets; }
+    /// What was learned of the scene, if anything was.
+    const std::optional<neural::TuneReport>& tuning() const { return tuning_; }
+    /// The same with the model that learned it, for another job.
+    std::optional<neural::TunedModel> tuned() const;
+    /// "front view" and so on per view, or empty.
+    const std::vector<std::string>& view_words() const { return views_->words; }
+    /// Azimuth of the front, radians, where it was read off the pictures.
+    std::optional<double> front_read() const { return views_->front_read; }
+    /// How views are rendered.
+    raster::Settings render_settings() const { return pipeline::render_settings(scene(), recipe_.request); }
+    /// The recipe's prompt as the model is told it.
+    std::string model_prompt() const;
+    /// Pictures that the search has asked the networks about so far.
+    std::size_t questions() const { return workplace_->questions(); }
+    /// What drawing the place of an added thing took of that.
+    const PlaceCost& place_cost() const { return workplace_->place_cost(); }
+    /// Whether the model is shown the scene where something new is drawn.
+    bool supports_scene_conditioning() const { return workplace_->model().supports_scene_conditioning(); }
+    bool supports_appearance_editing() const {
+        return recipe_.guidance.restyle && workplace_->model().supports_appearance_editing();
+    }
+    /// What cuts masks out of pictures.
+    std::string segmenter_name() const { return workplace_->segmenter().name(); }
+    /// Whether the pictures said which word is new, and not the recipe.
+    bool target_read() const { return located_->target_read; }
+    bool automatic_views() const { return views_->automatic; }
+    /// Orbit around what was edited, for films.
+    OrbitParameters film_orbit() const;
+    /// Azimuth on it, radians, from which the front is seen where one is known; 0 otherwise.
+    double film_front() const;
+    neural::TextToImage& model() { return workplace_->model(); }
+    Painter& painter() { return workplace_->painter(); }
+    StageTimes& times() { return times_; }
+    const StageTimes& times() const { return times_; }
+    const JobControl& control() const { return control_; }
+
+private:
+    void check_recipe(const neural::TextToImage* model);
+    void check_length() const;
+    void begin(Scene scene, std::shared_ptr<neural::TextToImage> model, Segmenters segmenters,
+               const GivenCameras& given);
+    void take(Located located);
+    void look_again(const EditRecipe& recipe);
+    std::vector<Image> instance_pictures();
+
+    EditRecipe recipe_;
+    JobControl control_;
+    Hints hints_;
+    StageTimes times_;
+    std::unique_ptr<RunContext> workplace_;
+    // What the stages came to; replaced, never changed.
+    std::shared_ptr<const Views> views_;
+    std::shared_ptr<const Located> located_;
+    std::shared_ptr<const Edited> edited_;
+    std::optional<edit::EditPlan> plan_;  // follows from what was located
+    std::optional<neural::TuneReport> tuning_;
+};
+
+/// The attention itself on the splats of a located job: sum(alpha T map) / sum(alpha T) over the views, [N]
+/// in [0,1].
+std::vector<float> splat_attention(EditJob& job);
+
+/// Warns about words the model was not trained on and suggests the nearest known ones.
+void warn_unknown_words(const std::vector<std::string>& words, const std::vector<std::string>& known);
+
+}  // namespace gse::pipeline

@@ -1,0 +1,64 @@
+// Located -> Edited: the edit loop with a run's model.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/edit/optimise/edit_loop.h"
+#include "engine/pipeline/run/edit_quality.h"
+#include "engine/pipeline/run/search.h"
+
+namespace gse::pipeline {
+
+/// Callbacks of a running edit; all may be empty.
+struct EditObserver {
+    edit::SnapshotCallback snapshot;
+    double snapshot_seconds = 0;  // above 0: time between snapshots, instead of the request's iterations
+    edit::IterationCallback iteration;
+    std::optional<edit::EditSnapshot> start = {};  // goes on from there
+    std::function<std::optional<std::vector<std::uint8_t>>()> new_label =
+        {};  // these three: see edit::EditTools
+    std::function<void(const edit::ViewTargets&)> targets = {};
+    std::function<std::vector<edit::TargetOrder>()> target_orders = {};
+    std::function<void(const EditQuality&, const edit::ViewTargets&)> judged =
+        {};  // once, of the first views that were redrawn
+};
+
+/// What became of the scene. A value.
+struct Edited {
+    edit::EditResult result;
+    GaussianSet drawn;  // the result without what cannot be drawn
+    std::vector<edit::ViewTargets>
+        targets;  // of view guidance: every round that was fitted, as it was in the end
+    std::optional<EditQuality> verdict;  // of view guidance: whether the first redrawn views show the edit
+    std::string key;  // of all that it follows from, beside scene, model and what the artist did meanwhile
+    neural::NetworkUse use;  // what the loop has asked for
+    double seconds = 0;      // that it took, with what the artist was waited for
+};
+
+/// The guidance's settings with the sentence before the edit, worked out from the request where none is
+/// given.
+neural::SdsParameters with_sentence_before(neural::SdsParameters guidance, const edit::EditRequest& request);
+
+/// What has a shape of its own after an edit of that mode: what takes the source's place, or is added. The
+/// words of a validated request.
+std::string new_thing(const edit::EditRequest& request, edit::EditMode mode);
+
+/// What a model that edits pictures by instructions is told.
+std::string told_to_editor(const edit::EditRequest& request);
+
+/// Masks, label and seeds for the loop. Of the recipe, how far masks are grown counts.
+edit::EditPlan plan_of(RunContext& workplace, const Located& located, const EditRecipe& recipe);
+
+/// Runs the edit loop with the settings of `recipe`, which agrees with `located.recipe` in what search_key()
+/// is of. Throws as edit::run_edit does.
+Edited edit_scene(RunContext& workplace, const Located& located, const edit::EditPlan& plan,
+                  const EditRecipe& recipe, const EditObserver& observer, const JobControl& control);
+/// The same with another scene in place of the workplace's; the plan is of that one.
+Edited edit_scene(RunContext& workplace, const GaussianSet& scene, const Located& located,
+                  const edit::EditPlan& plan, const EditRecipe& recipe, const EditObserver& observer,
+                  const JobControl& control);
+
+}  // namespace gse::pipeline

@@ -1,0 +1,40 @@
+// The gate (method F25): before the long loop of score distillation, pictures of what the model makes of the
+// scene under the edit's prompt. Redrawn views are judged as they are (verdict.h).
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "engine/pipeline/run/edit_job.h"
+#include "engine/pipeline/run/edit_quality.h"
+
+namespace gse::pipeline {
+
+struct GateParameters {
+    int views = 4;
+    double strength = 0.75;  // method 2.7: image to image at 0.75
+    int steps = 8;           // six are run: as telling as 23 (views.md 17), for a quarter of the passes
+    double guidance_scale = 5;
+};
+
+/// One view as it is, and as the model paints it over with the edit's prompt. Both have the model's picture
+/// size.
+struct GatePicture {
+    std::size_t view = 0;  // index into the job's views
+    Image before, after;
+};
+
+struct PreviewCheck : EditQuality {
+    std::vector<GatePicture> pictures;
+};
+
+/// Views spread over the job's, each painted over by the model (tuned, if it is). Throws Error (Cancelled) on
+/// a stop request.
+PreviewCheck look_through_gate(EditJob& job, const GateParameters& parameters = {});
+
+/// gate_0.png, ...: before and after beside each other.
+void write_gate(const std::filesystem::path& folder, const PreviewCheck& gate);
+/// {"score", "verdict", "warns", "views"}.
+nlohmann::ordered_json gate_to_json(const PreviewCheck& gate);
+
+}  // namespace gse::pipeline

@@ -1,0 +1,149 @@
+// Recipes as JSON, and what their stages depend on.
+#include "engine/pipeline/run/recipe.h"
+
+#include <fmt/format.h>
+
+#include "engine/base/error.h"
+#include "engine/base/file.h"
+#include "engine/base/json.h"
+#include "engine/base/path_text.h"
+#include "engine/io/image_file.h"
+#include "engine/neural/api/lora_spec.h"
+
+namespace gse::pipeline {
+namespace {
+
+constexpr int RecipeVersion = 1;
+
+using Json = nlohmann::ordered_json;
+
+/// What the networks are, and from where the scene is looked at.
+Json surroundings(const JobParameters& job) {
+    return {job.model, job.lora, job.taesd, job.device, job.precision, job.cameras, job.up, job.front};
+}
+
+/// "FILE:strength" with the file in that folder.
+std::string lora_beside(const std::string& text, const std::filesystem::path& folder) {
+    auto lora = neural::parse_lora(text);
+    if (!lora.file.is_absolute()) lora.file = std::filesystem::weakly_canonical(folder / lora.file);
+    return neural::lora_text(lora);
+}
+
+}  // namespace
+
+nlohmann::ordered_json recipe_to_json(const EditRecipe& recipe) {
+    nlohmann::ordered_json json;
+    json["version"] = RecipeVersion;
+    json["job"] = fields_to_json(recipe.job);
+    for (auto& value : json["job"]) {
+        if (value.is_string()) value = text_of_path(value.get<std::string>());
+        if (value.is_array())
+            for (auto& entry : value) entry = text_of_path(entry.get<std::string>());
+    }
+    json["request"] = fields_to_json(recipe.request);
+    json["guidance"] = fields_to_json(recipe.guidance);
+    const auto attention = fields_to_json(recipe.attention);
+    if (attention != fields_to_json(neural::AttentionParameters{})) json["attention"] = attention;
+    if (recipe.use_dreambooth) json["dreambooth"] = fields_to_json(recipe.dreambooth);
+    return json;
+}
+
+EditRecipe recipe_from_json(const nlohmann::ordered_json& json, const std::filesystem::path& folder) {
+    EditRecipe recipe;
+    int version = 0;
+    read_field("version", version, json.at("version"));
+    if (version != RecipeVersion)
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("\"version\" is {}, and this program reads {}", version, RecipeVersion));
+    const auto read = [&](const char* part, auto& parameters) {
+        if (!json.contains(part)) return false;
+        if (!json[part].is_object())
+            throw Error(ErrorCode::InvalidArgument,
+                        fmt::format("\"{}\" must be an object of settings", part));
+        fields_from_json(parameters, json[part]);
+        for (const auto& field : json[part].items()) recipe.given.insert(part + ("." + field.key()));
+        return true;
+    };
+    read("job", recipe.job);
+    read("request", recipe.request);
+    read("guidance", recipe.guidance);
+    read("attention", recipe.attention);
+    recipe.use_dreambooth = read("dreambooth", recipe.dreambooth);
+    for (auto& lora : recipe.job.lora) lora = lora_beside(path_of_text(lora), folder);
+    for (auto* name : {&recipe.job.scene, &recipe.job.cameras, &recipe.job.model, &recipe.job.taesd,
+                       &recipe.job.segmenter, &recipe.job.text_segmenter}) {
+        *name = path_of_text(*name);
+        if (name->empty() || *name == "none" || std::filesystem::path(*name).is_absolute()) continue;
+        *name = std::filesystem::weakly_canonical(folder / *name).string();
+    }
+    return recipe;
+}
+
+namespace {
+
+constexpr const char* RecipeHint = "use the recipe.json of an edit, or a picture that this program made";
+
+}  // namespace
+
+nlohmann::ordered_json read_recipe_json(const std::filesystem::path& path) {
+    std::string text;
+    if (path.extension() == ".png") {
+        const auto chunks = read_png_text(path);
+        const auto found = chunks.find("Recipe");
+        if (found == chunks.end())
+            throw Error(ErrorCode::InvalidArgument, "this picture carries no recipe", RecipeHint, path);
+        text = found->second;
+    } else {
+        text = read_file(path);
+    }
+    auto json = try_parse_json<nlohmann::ordered_json>(text);
+    if (!json.is_object() || !json.contains("version"))
+        throw Error(ErrorCode::Malformed, "this is not a recipe", RecipeHint, path);
+    return json;
+}
+
+EditRecipe read_recipe(const std::filesystem::path& path) {
+    const auto json = read_recipe_json(path);
+    try {
+        return recipe_from_json(json, path.parent_path());
+    } catch (const Error& error) {
+        throw Error(ErrorCode::InvalidArgument, "in the recipe, " + error.message(), RecipeHint, path);
+    }
+}
+
+std::string search_key(const EditRecipe& recipe) {
+    Json key{fields_to_json<edit::EditWords>(recipe.request),
+             fields_to_json<edit::SearchSettings>(recipe.request), fields_to_json(recipe.attention),
+             surroundings(recipe.job), recipe.job.use_label};
+    if (!recipe.job.cut_out.empty()) key.push_back({{"cut_out", recipe.job.cut_out}});
+    if (!recipe.job.looked_from.empty()) key.push_back({{"looked_from", recipe.job.looked_from}});
+    if (recipe.use_dreambooth) key.push_back(fields_to_json(recipe.dreambooth));
+    if (!recipe.job.segmenter.empty()) key.push_back({{"segmenter", recipe.job.segmenter}});
+    if (recipe.job.rasterizer == "cuda")
+        key.push_back({{"rasterizer", recipe.job.rasterizer}});  // other last digits
+    if (!recipe.job.text_segmenter.empty()) key.push_back({{"text_segmenter", recipe.job.text_segmenter}});
+    if (!recipe.guidance.plain_ground) key.push_back({{"plain_ground", false}});
+    return key.dump();
+}
+
+std::string valid_search_key(EditRecipe recipe) {
+    try {
+        recipe.request = edit::validated(recipe.request);
+    } catch (const Error&) { return {}; }
+    return search_key(recipe);
+}
+
+std::string tuning_key(const EditRecipe& recipe) {
+    const auto& request = recipe.request;
+    return Json{fields_to_json(recipe.dreambooth),
+                request.source,
+                request.prompt,
+                request.views,
+                request.image_size,
+                request.elevation,
+                request.background,
+                surroundings(recipe.job)}
+        .dump();
+}
+
+}  // namespace gse::pipeline

@@ -1,0 +1,130 @@
+// Remembers renders and answers.
+#include "engine/pipeline/run/run_context.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/base/error.h"
+#include "engine/base/log.h"
+#include "engine/edit/interfaces/stage_timer.h"
+#include "engine/edit/search/grabcut_segmenter.h"
+#include "engine/pipeline/models/neural_loader.h"
+
+namespace gse::pipeline {
+namespace {
+
+/// Adds up what a guidance takes.
+class MeteredViews final : public edit::MultiViewEditor {
+public:
+    MeteredViews(std::unique_ptr<edit::MultiViewEditor> views, PlaceCost& cost)
+        : views_(std::move(views)), cost_(cost) {}
+
+    edit::EditedViews edit(const std::vector<edit::EditView>& views, const edit::EditViewsRequest& input,
+                           const JobControl& job) override {
+        const auto before = network_use();
+        const edit::StageTimer timer(cost_.seconds);
+        auto targets = views_->edit(views, input, job);
+        cost_.views += views.size();
+        cost_.use += network_use() - before;
+        return targets;
+    }
+
+private:
+    std::unique_ptr<edit::MultiViewEditor> views_;
+    PlaceCost& cost_;
+};
+
+}  // namespace
+
+RunContext::RunContext(Scene scene, std::shared_ptr<neural::TextToImage> model, const JobParameters& job,
+                       Segmenters segmenters)
+    : scene_(std::move(scene)), model_(std::move(model)), painter_(0, job.rasterizer),
+      segmenters_(std::move(segmenters)) {
+    if (!segmenters_.clicks) segmenters_.clicks = edit::make_default_segmenter();
+    const auto statistics = compute_statistics(scene_.gaussians);
+    if (statistics.visible_rows == 0)
+        throw Error(ErrorCode::InvalidArgument, "the scene has no splat that can be seen",
+                    "open another scene", job.scene);
+    drawn_ = drawable(scene_.gaussians);
+    unusable_ = statistics.nan_rows + statistics.infinite_rows;
+    if (unusable_ > 0)
+        log::warning(
+            "{} of {} splats hold values that cannot be drawn ({} NaN, {} infinite or absurd); they stay as "
+            "they are "
+            "and count nowhere",
+            unusable_, statistics.count, statistics.nan_rows, statistics.infinite_rows);
+    scene_.info.up = parse_up(job.up, scene_.info);
+}
+
+void RunContext::take_model(std::shared_ptr<neural::TextToImage> model) {
+    model_ = std::move(model);
+    attention_ = nullptr;
+    recognition_ = nullptr;
+}
+
+void RunContext::ask_anew(const neural::AttentionParameters& attention) {
+    attention_ = std::make_unique<edit::CachedAttention>(model_->attention(attention));
+    recognition_ =
+        std::make_unique<edit::VocabularyRanker>(model_->image_text_encoder(), model_->known_words());
+    renders_.asked_again.clear();
+    renders_.drawn.clear();
+    place_cost_ = {};
+}
+
+std::unique_ptr<edit::MultiViewEditor> RunContext::place_drawing(const edit::EditRequest& request) {
+    if (!model_->supports_scene_conditioning()) return nullptr;
+    auto views = model_->views(edit::as_told(request.prompt), neural::SdsParameters{});
+    return views ? std::make_unique<MeteredViews>(std::move(views), place_cost_) : nullptr;
+}
+
+void RunContext::ask(const neural::AttentionParameters& attention) {
+    if (attention_ == nullptr) ask_anew(attention);
+}
+
+std::optional<edit::StudioBackground> RunContext::ground(const std::string& sentence,
+                                                         const std::vector<View>& views) {
+    if (!model_->supports_scene_conditioning()) return std::nullopt;
+    if (!ground_) {
+        ground_ = edit::ground_below(sentence, drawn_, views, scene_.info.up, painter_.rasterizer());
+        if (*ground_) log::info("the scene has hardly any ground: the model is shown it on a plain one");
+    }
+    return *ground_ ? edit::plain_ground(sentence, (*ground_)->standing, scene_.info.up) : std::nullopt;
+}
+
+edit::LocateTools RunContext::tools(const Views& views, const std::optional<edit::StudioBackground>& ground,
+                                    const JobControl& control) {
+    const std::string key = ground ? fmt::format("{} on {}", views.key, ground->ground) : views.key;
+    if (renders_key_ != key) renders_ = {};
+    renders_key_ = key;
+    edit::LocateTools tools{painter_.rasterizer(), *attention_, segmenters_.clicks.get(),
+                            segmenters_.words.get(), control};
+    tools.memory = &renders_;
+    tools.threads = &threads_;
+    tools.recognition = recognition_.get();
+    if (watch_)
+        tools.seen = [watch = watch_, list = &views.views](std::size_t view,
+                                                           const edit::ViewEvidence& evidence) {
+            watch((*list)[view], view, list->size(), evidence);
+        };
+    return tools;
+}
+
+std::vector<Image> RunContext::pictures(const std::vector<View>& views, const raster::Settings& settings,
+                                        const std::optional<edit::StudioBackground>& ground,
+                                        const JobControl& control) {
+    std::vector<Image> pictures;
+    for (const auto& view : views) {
+        if (control.stop_requested()) throw Error(ErrorCode::Cancelled, "the search was stopped");
+        const auto& painted = painter_.paint(drawn_.spans(), view.camera, settings);
+        pictures.push_back(ground ? edit::before_plain(*ground, view.camera, painted.colour, painted.alpha,
+                                                       settings.background)
+                                  : painted.colour);
+        for (auto& value : pictures.back().data) value = std::clamp(value, 0.0f, 1.0f);
+    }
+    return pictures;
+}
+
+}  // namespace gse::pipeline

@@ -1,0 +1,102 @@
+// What every stage of a run works with: the scene, the model, and what both have answered so far.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/thread_pool.h"
+#include "engine/edit/search/cached_attention.h"
+#include "engine/edit/search/locate.h"
+#include "engine/neural/api/api.h"
+#include "engine/neural/api/network_use.h"
+#include "engine/pipeline/models/segmenters.h"
+#include "engine/pipeline/run/scene_tools.h"
+#include "engine/pipeline/run/views.h"
+
+namespace gse::pipeline {
+
+/// What drawing the place of an added thing took.
+struct PlaceCost {
+    std::size_t views = 0;
+    double seconds = 0;
+    neural::NetworkUse use;
+};
+
+/// Told of each view of a search as it is attended and again once its mask is made: its number, how many
+/// there are, and what is known of it. A search begins with other views where it moves in. Calls may come
+/// from several threads.
+using ViewWatch = std::function<void(const View& view, std::size_t index, std::size_t count,
+                                     const edit::ViewEvidence& evidence)>;
+
+/// Scene and model of a run. What they have answered is remembered: that changes how long a stage takes,
+/// never what comes of it.
+class RunContext {
+public:
+    /// Of the job, the up axis and the rasterizer count. `segmenters`: where null, the one that needs no
+    /// weights. Throws Error (InvalidArgument) for a scene of which nothing can be seen, and where the
+    /// rasterizer cannot be had.
+    RunContext(Scene scene, std::shared_ptr<neural::TextToImage> model, const JobParameters& job,
+               Segmenters segmenters = {});
+
+    const Scene& scene() const { return scene_; }
+    /// The scene without what cannot be drawn; such splats stay as they are and count nowhere.
+    const GaussianSet& drawn() const { return drawn_; }
+    std::size_t unusable() const { return unusable_; }
+    neural::TextToImage& model() const { return *model_; }
+    const std::shared_ptr<neural::TextToImage>& shared_model() const { return model_; }
+    Painter& painter() { return painter_; }
+
+    /// From here on another model of the same kind answers; what the one before answered is forgotten.
+    void take_model(std::shared_ptr<neural::TextToImage> model);
+    /// Forgets what networks answered and asks with these settings from here on.
+    void ask_anew(const neural::AttentionParameters& attention);
+    /// The same, where nothing was asked yet.
+    void ask(const neural::AttentionParameters& attention);
+    /// Who is told of the views of searches from here on; empty = nobody.
+    void watch_views(ViewWatch watch) { watch_ = std::move(watch); }
+    /// What the model is shown below and behind a scene that was cut out of its surroundings, for a sentence
+    /// that says what the scene shows (edit::ground_below(), by the views of the first call); none for models
+    /// that are not shown scenes.
+    std::optional<edit::StudioBackground> ground(const std::string& sentence, const std::vector<View>& views);
+    /// What locate() calls, for these views before this ground; the views must stay while it is used; needs
+    /// ask() or ask_anew().
+    edit::LocateTools tools(const Views& views, const std::optional<edit::StudioBackground>& ground,
+                            const JobControl& control);
+    /// What draws the place of what is added, where the model can
+    /// (TextToImage::supports_scene_conditioning()), else null; its cost is counted. Not the artist's
+    /// guidance, which belongs to the loop.
+    std::unique_ptr<edit::MultiViewEditor> place_drawing(const edit::EditRequest& request);
+    const PlaceCost& place_cost() const { return place_cost_; }
+    edit::VocabularyRanker& recognition() { return *recognition_; }
+    edit::Segmenter& segmenter() { return *segmenters_.clicks; }
+    /// Renders in [0,1], before a ground where there is one. Throws Error (Cancelled) on a stop request.
+    std::vector<Image> pictures(const std::vector<View>& views, const raster::Settings& settings,
+                                const std::optional<edit::StudioBackground>& ground,
+                                const JobControl& control);
+    /// Pictures that the networks were asked about so far.
+    std::size_t questions() const { return attention_ ? attention_->asked() : 0; }
+    /// The threshold the model states for its attention; 0 before it was asked anything.
+    double stated_threshold() const { return attention_ ? attention_->threshold() : 0; }
+
+private:
+    Scene scene_;
+    GaussianSet drawn_;
+    std::size_t unusable_ = 0;
+    std::optional<std::optional<edit::StudioBackground>> ground_;  // of any sentence, once it was asked for
+    std::shared_ptr<neural::TextToImage> model_;
+    Painter painter_;
+    ThreadPool threads_;
+    std::unique_ptr<edit::CachedAttention> attention_;
+    std::unique_ptr<edit::VocabularyRanker> recognition_;
+    Segmenters segmenters_;
+    edit::ViewMemory renders_;  // of the views with this key
+    std::string renders_key_;
+    ViewWatch watch_;
+    PlaceCost place_cost_;
+};
+
+}  // namespace gse::pipeline

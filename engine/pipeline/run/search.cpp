@@ -1,0 +1,541 @@
+// Reads the scene, looks, moves in, looks again.
+#include "engine/pipeline/run/search.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <utility>
+
+#include "engine/base/check.h"
+#include "engine/base/hash.h"
+#include "engine/base/log.h"
+#include "engine/edit/masks/view_vote.h"
+#include "engine/edit/placement/head.h"
+#include "engine/edit/placement/placement_volume.h"
+#include "engine/edit/placement/upright_bounds.h"
+#include "engine/edit/request/excluded_views.h"
+#include "engine/edit/request/relation.h"
+#include "engine/edit/request/vocabulary.h"
+#include "engine/edit/search/front_reading.h"
+#include "engine/edit/search/place_drawing.h"
+#include "engine/edit/search/scene_reading.h"
+#include "engine/edit/target_views/strategies/colour_remap.h"
+#include "engine/localize/focus.h"
+#include "engine/pipeline/select/cut_out.h"
+
+namespace gse::pipeline {
+namespace {
+
+constexpr std::array<double, 5> ScanDistances{1.0, 0.7, 0.45, 0.3, 0.22};  // of the fitted orbit's radius
+constexpr int ScanViews = 6;                                               // per distance
+/// Pictures of things have more room above than below, and so have those that the starter was trained on (a
+/// figure's middle at 0.5, the picture's at 0.59). Error removed of what is added, 16 edits of seeds 55 and
+/// 56: 0.12 at 0.09, 0.13 at 0.15; 0.05 with the label framed by its box's middle, as grounds are.
+constexpr double HeadRoom = 0.15;
+/// What takes the place of another, or is worn by it, is drawn as the pictures show it that the starter
+/// learned to draw from (synth::scene_camera()): there a figure's height tells where in the picture its foot
+/// is, and half of the picture is so many heights. With the label framed by its box, as above, the foot was
+/// elsewhere, and new things floated or sank by up to a tenth of their height.
+constexpr double FigureAim = 0.59, FigureHalfPicture = 0.87;
+constexpr double StepBack = 1.2;  // of the distance, where what was drawn does not fit into the pictures
+constexpr double CutShares[] = {
+    0.6, 1};  // of the views, from which that is so, a step each: a wing may reach out of some views; every
+              // step draws the thing once more, and the second is worth it only where no view shows all of it
+constexpr double CutRim =
+    1.0 / 7;  // of a picture's side: covered so far along its rim a thing is cut off there
+constexpr double WholeShare = 0.5;    // of the views that may cut off what is seen whole
+constexpr double SameFraming = 0.05;  // of the distance: a nearer framing shows the same
+constexpr double SameFramingWorn =
+    0.12;  // the same where something is drawn that is worn: every look costs as much as an edit does
+constexpr double WearerSize = 3;   // of what it wears: a hat is a third of a figure
+constexpr double SameThing = 0.2;  // IoU of what a glance found and of what is found from nearer; share of a
+                                   // label among what was found
+constexpr double MostBack =
+    1.25;  // of the distance of a sure glance: what would be framed from farther off is no thing
+constexpr std::size_t FrontViews = 12;  // in which the front of a scene is looked for
+
+/// What is added needs room around what is there; beside it more than on it.
+double room_around(const edit::EditRequest& request) {
+    constexpr double BesideIt = 1.75;
+    const auto relation = edit::relation_of(request.prompt, request.source, request.target);
+    return edit::place_name(relation).empty() ? 1 : BesideIt;  // what is worn fits into the head room
+}
+
+bool is_cut(const Mask& mask) {
+    int rim = 0;
+    for (int i = 0; i < mask.width; ++i) rim += (mask.at(i, 0) != 0) + (mask.at(i, mask.height - 1) != 0);
+    for (int i = 0; i < mask.height; ++i) rim += (mask.at(0, i) != 0) + (mask.at(mask.width - 1, i) != 0);
+    return rim >= CutRim * std::max(mask.width, mask.height);
+}
+
+/// Whether what was looked for goes on beyond the pictures in that share of the views.
+bool is_cut_off(const edit::LocateResult& result, double share) {
+    double seen = 0, cut = 0;
+    for (const auto& view : result.views) {
+        if (view.failed) continue;
+        seen += 1, cut += is_cut(view.mask) ? 1 : 0;
+    }
+    return seen > 0 && cut >= share * seen;
+}
+
+const Label& thing_of(const edit::LocateResult& result) {
+    return result.mode == edit::EditMode::Add ? result.source_label : result.label;
+}
+
+/// How many rows both have.
+double common(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b) {
+    return static_cast<double>(
+        std::inner_product(a.begin(), a.end(), b.begin(), std::size_t{0}, std::plus{},
+                           [](auto first, auto second) { return std::size_t{first != 0 && second != 0}; }));
+}
+
+/// Whether two searches for one word found the same splats, roughly.
+bool same_thing(const edit::LocateResult& a, const edit::LocateResult& b) {
+    const auto &first = *thing_of(a).bits, &second = *thing_of(b).bits;
+    const double both = common(first, second);
+    return both >= SameThing * (common(first, first) + common(second, second) - both);
+}
+
+/// Whether a fair share of what is labelled by hand is among what was found.
+bool holds_some(const Label& found, const std::vector<std::uint8_t>& by_hand) {
+    return common(*found.bits, by_hand) >= SameThing * common(by_hand, by_hand);
+}
+
+/// From where a thing is seen as large, and as high in the picture, as figures that the starter learned from.
+OrbitParameters framed_figure(const edit::UprightBounds& standing, const OrbitParameters& orbit) {
+    const double height = edit::figure_height(standing);
+    OrbitParameters framed = orbit;
+    framed.centre = standing.foot + normalized(orbit.up) * (FigureAim * height);
+    framed.radius = FigureHalfPicture * height / std::tan(orbit.fov_x / 2);
+    return framed;
+}
+
+bool worth_moving(const OrbitParameters& from, const OrbitParameters& to, edit::EditMode mode,
+                  bool as_figure) {
+    if (!as_figure) return localize::worth_refocusing(from, to);
+    const double most = (mode == edit::EditMode::Add ? SameFramingWorn : SameFraming) * from.radius;
+    return std::abs(to.radius - from.radius) > most || length(to.centre - from.centre) > most;
+}
+
+std::string key_of(const Located& located) {
+    Hash label;
+    label.bytes(located.label.data(), located.label.size());
+    label.bytes(located.result.label.bits->data(), located.result.label.bits->size());
+    const auto& thresholds = static_cast<const edit::LabelThresholds&>(located.recipe.request);
+    return fmt::format("{} {} {} {}", search_key(located.recipe), fields_to_json(thresholds).dump(),
+                       located.views.key, label.value());
+}
+
+/// What an unsure search found is seen in its views only.
+Located finished(Located located) {
+    auto& result = located.result;
+    if (!located.found())
+        for (auto* label : {&result.label, &result.source_label})
+            *label = make_label(label->name, std::vector<float>(label->bits->size(), 0.0f), 0.5f);
+    located.key = key_of(located);
+    return located;
+}
+
+/// Words are looked for on it; a label is what it is.
+std::optional<edit::StudioBackground> ground_shown(RunContext& workplace, const EditRecipe& recipe,
+                                                   const Views& views) {
+    return recipe.guidance.plain_ground ? workplace.ground(edit::sentence_before(recipe.request), views.views)
+                                        : std::nullopt;
+}
+
+edit::LocateResult look_from(RunContext& workplace, const Views& views, const EditRecipe& recipe,
+                             const std::vector<std::uint8_t>* label, const JobControl& control) {
+    auto input = question(workplace, recipe, views, label);
+    input.ground = label == nullptr ? ground_shown(workplace, recipe, views) : std::nullopt;
+    auto tools = workplace.tools(views, input.ground, control);
+    const auto drawing = workplace.place_drawing(recipe.request);
+    tools.drawing = drawing.get();
+    tools.plain_ground = recipe.guidance.plain_ground;
+    return edit::locate(input, tools);
+}
+
+/// One search; every step of it gives a new value.
+class Search {
+public:
+    Search(RunContext& workplace, EditRecipe recipe, const Views& views, const Hints& hints,
+           const JobControl& control)
+        : workplace_(workplace), recipe_(std::move(recipe)), views_(views), hints_(hints), control_(control) {
+    }
+
+    Located run() {
+        Located located = searched();
+        located.result.room = room_on_wearer(located);
+        return located;
+    }
+
+private:
+    Located searched() {
+        const bool by_label =
+            !hints_.label.empty() && (recipe_.job.brings_label() ||
+                                      !edit::knows(workplace_.model().known_words(), recipe_.request.source));
+        ground();  // as these views show it
+        read_scene(moves() && !by_label);
+        if (by_label) return from_label();
+        Located located = moves() ? from_all_distances() : moved_in(views_, {});
+        if (hints_.label.empty() || (located.found() && holds_some(thing_of(located.result), hints_.label)))
+            return located;
+        log::info("{}; the label alone says what may change",
+                  located.found() ? "what the words find is not what is labelled" : located.result.message);
+        return from_label();
+    }
+
+    bool moves() const { return views_.automatic && recipe_.request.focus; }
+
+    std::optional<edit::StudioBackground> ground() {
+        return hints_.label.empty() ? ground_shown(workplace_, recipe_, views_) : std::nullopt;
+    }
+
+    Located from_label() { return moved_in(views_, hints_.label); }
+
+    /// Asks the model's encoders, where it has them, which word is new and which distances are worth a
+    /// search.
+    void read_scene(bool scans) {
+        distances_ = scans ? std::vector<double>(ScanDistances.begin(), ScanDistances.end())
+                           : std::vector<double>{1.0};
+        auto& recognition = workplace_.recognition();
+        if (!recognition.compares() || !(scans || hints_.target_open)) return;
+        auto& request = recipe_.request;
+        const int side = request.image_size;
+        std::vector<std::vector<Image>> pictures;
+        for (const double distance : distances_) {
+            const auto some = scans ? orbit_views(nearer(views_.orbit, distance), ScanViews, side, side)
+                                    : farthest_views(views_.views, std::size_t{ScanViews});
+            pictures.push_back(
+                workplace_.pictures(some, render_settings(workplace_.scene(), request), ground(), control_));
+            control_.report("comparing the sentence with the scene", static_cast<int>(pictures.size()),
+                            static_cast<int>(distances_.size()));
+        }
+        std::vector<std::string> targets{request.target};
+        if (hints_.target_open) targets = edit::possible_targets(request.prompt, request.source, hints_.said);
+        if (const auto thing = edit::thing_in_place(request); hints_.target_open && !thing.empty())
+            targets = {thing};
+        // What is only drawn the encoder is not told: it is new where the scene shows all else that the
+        // sentence says.
+        const auto known = workplace_.model().known_words(),
+                   said = edit::promptable_vocabulary(
+                       known, edit::with_dyes(workplace_.model().drawn_words(), known));
+        std::erase_if(targets, [&](const auto& word) { return !edit::knows(said, word); });
+        const auto reading = edit::read_scene(recognition, request, targets, pictures, known);
+        if (hints_.target_open)
+            log::info("new in the sentence: \"{}\" (what it says without fits the scene to {:.2f})",
+                      reading.target, reading.fit);
+        request.target = reading.target;
+        target_read_ = hints_.target_open;
+        std::vector<double> worth;
+        if (scans && ground() && reading.distances.front() != 0)
+            worth.push_back(ScanDistances.front());  // a scene of one thing shows it whole from there
+        for (const auto index : reading.distances) worth.push_back(distances_[index]);
+        distances_ = std::move(worth);
+    }
+
+    /// From where the artist looked at the thing, radians; nothing where that is not known.
+    std::optional<double> looked_from() const {
+        const auto& job = recipe_.job;
+        if (!job.looked_from.empty() || job.cut_out.empty())
+            return parse_front(job.looked_from, "--looked-from");
+        return azimuth_of_box(job.cut_out) * Degree;
+    }
+
+    /// The views with their front, where the recipe leaves it open: that which their pictures show, where the
+    /// model's encoder can tell, or else the side that the artist looked at.
+    Views faced(Views views) {
+        if (!recipe_.job.front.empty() || !views.words.empty() ||
+            !edit::knows(workplace_.model().known_words(), "front side back view"))
+            return views;
+        const auto looked = looked_from();
+        const auto front = edit::chosen_front(front_shown(views), looked);
+        if (front && front == looked)
+            log::info("the side that was looked at ({:.0f} degrees) is taken for the front", *front / Degree);
+        return front ? facing(std::move(views), *front, recipe_) : views;
+    }
+
+    std::optional<edit::FrontReading> front_shown(const Views& views) {
+        auto& recognition = workplace_.recognition();
+        if (!recognition.compares()) return std::nullopt;
+        const auto some = farthest_views(views.views, FrontViews);
+        if (some.size() < 3) return std::nullopt;
+        std::vector<double> azimuths;
+        for (const auto& view : some) azimuths.push_back(azimuth_of(view.camera, views.orbit));
+        const auto pictures = workplace_.pictures(some, render_settings(workplace_.scene(), recipe_.request),
+                                                  ground(), control_);
+        const auto read =
+            edit::read_front(recognition, edit::sentence_before(recipe_.request), pictures, azimuths);
+        log::info("the front is seen at {:.0f} degrees (lead {:.4f})", read.azimuth / Degree, read.lead);
+        return read;
+    }
+
+    edit::LocateResult look(const EditRecipe& recipe, const Views& views,
+                            const std::vector<std::uint8_t>& label) {
+        return look_from(workplace_, views, recipe, label.empty() ? nullptr : &label, control_);
+    }
+
+    /// What few views from one distance find.
+    struct Glance {
+        OrbitParameters orbit;
+        edit::LocateResult result;
+        bool sure() const { return result.problem == edit::SearchProblem::None; }
+    };
+
+    /// The fitted orbit shows the whole scene; what the words mean may be a small part of it. The distance
+    /// from which it is found most surely wins; a few views tell, and what something is added to is enough.
+    Glance best_glance(const std::vector<double>& distances) {
+        EditRecipe scan = recipe_;
+        scan.request.views = std::min(scan.request.views, ScanViews);
+        scan.request.mode = "modify";
+        Glance best{views_.orbit, {}};
+        best.result.problem = edit::SearchProblem::FewViews;
+        double most = -1;
+        for (const double distance : distances) {
+            const Views views = views_on(nearer(views_.orbit, distance), scan);
+            auto found = look(scan, views, {});
+            if (found.problem != edit::SearchProblem::None && found.problem != edit::SearchProblem::Unsure)
+                continue;  // try nearer
+            log::debug("orbit at {:.2f} of the fitted distance: confidence {:.3f}", distance,
+                       found.confidence.value);
+            const bool whole =
+                ground() && found.problem == edit::SearchProblem::None && !is_cut_off(found, WholeShare);
+            const double sure =
+                found.confidence.value +
+                (whole ? 1 : 0);  // of what stands in nothing a part looks much like the whole
+            if (sure > most) {
+                most = sure;
+                best = {views.orbit, std::move(found)};
+            }
+        }
+        return best;
+    }
+
+    /// Where a thing is drawn anew, or what it wears; what is beside it, or a ground, is framed by its box.
+    bool framed_as_figure(edit::EditMode mode) const {
+        return mode == edit::EditMode::Replace ||
+               (edit::draws_place(recipe_.request, mode) && workplace_.model().supports_scene_conditioning());
+    }
+
+    /// Where the wearer of what is labelled stands, or its head.
+    edit::UprightBounds standing_of_wearer(const Label& label, const OrbitParameters& orbit,
+                                           const Vec3& front) {
+        if (!wearer_) wearer_ = wearer_of(label, orbit);
+        auto bits = *wearer_;
+        for (std::size_t row = 0; row < bits.size(); ++row) bits[row] &= (*label.bits)[row] == 0 ? 1 : 0;
+        if (std::find(bits.begin(), bits.end(), std::uint8_t{1}) == bits.end()) return {};
+        return edit::wearer_of(recipe_.request, workplace_.drawn(), bits, orbit.up, front, true).standing;
+    }
+
+    /// All of a scene that was cut out of its surroundings; else what a few views around what is worn find
+    /// for the first other thing of the sentence. Empty where nothing is found.
+    std::vector<std::uint8_t> wearer_of(const Label& worn, const OrbitParameters& orbit) {
+        const std::size_t rows = workplace_.drawn().size();
+        if (ground_shown(workplace_, recipe_, views_)) return std::vector<std::uint8_t>(rows, 1);
+        EditRecipe scan = recipe_;
+        auto& request = scan.request;
+        const auto things = edit::things_named(request.prompt, {request.source, request.target});
+        const auto wearer = std::find_if(things.begin(), things.end(), [&](const auto& thing) {
+            return thing != request.source && thing != request.target &&
+                   edit::knows(workplace_.model().known_words(), thing);
+        });
+        if (wearer == things.end()) return {};
+        request.prompt = edit::sentence_before(recipe_.request);  // of what is new the scene shows nothing
+        request.target = recipe_.request.source;
+        request.source = *wearer;
+        request.mode = "modify";
+        request.views = std::min(request.views, ScanViews);
+        auto around = localize::focus_orbit(workplace_.drawn(), *worn.bits, orbit, {});
+        around.radius *= WearerSize;
+        const auto found = look(scan, views_on(around, scan), {});
+        log::debug("\"{}\", who wears \"{}\": confidence {:.2f}", *wearer, recipe_.request.source,
+                   found.confidence.value);
+        return found.problem == edit::SearchProblem::None ? *found.label.bits : std::vector<std::uint8_t>{};
+    }
+
+    /// Where something may be that is worn elsewhere than what it takes the place of.
+    edit::VoxelRegion room_on_wearer(const Located& located) {
+        const auto& result = located.result;
+        if (!located.found() || !edit::moves_worn_place(recipe_.request, result.mode)) return {};
+        const auto standing = standing_of_wearer(result.label, located.views.orbit, located.views.front);
+        return edit::room_above(standing, located.views.orbit.up, located.views.front,
+                                recipe_.request.add_room);
+    }
+
+    /// The orbit that frames a label, with room where something is put beside it; `front`: of the scene.
+    OrbitParameters focused_on(const Label& label, edit::EditMode mode, const OrbitParameters& orbit,
+                               const Vec3& front) {
+        if (framed_as_figure(mode)) {
+            const auto standing = edit::wearer_of(recipe_.request, workplace_.drawn(), *label.bits, orbit.up,
+                                                  front, mode == edit::EditMode::Add)
+                                      .standing;
+            const auto wearer = edit::replaces_accessory(recipe_.request, mode)
+                                    ? standing_of_wearer(label, orbit, front)
+                                    : edit::UprightBounds{};
+            if (standing.found()) return framed_figure(wearer.found() ? wearer : standing, orbit);
+        }
+        localize::FocusParameters framing;
+        framing.head_room = HeadRoom;
+        auto focused = localize::focus_orbit(workplace_.drawn(), *label.bits, orbit, framing);
+        if (mode == edit::EditMode::Add) focused.radius *= room_around(recipe_.request);
+        return focused;
+    }
+
+    /// Where few views were sure, all views look from where these would move to.
+    Located from_glance(const std::vector<double>& distances) {
+        const Glance glance = best_glance(distances);
+        if (!glance.sure()) return moved_in(views_on(glance.orbit, recipe_), {});
+        const auto mode = edit::decide_mode(recipe_.request, std::nullopt).first;
+        const auto focused = focused_on(glance.result.label, mode, glance.orbit, views_.front);
+        const bool frames =
+            focused.radius < MostBack * glance.orbit.radius;  // a thing; a ground is seen as well from here
+        const Views views = views_on(frames ? focused : glance.orbit, recipe_);
+        Located near = framed_as_figure(mode) && frames
+                           ? moved_in(views, {})
+                           : seen_from(faced(views));  // a glance tells a thing's size roughly
+        return !frames || (near.found() && same_thing(near.result, glance.result))
+                   ? near
+                   : seen_from_afar(glance, std::move(near));
+    }
+
+    Located seen_from(const Views& views) {
+        return {views, recipe_, {}, look(recipe_, views, {}), target_read_, {}};
+    }
+
+    /// So near that it fills the pictures the model may not know what it knew within its surroundings: a hat
+    /// without who wears it.
+    Located seen_from_afar(const Glance& glance, Located near) {
+        Located far = seen_from(faced(views_on(glance.orbit, recipe_)));
+        if (!far.found()) return near;
+        log::info("\"{}\" is not known from near by: it is looked for from farther off", far.result.word);
+        if (!framed_as_figure(far.result.mode) || far.result.mode == edit::EditMode::Add) return far;
+        Located drawn = moved_in(near.views, *far.result.label.bits);  // where it is drawn anew
+        drawn.result.confidence = far.result.confidence;               // that of the search which found it
+        return drawn;
+    }
+
+    /// Looks from the views as they are, and once more from nearer where what was found is small.
+    Located moved_in(const Views& from, const std::vector<std::uint8_t>& by_hand) {
+        const Views views = by_hand.empty() ? framed_as_worn(faced(from)) : faced(from);
+        Located located{views, recipe_, by_hand, look(recipe_, views, by_hand), target_read_, {}};
+        const auto& result = located.result;
+        const auto& label = thing_of(result);
+        if (!moves() ||
+            std::find(label.bits->begin(), label.bits->end(), std::uint8_t{1}) == label.bits->end())
+            return located;
+        const auto focused = focused_on(label, result.mode, views.orbit, views.front);
+        const bool as_figure = framed_as_figure(result.mode);
+        if (worth_moving(views.orbit, focused, result.mode, as_figure)) {
+            located.views = faced(views_on(focused, recipe_));
+            located.result = look(recipe_, located.views, by_hand);
+        }
+        const bool worn =
+            result.mode == edit::EditMode::Add || edit::replaces_accessory(recipe_.request, result.mode);
+        for (const double share : CutShares) {
+            if (!worn || !as_figure || !is_cut_off(result, share)) break;
+            log::info("\"{}\" does not fit into the pictures; it is looked for from farther off",
+                      result.word);
+            located.views = faced(views_on(nearer(located.views.orbit, StepBack), recipe_));
+            located.result = look(recipe_, located.views, by_hand);
+        }
+        return located;
+    }
+
+    /// To draw something new into the views takes longest, and from where follows from the thing that wears
+    /// it alone.
+    Views framed_as_worn(const Views& from) {
+        const auto mode = edit::decide_mode(recipe_.request, std::nullopt).first;
+        if (!moves() || mode != edit::EditMode::Add || !framed_as_figure(mode)) return from;
+        EditRecipe wearer = recipe_;
+        wearer.request.mode = "modify";
+        const auto found = look(wearer, from, {});
+        if (found.problem != edit::SearchProblem::None) return from;
+        const auto focused = focused_on(found.label, mode, from.orbit, from.front);
+        return worth_moving(from.orbit, focused, mode, true) ? faced(views_on(focused, recipe_)) : from;
+    }
+
+    Located from_all_distances() {
+        Located located = from_glance(distances_);
+        std::vector<double> others;
+        for (const double distance : ScanDistances)
+            if (std::find(distances_.begin(), distances_.end(), distance) == distances_.end())
+                others.push_back(distance);
+        if (located.found() || others.empty()) return located;
+        // The pictures as a whole fitted best where the word was not found.
+        Located other = from_glance(others);
+        const bool better = other.found() || other.result.confidence.value > located.result.confidence.value;
+        return better ? other : located;
+    }
+
+    RunContext& workplace_;
+    EditRecipe recipe_;
+    const Views& views_;
+    const Hints& hints_;
+    const JobControl& control_;
+    std::vector<double> distances_;  // shares of the fitted orbit's radius that are tried
+    bool target_read_ = false;
+    std::optional<std::vector<std::uint8_t>> wearer_;  // [N] of what is worn, once it was looked for
+};
+
+}  // namespace
+
+edit::LocateInput question(const RunContext& workplace, const EditRecipe& recipe, const Views& views,
+                           const std::vector<std::uint8_t>* label) {
+    const auto& scene = workplace.scene();
+    const auto elevations = views.azimuths.empty() ? std::vector<double>{} : elevations_above(views);
+    return {workplace.drawn(),
+            views.views,
+            views.words,
+            recipe.request,
+            render_settings(scene, recipe.request),
+            scene.info.up,
+            views.front,
+            label,
+            workplace.model().known_words(),
+            views.azimuths,
+            elevations};
+}
+
+Located locate(RunContext& workplace, const EditRecipe& recipe, const Views& views, const Hints& hints,
+               const JobControl& control) {
+    if (hints.label.empty())
+        edit::require_views(edit::views_left_out(recipe.request.left_out),
+                            views.views.size());  // before any work
+    workplace.ask_anew(recipe.attention);
+    EditRecipe all = recipe;  // from all views; what is left out is a matter of those that it ends with
+    all.request.left_out.clear();
+    Located located = finished(Search(workplace, all, views, hints, control).run());
+    if (recipe.request.left_out.empty() || located.by_label()) return located;
+    all = located.recipe;
+    all.request.left_out = recipe.request.left_out;
+    return locate_again(workplace, located, all, control);
+}
+
+Located locate_again(RunContext& workplace, const Located& located, const EditRecipe& recipe,
+                     const JobControl& control) {
+    workplace.ask(recipe.attention);
+    Located again{located.views, recipe, located.label, {}, located.target_read, {}};
+    const auto* label = again.by_label() ? &again.label : nullptr;
+    again.result = look_from(workplace, again.views, recipe, label, control);
+    if (edit::moves_worn_place(recipe.request, again.result.mode)) again.result.room = located.result.room;
+    return finished(std::move(again));
+}
+
+Located locate_by_label(RunContext& workplace, const Located& located, std::vector<std::uint8_t> label,
+                        const JobControl& control) {
+    Located labelled = located;
+    labelled.label = std::move(label);
+    return locate_again(workplace, labelled, labelled.recipe, control);
+}
+
+Located with_label(const Located& located, const std::vector<std::uint8_t>& bits) {
+    Located corrected = located;
+    corrected.result.label.bits = std::make_shared<const std::vector<std::uint8_t>>(bits);
+    corrected.key = key_of(corrected);
+    return corrected;
+}
+
+}  // namespace gse::pipeline

@@ -1,0 +1,58 @@
+// Views -> Located: what of the scene an edit is about.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/edit/search/locate.h"
+#include "engine/pipeline/run/run_context.h"
+#include "engine/pipeline/run/views.h"
+
+namespace gse::pipeline {
+
+/// What the artist says beyond the recipe.
+struct Hints {
+    std::vector<std::uint8_t> label;  // [N] made by hand: says where when the words do not; empty = none
+    std::vector<std::string> said;    // words that the scene is known to show: no news
+    bool target_open = false;  // the recipe's target is only guessed from the sentence: the pictures decide
+};
+
+/// What was found. A value: another threshold or a corrected label is another one.
+struct Located {
+    Views views;                      // where it was found from
+    EditRecipe recipe;                // for which: with the word that the pictures said is new
+    std::vector<std::uint8_t> label;  // by hand, where that alone says what may change; empty = the words did
+    edit::LocateResult result;
+    bool target_read = false;  // the pictures said which word is new, and not the recipe
+    std::string key;           // of all that it follows from, beside the scene and the model
+
+    bool found() const { return result.problem == edit::SearchProblem::None; }
+    bool by_label() const { return !label.empty(); }
+};
+
+/// Works out which word is new where that is open, looks from all views, moves in on what was found, looks
+/// again. With a label made by hand, a word that the model does not know is not looked for, and one that is
+/// not found does no harm. A search that comes to nothing is a result too: see found(). The recipe's request
+/// is validated. Throws Error (Cancelled) on a stop request, and for failures of the tools. Views that the
+/// recipe leaves out are of those that it ends with.
+Located locate(RunContext& workplace, const EditRecipe& recipe, const Views& views, const Hints& hints,
+               const JobControl& control);
+
+/// From the same views for a recipe with the same search_key(): other thresholds; networks are asked only
+/// what they were not asked yet.
+Located locate_again(RunContext& workplace, const Located& located, const EditRecipe& recipe,
+                     const JobControl& control);
+
+/// The same words with a label made by hand, [N] 0 or 1, which alone says what may change.
+Located locate_by_label(RunContext& workplace, const Located& located, std::vector<std::uint8_t> label,
+                        const JobControl& control);
+
+/// The label corrected by hand, [N] 0 or 1 (modify mode).
+Located with_label(const Located& located, const std::vector<std::uint8_t>& bits);
+
+/// The question that a recipe puts to its views; refers to what it is given.
+edit::LocateInput question(const RunContext& workplace, const EditRecipe& recipe, const Views& views,
+                           const std::vector<std::uint8_t>* label);
+
+}  // namespace gse::pipeline

@@ -1,0 +1,328 @@
+// Picture, box, mask, votes.
+#include "engine/pipeline/select/cut_out.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "engine/base/error.h"
+#include "engine/base/printable.h"
+#include "engine/edit/placement/ground_rows.h"
+#include "engine/edit/search/grabcut_segmenter.h"
+#include "engine/localize/back_projection.h"
+#include "engine/localize/clusters.h"
+#include "engine/pipeline/run/scene_tools.h"
+#include "engine/pipeline/select/cut_out_sides.h"
+
+namespace gse::pipeline {
+namespace {
+
+constexpr int LongestSide = 512;      // pixels of the picture: GrabCut takes a third of a second for it
+constexpr double Surroundings = 0.5;  // of the box's sides, that the picture shows around it
+constexpr double MostEnlarged = 4;    // of the screen's pixels
+constexpr float Opaque = 0.5f;        // alpha
+constexpr double Beside =
+    0.02;  // of the picture's longer side: so far beside the outline splats may be the thing's
+
+/// The part of the view around the area.
+struct Section {
+    Camera camera;
+    double left = 0, top = 0, scale = 1;  // of its pixels in the view's
+    ScreenArea area;                      // in its pixels
+    edit::BoxPrompt box;
+};
+
+edit::BoxPrompt box_of(const ScreenArea& area) {
+    edit::BoxPrompt box{1e9, 1e9, -1e9, -1e9};
+    for (const auto& point : area.polygon)
+        box = {std::min<double>(box.x0, point[0]), std::min<double>(box.y0, point[1]),
+               std::max<double>(box.x1, point[0]), std::max<double>(box.y1, point[1])};
+    return box;
+}
+
+std::optional<Section> section_of(const CutOutRequest& request) {
+    const auto& view = request.camera;
+    auto box = box_of(request.area);
+    const double across = (box.x1 - box.x0) * Surroundings, down = (box.y1 - box.y0) * Surroundings;
+    Section section;
+    section.left = std::floor(std::clamp(box.x0 - across, 0.0, 1.0 * view.width));
+    section.top = std::floor(std::clamp(box.y0 - down, 0.0, 1.0 * view.height));
+    const double width = std::ceil(std::clamp(box.x1 + across, 0.0, 1.0 * view.width)) - section.left;
+    const double height = std::ceil(std::clamp(box.y1 + down, 0.0, 1.0 * view.height)) - section.top;
+    if (request.area.polygon.empty() || box.x1 - box.x0 < 1 || box.y1 - box.y0 < 1 || width < 1 || height < 1)
+        return std::nullopt;
+    section.scale = std::min(MostEnlarged, LongestSide / std::max(width, height));
+    section.camera = view;
+    section.camera.width = std::max(1, static_cast<int>(std::lround(width * section.scale)));
+    section.camera.height = std::max(1, static_cast<int>(std::lround(height * section.scale)));
+    section.camera.fx *= section.scale, section.camera.fy *= section.scale;
+    section.camera.cx = (view.cx - section.left) * section.scale,
+    section.camera.cy = (view.cy - section.top) * section.scale;
+    for (const auto& point : request.area.polygon)
+        section.area.polygon.push_back({static_cast<float>((point[0] - section.left) * section.scale),
+                                        static_cast<float>((point[1] - section.top) * section.scale)});
+    box = box_of(section.area);
+    section.box = {std::clamp(box.x0, 0.0, 1.0 * section.camera.width),
+                   std::clamp(box.y0, 0.0, 1.0 * section.camera.height),
+                   std::clamp(box.x1, 0.0, 1.0 * section.camera.width),
+                   std::clamp(box.y1, 0.0, 1.0 * section.camera.height)};
+    return section;
+}
+
+bool holds(const edit::BoxPrompt& box, int x, int y) {
+    return x + 0.5 >= box.x0 && x + 0.5 < box.x1 && y + 0.5 >= box.y0 && y + 0.5 < box.y1;
+}
+
+Mask mask_of(const Section& section) {
+    Mask mask(section.camera.width, section.camera.height);
+    for (int y = 0; y < mask.height; ++y)
+        for (int x = 0; x < mask.width; ++x) mask.at(x, y) = holds(section.box, x, y) ? 1 : 0;
+    return mask;
+}
+
+/// What of the box's pixels of a colour the surroundings do not explain, in [0,1]: GrabCut begins with it,
+/// because most of a box may show what is around the thing.
+Image unexplained(const Image& picture, const edit::BoxPrompt& box) {
+    constexpr int levels = 16;  // of a channel
+    const auto bin_of = [&](int x, int y) {
+        std::size_t bin = 0;
+        for (int c = 0; c < 3; ++c)
+            bin = bin * levels + static_cast<std::size_t>(
+                                     std::min(levels - 1, static_cast<int>(picture.at(x, y, c) * levels)));
+        return bin;
+    };
+    std::vector<double> inside(levels * levels * levels), outside(inside.size());
+    double in = 0, out = 0;
+    for (int y = 0; y < picture.height; ++y)
+        for (int x = 0; x < picture.width; ++x) {
+            const bool within = holds(box, x, y);
+            ++(within ? inside : outside)[bin_of(x, y)];
+            ++(within ? in : out);
+        }
+    Image hint(picture.width, picture.height, 1);
+    for (int y = 0; y < picture.height; ++y)
+        for (int x = 0; x < picture.width; ++x) {
+            if (!holds(box, x, y)) continue;
+            const auto bin = bin_of(x, y);
+            hint.at(x, y, 0) =
+                out > 0 ? static_cast<float>(std::max(0.0, 1 - outside[bin] / out * in / inside[bin])) : 1.0f;
+        }
+    return hint;
+}
+
+/// The square of the distance to a colour that all but a few of the opaque pixels have; negative where there
+/// are none.
+double distance_from_most(const raster::ForwardOutput& picture, const std::array<float, 3>& colour,
+                          std::vector<float>& distances) {
+    constexpr double few = 0.05;
+    distances.clear();
+    for (std::size_t pixel = 0; pixel < picture.alpha.data.size(); ++pixel) {
+        if (picture.alpha.data[pixel] < Opaque) continue;
+        float sum = 0;
+        for (std::size_t c = 0; c < 3; ++c)
+            sum += std::pow(std::clamp(picture.colour.data[pixel * 3 + c], 0.0f, 1.0f) - colour[c], 2.0f);
+        distances.push_back(sum);
+    }
+    if (distances.empty()) return -1;
+    const auto place =
+        distances.begin() + static_cast<std::ptrdiff_t>(few * static_cast<double>(distances.size() - 1));
+    std::nth_element(distances.begin(), place, distances.end());
+    return static_cast<double>(*place);
+}
+
+/// Something dark before a dark nothing has no outline: where much of what is opaque looks like the
+/// background, another colour, which is least like any of it. Elsewhere the background stays: black, it also
+/// stands for shadows, which are not the thing.
+std::array<float, 3> telling_background(const raster::ForwardOutput& picture,
+                                        const std::array<float, 3>& background) {
+    constexpr double alike = 0.16 * 0.16,
+                     least_nothing = 0.005;  // in RGB; of the pixels: less has no outline anyway
+    constexpr std::array<std::array<float, 3>, 9> colours{{{1, 1, 1},
+                                                           {0.5f, 0.5f, 0.5f},
+                                                           {0, 0, 0},
+                                                           {0, 1, 0},
+                                                           {1, 0, 1},
+                                                           {0, 0, 1},
+                                                           {0, 1, 1},
+                                                           {1, 1, 0},
+                                                           {1, 0, 0}}};
+    std::vector<float> scratch;
+    scratch.reserve(picture.alpha.data.size());
+    const double distance = distance_from_most(picture, background, scratch);
+    const double nothing = static_cast<double>(picture.alpha.data.size() - scratch.size());
+    if (distance < 0 || distance > alike ||
+        nothing < least_nothing * static_cast<double>(picture.alpha.data.size()))
+        return background;
+    std::array<float, 3> best = background;
+    double farthest = distance;
+    for (const auto& colour : colours)
+        if (const double far = distance_from_most(picture, colour, scratch); far > farthest)
+            farthest = far, best = colour;
+    return best;
+}
+
+/// Where the picture is opaque at about the depths that the mask's pixels have.
+Mask level_with(const Mask& mask, const raster::ForwardOutput& picture, double focal) {
+    constexpr double trim = 0.02, gap = 0.1;  // of the depths; of the mask's longer side
+    std::vector<float> depths;
+    for (std::size_t i = 0; i < mask.data.size(); ++i)
+        if (mask.data[i] != 0 && picture.alpha.data[i] > Opaque)
+            depths.push_back(picture.depth.data[i] / picture.alpha.data[i]);
+    Mask level(mask.width, mask.height);
+    if (depths.empty()) return level;
+    std::sort(depths.begin(), depths.end());
+    const auto at = [&](double share) {
+        return static_cast<double>(
+            depths[static_cast<std::size_t>(share * static_cast<double>(depths.size() - 1))]);
+    };
+    const auto box = localize::bounds_of(mask);
+    const double reach = gap * std::max(box.width, box.height) / focal * at(0.5);
+    for (std::size_t i = 0; i < level.data.size(); ++i) {
+        if (!(picture.alpha.data[i] > Opaque)) continue;
+        const auto depth = static_cast<double>(picture.depth.data[i] / picture.alpha.data[i]);
+        level.data[i] = depth > at(trim) - reach && depth < at(1 - trim) + reach ? 1 : 0;
+    }
+    return level;
+}
+
+/// Whether a row's centre lies in the mask or just beside it.
+bool centred(const GaussianSet& set, std::size_t row, const Camera& camera, const Mask& mask) {
+    const auto positions = set.spans().position;
+    const Vec3 at = camera.to_camera({positions[row * 3], positions[row * 3 + 1], positions[row * 3 + 2]});
+    if (!(at[2] > 0)) return false;
+    const double x = camera.fx * at[0] / at[2] + camera.cx, y = camera.fy * at[1] / at[2] + camera.cy;
+    const double reach = Beside * std::max(mask.width, mask.height);
+    if (!(x > -reach && x < mask.width + reach && y > -reach && y < mask.height + reach)) return false;
+    const auto from = [&](double value) { return std::max(0, static_cast<int>(std::floor(value - reach))); };
+    const auto to = [&](double value, int size) {
+        return std::min(size - 1, static_cast<int>(std::floor(value + reach)));
+    };
+    for (int v = from(y); v <= to(y, mask.height); ++v)
+        for (int u = from(x); u <= to(x, mask.width); ++u)
+            if (mask.at(u, v) != 0) return true;
+    return false;
+}
+
+/// Rows in the mask that are seen mostly inside it, the most visible first, until they make up nearly all of
+/// it: what hides behind them is seen through them a little, and the far ends of what is beside it show in
+/// it.
+std::vector<std::uint8_t> seen_rows(const GaussianSet& set, const Camera& camera, const Mask& mask,
+                                    const raster::Settings& settings, Painter& painter) {
+    constexpr double mostly = 0.5, nearly_all = 0.98;
+    localize::MaskedView view{camera, Image(mask.width, mask.height, 1)};
+    std::copy(mask.data.begin(), mask.data.end(), view.mask.data.begin());
+    const auto votes = localize::back_project(set.spans(), {&view, 1}, settings, painter.rasterizer());
+    std::vector<std::uint32_t> inside;
+    double all = 0;
+    for (std::size_t row = 0; row < set.size(); ++row) {
+        if (!(static_cast<double>(votes.weight[row]) > mostly) || !(votes.evidence[row] > 0) ||
+            !centred(set, row, camera, mask))
+            continue;
+        inside.push_back(static_cast<std::uint32_t>(row));
+        all += votes.evidence[row];
+    }
+    std::sort(inside.begin(), inside.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return votes.evidence[a] != votes.evidence[b] ? votes.evidence[a] > votes.evidence[b] : a < b;
+    });
+    std::vector<std::uint8_t> rows(set.size(), 0);
+    double sum = 0;
+    for (std::size_t i = 0; i < inside.size() && sum < nearly_all * all; ++i) {
+        rows[inside[i]] = 1;
+        sum += votes.evidence[inside[i]];
+    }
+    return rows;
+}
+
+/// Four or seven numbers with commas between; throws Error.
+std::vector<double> numbers_of(const std::string& text) {
+    std::vector<double> numbers;
+    std::size_t begin = 0;
+    while (begin <= text.size()) {
+        const auto end = std::min(text.find(',', begin), text.size());
+        const auto first = text.data() + begin, last = text.data() + end;
+        double number = 0;
+        const auto read = std::from_chars(first, last, number);
+        if (read.ec != std::errc{} || read.ptr != last || !std::isfinite(number)) break;
+        numbers.push_back(number);
+        begin = end + 1;
+    }
+    if (begin <= text.size() || (numbers.size() != 4 && numbers.size() != 7))
+        throw Error(ErrorCode::InvalidArgument, "--cut-out \"" + printable(text) + "\" is no box",
+                    "give LEFT,TOP,RIGHT,BOTTOM as shares of the picture, as in 0.3,0.2,0.7,0.9, and "
+                    ",AZIMUTH,ELEVATION,ZOOM behind it where needed");
+    return numbers;
+}
+
+}  // namespace
+
+CutOutRequest cut_out_request(const std::string& text, const Scene& scene, const std::string& up) {
+    const auto numbers = numbers_of(text);
+    const double left = numbers[0], top = numbers[1], right = numbers[2], bottom = numbers[3];
+    if (left < 0 || top < 0 || right > 1 || bottom > 1 || left >= right || top >= bottom)
+        throw Error(ErrorCode::InvalidArgument,
+                    "the box of --cut-out \"" + printable(text) + "\" does not lie in the picture",
+                    "its sides are shares from 0 to 1: left before right, top before bottom");
+    RenderParameters parameters;
+    parameters.up = up;
+    if (numbers.size() == 7)
+        parameters.azimuth = numbers[4], parameters.elevation = numbers[5], parameters.zoom = numbers[6];
+    check_fields(parameters);
+    CutOutRequest request;
+    request.camera = choose_camera(scene, {}, parameters);
+    request.settings = raster_settings(parameters, scene.info);
+    request.up = parse_up(up, scene.info);
+    const auto width = static_cast<double>(parameters.width), height = static_cast<double>(parameters.height);
+    for (const auto& [x, y] :
+         {std::pair{left, top}, std::pair{right, top}, std::pair{right, bottom}, std::pair{left, bottom}})
+        request.area.polygon.push_back({static_cast<float>(x * width), static_cast<float>(y * height)});
+    return request;
+}
+
+double azimuth_of_box(const std::string& text) {
+    const auto numbers = numbers_of(text);
+    return numbers.size() == 7 ? numbers[4] : RenderParameters{}.azimuth;
+}
+
+std::vector<std::uint8_t> cut_out(const GaussianSet& set, const CutOutRequest& request,
+                                  edit::Segmenter* segmenter, const JobControl& control) {
+    const auto section = section_of(request);
+    if (!section) return std::vector<std::uint8_t>(set.size(), 0);
+    Painter painter;
+    auto settings = request.settings;
+    const raster::ForwardOutput& painted =
+        painter.paint(set.spans(), section->camera, settings);  // the painter's own: the last picture
+    settings.background = telling_background(painted, settings.background);
+    if (settings.background != request.settings.background)
+        painter.paint(set.spans(), section->camera, settings);
+    Image picture = painted.colour;
+    for (auto& value : picture.data) value = std::clamp(value, 0.0f, 1.0f);
+    std::unique_ptr<edit::Segmenter> own;
+    if (segmenter == nullptr) {  // what is outside of a box that was drawn around a thing is not the thing
+        own = edit::grabcut_available() ? edit::make_grabcut_segmenter({.box_margin = 0})
+                                        : edit::make_default_segmenter();
+        segmenter = own.get();
+    }
+    SeenThing seen{section->camera,
+                   segmenter->segment(picture, {}, section->box, unexplained(picture, section->box)),
+                   {},
+                   {},
+                   request.up};
+    const Mask whole = mask_of(*section);
+    for (std::size_t i = 0; i < seen.mask.data.size(); ++i) seen.mask.data[i] &= whole.data[i];
+    if (seen.mask.count() == 0) seen.mask = whole;
+    close_holes(seen.mask, level_with(seen.mask, painted, section->camera.fx));
+    seen.front = seen_rows(set, section->camera, seen.mask, settings, painter);
+    PickOptions options;
+    options.pool = &painter.pool();
+    const Mask wide = localize::dilate(seen.mask, Beside * std::max(seen.mask.width, seen.mask.height));
+    options.mask = &wide;
+    seen.cone = rows_in_area(set, section->camera, section->area, options);
+    const auto bits = follow_around(set, seen, settings, *segmenter, painter, control);
+    return request.ground ? edit::lowest_layer(set, bits, request.up) : bits;
+}
+
+}  // namespace gse::pipeline

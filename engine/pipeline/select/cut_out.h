@@ -1,0 +1,41 @@
+// A thing on the screen, cut out of the picture: for labelling by hand.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/base/progress.h"
+#include "engine/edit/interfaces/interfaces.h"
+#include "engine/raster/rasterizer.h"
+#include "engine/scene/label_ops.h"
+#include "engine/scene/scene.h"
+
+namespace gse::pipeline {
+
+/// How the picture is taken, and what is picked in it.
+struct CutOutRequest {
+    Camera camera;
+    ScreenArea area;            // around the thing, in the camera's pixels
+    raster::Settings settings;  // of the pictures, their background too
+    Vec3 up{0, -1, 0};          // of the world: the other sides are looked at around it
+    bool ground = false;        // not what stands on it
+};
+
+/// A box as --cut-out says it: "LEFT,TOP,RIGHT,BOTTOM", shares of the picture that `render` makes of the
+/// scene by default, or with
+/// ",AZIMUTH,ELEVATION,ZOOM" behind it, as `render` takes them. Throws Error (InvalidArgument).
+CutOutRequest cut_out_request(const std::string& text, const Scene& scene, const std::string& up);
+
+/// The azimuth of that picture, degrees.
+double azimuth_of_box(const std::string& text);
+
+/// One byte per row of `set`: 1 for the thing, from all sides. `segmenter` cuts it out of a picture of the
+/// view, told the box around the area, and then out of views around it (cut_out_sides.h); null = the one that
+/// needs no weights. Where the first comes to nothing, the area itself is the outline. Throws Error
+/// (Cancelled).
+std::vector<std::uint8_t> cut_out(const GaussianSet& set, const CutOutRequest& request,
+                                  edit::Segmenter* segmenter, const JobControl& control = {});
+
+}  // namespace gse::pipeline
