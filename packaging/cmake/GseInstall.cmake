@@ -8,7 +8,7 @@ foreach(plugin gse_media gse_neural_plugin)
   endif()
 endforeach()
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/assets/ DESTINATION share/gseditpro
-  PATTERN pictures EXCLUDE    # of the README
+  REGEX "assets/guide$" EXCLUDE    # as HTML: GseGuide.cmake
   PATTERN log EXCLUDE)        # of the bundled model's training
 install(FILES ${CMAKE_SOURCE_DIR}/packaging/gseditpro.desktop DESTINATION share/applications)
 install(FILES ${CMAKE_SOURCE_DIR}/packaging/gseditpro.svg DESTINATION share/icons/hicolor/scalable/apps)
