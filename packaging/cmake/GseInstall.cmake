@@ -15,16 +15,22 @@ install(FILES ${CMAKE_SOURCE_DIR}/packaging/gseditpro.svg DESTINATION share/icon
 install(FILES ${CMAKE_SOURCE_DIR}/packaging/gseditpro-mime.xml DESTINATION share/mime/packages RENAME gseditpro.xml)
 install(FILES ${CMAKE_SOURCE_DIR}/packaging/copyright DESTINATION share/doc/gseditpro)
 
-# Debian wants changelogs packed, with nothing in them that differs from build to build.
+# One changelog of all pages, newest first. Debian wants it packed, with nothing in it that differs from build to build.
+file(GLOB changelog_pages CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/packaging/changelog/*.md)
+list(SORT changelog_pages COMPARE NATURAL ORDER DESCENDING)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${changelog_pages})
+file(WRITE ${CMAKE_BINARY_DIR}/generated/changelog "")
+foreach(page IN LISTS changelog_pages)
+  file(READ ${page} changes)
+  file(APPEND ${CMAKE_BINARY_DIR}/generated/changelog "${changes}\n")
+endforeach()
 find_program(GSE_GZIP gzip)
 if(GSE_GZIP)
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/packaging/CHANGELOG.md)
-  file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/generated)
-  execute_process(COMMAND ${GSE_GZIP} -9nc ${CMAKE_SOURCE_DIR}/packaging/CHANGELOG.md
+  execute_process(COMMAND ${GSE_GZIP} -9nc ${CMAKE_BINARY_DIR}/generated/changelog
     OUTPUT_FILE ${CMAKE_BINARY_DIR}/generated/changelog.gz COMMAND_ERROR_IS_FATAL ANY)
   install(FILES ${CMAKE_BINARY_DIR}/generated/changelog.gz DESTINATION share/doc/gseditpro)
 else()
-  install(FILES ${CMAKE_SOURCE_DIR}/packaging/CHANGELOG.md DESTINATION share/doc/gseditpro)
+  install(FILES ${CMAKE_BINARY_DIR}/generated/changelog DESTINATION share/doc/gseditpro)
 endif()
 
 # packaging/package: cpack -G DEB.
