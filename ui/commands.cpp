@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "engine/base/random.h"
-#include "engine/io/cameras.h"
+#include "engine/io/cameras/cameras.h"
 #include "engine/scene/framing.h"
 #include "engine/scene/viewpoints.h"
 #include "ui/sentence.h"

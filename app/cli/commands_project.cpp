@@ -8,8 +8,9 @@
 #include "app/cli/engine_names.h"
 #include "engine/base/error.h"
 #include "engine/base/print.h"
-#include "engine/io/project_file.h"
-#include "engine/io/scene_io.h"
+#include "engine/io/project/load_scene.h"
+#include "engine/io/project/project_file.h"
+#include "engine/io/scene/scene_file.h"
 #include "engine/pipeline/report/project_report.h"
 
 namespace gse::app {

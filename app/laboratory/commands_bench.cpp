@@ -24,7 +24,7 @@
 #include "engine/laboratory/bench/preview_bench.h"
 #include "engine/laboratory/bench/preview_sweep.h"
 #endif
-#include "engine/io/scene_io.h"
+#include "engine/io/project/load_scene.h"
 #include "engine/laboratory/bench/raster_report.h"
 #include "engine/laboratory/bench/raster_sweep.h"
 #include "engine/laboratory/bench/scale_bench.h"

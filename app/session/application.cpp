@@ -11,7 +11,7 @@
 #include "engine/base/clock.h"
 #include "engine/base/error.h"
 #include "engine/base/log.h"
-#include "engine/io/user_files.h"
+#include "engine/io/files/user_files.h"
 #include "engine/pipeline/run/scene_tools.h"
 #include "engine/scene/label_ops.h"
 

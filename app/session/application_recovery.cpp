@@ -12,8 +12,8 @@
 #include "app/session/application_loaded.h"
 #include "engine/base/error.h"
 #include "engine/base/log.h"
-#include "engine/io/autosave.h"
-#include "engine/io/project_file.h"
+#include "engine/io/project/autosave.h"
+#include "engine/io/project/project_file.h"
 #include "engine/pipeline/run/scene_tools.h"
 
 namespace gse::app {

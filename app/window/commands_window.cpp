@@ -16,7 +16,7 @@
 #include "engine/base/log.h"
 #include "engine/base/process.h"
 #include "engine/base/process_memory.h"
-#include "engine/io/image_file.h"
+#include "engine/io/image/image_file.h"
 #include "engine/vulkan/device.h"
 #include "engine/vulkan/error.h"
 #include "engine/window/window.h"

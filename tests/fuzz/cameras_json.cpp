@@ -1,5 +1,5 @@
 // Fuzz target: the cameras.json of 3DGS training.
-#include "engine/io/cameras.h"
+#include "engine/io/cameras/cameras.h"
 #include "tests/fuzz/fuzz_helpers.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

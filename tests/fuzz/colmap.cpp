@@ -1,6 +1,6 @@
 // Fuzz target: COLMAP models. The first byte says text or binary, the next two where cameras end and images
 // begin.
-#include "engine/io/cameras.h"
+#include "engine/io/cameras/cameras.h"
 #include "tests/fuzz/fuzz_helpers.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

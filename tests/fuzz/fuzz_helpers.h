@@ -11,7 +11,8 @@
 #include "engine/base/check.h"
 #include "engine/base/error.h"
 #include "engine/base/log.h"
-#include "engine/io/formats.h"
+#include "engine/io/formats/formats.h"
+#include "engine/io/scene/scene_file.h"
 
 namespace gse::fuzz {
 

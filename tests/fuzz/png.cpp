@@ -1,5 +1,5 @@
 // Fuzz target: the readers of PNG text chunks and of image sizes.
-#include "engine/io/png.h"
+#include "engine/io/image/png.h"
 #include "tests/fuzz/fuzz_helpers.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

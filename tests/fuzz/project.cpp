@@ -1,9 +1,9 @@
 // Fuzz target: project files, and the parts inside them that the archive's checksums would shield. The first
 // byte chooses: 'D' a delta, 'S' a whole set, 'A' absent rows, 'M' a packed member, 'J' the description;
 // anything else is a whole file.
-#include "engine/io/project_description.h"
-#include "engine/io/project_file.h"
-#include "engine/io/project_parts.h"
+#include "engine/io/project/project_description.h"
+#include "engine/io/project/project_file.h"
+#include "engine/io/project/project_parts.h"
 #include "tests/fuzz/fuzz_helpers.h"
 
 namespace {

@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-#include "engine/io/sog_files.h"
+#include "engine/io/formats/sog/sog_files.h"
 #include "tests/fuzz/fuzz_helpers.h"
 
 namespace {

@@ -12,7 +12,7 @@ MIME = "{http://www.freedesktop.org/standards/shared-mime-info}"
 DESKTOP_KEYS = {"Type": "Application", "Name": None, "Comment": None, "Exec": None, "Icon": None, "Categories": None,
                 "MimeType": None, "Terminal": "false"}
 LISTS = {"Categories", "MimeType", "Keywords"}
-READERS = "engine/io/scene_io.cpp"   # its table of readers names the suffixes
+READERS = "engine/io/scene/scene_file.cpp"   # its table of readers names the suffixes
 READER = re.compile(r'\{"([a-z.]+)",\s*detect_')
 PROJECT = ".gsep"
 

@@ -26,6 +26,22 @@ ARROWS = {
                          "laboratory/synth", "laboratory/eval"},
     "window": {"base", "vulkan"},
 }
+# room -> its sub-rooms, each with the sub-rooms of the same room that it may include; "" = files directly in the room
+SUB_ROOMS = {
+    "io": {
+        "bytes": set(),
+        "files": set(),
+        "image": {"bytes"},
+        "formats": {"bytes"},
+        "formats/ply": {"bytes", "formats"},
+        "formats/sog": {"bytes", "formats"},
+        "formats/spz": {"bytes", "formats"},
+        "scene": {"bytes", "formats"},
+        "cameras": {"bytes", "image", "scene"},
+        "project": {"bytes", "files", "image", "scene", "cameras"},
+    },
+}
+UNIT_LIMIT = 15        # units (files of one stem) directly in a folder of a room that has sub-rooms
 UI_FORBIDDEN = {"vulkan", "preview", "neural"}
 SOURCE_LIMIT = 600     # lines of a file
 FUNCTION_LIMIT = 60    # lines of a function body
@@ -64,6 +80,48 @@ def check_include(relative, line_number, target, is_header):
     settings = target.startswith("engine/neural/") and target.endswith("_parameters.h")   # lists of fields, nothing else
     if room == "ui" and target.startswith("engine/") and target.split("/")[1] in UI_FORBIDDEN and not settings:
         yield f"{relative}:{line_number}: ui must not include {target}"
+
+
+def subroom_of(parts):
+    """Path of the folder inside its room: engine/io/formats/ply/x.h -> formats/ply."""
+    return "/".join(parts[2:-1])
+
+
+def check_subrooms(relative, line_number, target):
+    """Arrows between the sub-rooms of one room."""
+    room = relative.parts[1] if relative.parts[0] == "engine" else None
+    if room not in SUB_ROOMS or not target.startswith(f"engine/{room}/"):
+        return
+    table, own, used = SUB_ROOMS[room], subroom_of(relative.parts), subroom_of(target.split("/"))
+    if own not in table:
+        yield f"{relative}:{line_number}: engine/{room} has no sub-room \"{own}\" in the table"
+    elif used != own and used not in table[own]:
+        yield f"{relative}:{line_number}: engine/{room}/{own} must not include engine/{room}/{used}"
+
+
+def check_units(root):
+    """Folders of a room with sub-rooms hold few units."""
+    for room in SUB_ROOMS:
+        units = {}
+        for path in (root / "engine" / room).rglob("*"):
+            if path.suffix in SUFFIXES:
+                units.setdefault(path.parent, set()).add(path.stem)
+        for folder, stems in sorted(units.items()):
+            if len(stems) > UNIT_LIMIT:
+                yield f"{folder.relative_to(root)}: {len(stems)} units (at most {UNIT_LIMIT})"
+
+
+def circles(table):
+    """Sub-rooms that reach themselves over the arrows of their table."""
+    for start in table:
+        seen, open_rooms = set(), set(table[start])
+        while open_rooms:
+            room = open_rooms.pop()
+            if room not in seen:
+                seen.add(room)
+                open_rooms |= table.get(room, set())
+        if start in seen:
+            yield start
 
 
 def strip_strings(line):
@@ -120,6 +178,7 @@ def check_file(root, path):
         found = INCLUDE.match(line)
         if found:
             yield from check_include(relative, number, found.group(1), path.suffix == ".h")
+            yield from check_subrooms(relative, number, found.group(1))
         if found and found.group(1).startswith("glm/") and str(relative) != GLM_DOOR:
             yield f"{relative}:{number}: glm is included by {GLM_DOOR}"
         if JSON_PARSE.search(line) and relative.parts[0] != "tests" and str(relative) != JSON_PARSER:
@@ -136,6 +195,9 @@ def check_tree(root):
         for path in sorted((root / room).rglob("*")):
             if path.suffix in SUFFIXES and path.is_file():
                 violations.extend(check_file(root, path))
+    violations.extend(check_units(root))
+    for room, table in SUB_ROOMS.items():
+        violations.extend(f"engine/{room}/{name}: its arrows lead back to it" for name in circles(table))
     allowed = {"CMakeLists.txt", "CMakePresets.json", "LICENSE", "README.md", "app", "engine", "shaders", "ui", "assets",
                "tests", "packaging", "build", "out"}
     for entry in sorted(root.iterdir()):
@@ -158,6 +220,10 @@ def self_test():
         "app/j.cpp": ("// x\nauto a = nlohmann::json::parse(text);\n", "parsed with parse_json()"),
         "ui/k.cpp": ("// x\n#include <glm/vec3.hpp>\n", "glm is included by"),
         "engine/raster/h.cpp": ("// x\n#include \"app/main.h\"\n", "must not include app"),
+        "engine/io/bytes/m.cpp": ("// x\n#include \"engine/io/image/png.h\"\n", "engine/io/bytes must not include engine/io/image"),
+        "engine/io/other/o.cpp": ("// x\n#include \"engine/io/image/png.h\"\n", "has no sub-room"),
+        **{f"engine/io/files/unit{number}.h": ("// x\n", "") for number in range(15)},
+        "engine/io/files/unit15.h": ("// x\n", "engine/io/files: 16 units"),
         "strange": (None, "not a top-level name"),
     }
     with tempfile.TemporaryDirectory() as folder:
@@ -167,7 +233,10 @@ def self_test():
             path.parent.mkdir(parents=True, exist_ok=True)
             path.mkdir() if text is None else path.write_text(text)
         found = check_tree(root)
-    missed = [name for name, (_, message) in cases.items() if not any(name in line and message in line for line in found)]
+    missed = [name for name, (_, message) in cases.items() if message and not
+              any((name in line or " units" in line) and message in line for line in found)]
+    if list(circles({"a": {"b"}, "b": {"c"}, "c": {"b"}})) != ["b", "c"]:
+        missed.append("circles")
     for name in missed:
         print(f"the lint did not catch {name}")
     print(f"{len(cases) - len(missed)} of {len(cases)} broken rules caught")

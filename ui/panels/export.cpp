@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/io/cameras.h"
+#include "engine/io/cameras/cameras.h"
 #include "ui/commands.h"
 #include "ui/panels/panels.h"
 #include "ui/state.h"

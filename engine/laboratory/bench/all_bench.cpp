@@ -17,7 +17,7 @@
 #ifdef GSE_WINDOW
 #include "engine/laboratory/bench/preview_sweep.h"
 #endif
-#include "engine/io/image_file.h"
+#include "engine/io/image/image_file.h"
 #include "engine/laboratory/bench/raster_sweep.h"
 #include "engine/laboratory/bench/scale_bench.h"
 #include "engine/laboratory/bench/stability_bench.h"

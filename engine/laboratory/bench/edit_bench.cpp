@@ -10,7 +10,7 @@
 
 #include "engine/base/error.h"
 #include "engine/edit/request/words.h"
-#include "engine/io/image_file.h"
+#include "engine/io/image/image_file.h"
 #include "engine/laboratory/bench/setting_points.h"
 #include "engine/laboratory/eval/eval_run.h"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "engine/base/image.h"
-#include "engine/io/drawing.h"
+#include "engine/io/image/drawing.h"
 
 namespace gse::bench {
 

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "engine/io/cameras.h"
-#include "engine/io/scene_io.h"
+#include "engine/io/cameras/cameras.h"
+#include "engine/io/scene/scene_file.h"
 #include "engine/laboratory/bench/floor_cases.h"
 #include "engine/laboratory/bench/raster_report.h"
 #include "engine/laboratory/synth/timing_scene.h"

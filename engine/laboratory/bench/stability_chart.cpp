@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "engine/io/drawing.h"
+#include "engine/io/image/drawing.h"
 #include "engine/laboratory/bench/pareto_chart.h"
 #include "engine/laboratory/bench/stability_bench.h"
 

@@ -11,7 +11,7 @@
 #include "engine/base/file.h"
 #include "engine/base/json.h"
 #include "engine/base/staged_folder.h"
-#include "engine/io/image_file.h"
+#include "engine/io/image/image_file.h"
 #include "engine/laboratory/bench/pareto_chart.h"
 
 namespace gse::bench {

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "engine/io/image_file.h"
+#include "engine/io/image/image_file.h"
 #include "engine/localize/clusters.h"
 
 namespace gse::bench {

@@ -5,7 +5,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/log.h"
-#include "engine/io/user_files.h"
+#include "engine/io/files/user_files.h"
 #include "engine/pipeline/models/cached_model.h"
 #include "engine/pipeline/models/installed.h"
 #include "engine/pipeline/models/model_identity.h"

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/io/project_file.h"
+#include "engine/io/project/project_file.h"
 #include "engine/pipeline/run/edit_job.h"
 
 namespace gse::pipeline {

@@ -12,8 +12,8 @@
 #include "engine/base/file.h"
 #include "engine/base/json.h"
 #include "engine/base/staged_folder.h"
-#include "engine/io/image_file.h"
-#include "engine/io/video.h"
+#include "engine/io/image/image_file.h"
+#include "engine/io/image/video.h"
 
 namespace gse::pipeline {
 namespace {

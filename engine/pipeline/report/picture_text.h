@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "engine/io/image_file.h"
+#include "engine/io/image/image_file.h"
 #include "engine/pipeline/run/recipe.h"
 
 namespace gse::pipeline {

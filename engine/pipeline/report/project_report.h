@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "engine/io/project_file.h"
+#include "engine/io/project/project_file.h"
 
 namespace gse::pipeline {
 

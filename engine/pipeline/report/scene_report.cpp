@@ -8,9 +8,9 @@
 #include "engine/base/error.h"
 #include "engine/base/path_text.h"
 #include "engine/base/print.h"
-#include "engine/io/image_file.h"
-#include "engine/io/project_file.h"
-#include "engine/io/scene_io.h"
+#include "engine/io/image/image_file.h"
+#include "engine/io/project/load_scene.h"
+#include "engine/io/project/project_file.h"
 #include "engine/pipeline/run/scene_tools.h"
 
 namespace gse::pipeline {

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "engine/io/drawing.h"
-#include "engine/io/image_file.h"
+#include "engine/io/image/drawing.h"
+#include "engine/io/image/image_file.h"
 #include "engine/localize/clusters.h"
 
 namespace gse::pipeline {

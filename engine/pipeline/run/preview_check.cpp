@@ -7,7 +7,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/log.h"
-#include "engine/io/image_file.h"
+#include "engine/io/image/image_file.h"
 
 namespace gse::pipeline {
 namespace {

@@ -7,7 +7,7 @@
 #include "engine/base/file.h"
 #include "engine/base/json.h"
 #include "engine/base/path_text.h"
-#include "engine/io/image_file.h"
+#include "engine/io/image/image_file.h"
 #include "engine/neural/api/lora_spec.h"
 
 namespace gse::pipeline {

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "engine/base/error.h"
-#include "engine/io/cameras.h"
-#include "engine/io/scene_io.h"
+#include "engine/io/cameras/cameras.h"
+#include "engine/io/project/load_scene.h"
 
 namespace gse::pipeline {
 namespace {

@@ -9,10 +9,10 @@
 #include <numbers>
 
 #include "engine/base/error.h"
-#include "engine/io/cameras.h"
-#include "engine/io/image_file.h"
-#include "engine/io/project_file.h"
-#include "engine/io/scene_io.h"
+#include "engine/io/cameras/cameras.h"
+#include "engine/io/image/image_file.h"
+#include "engine/io/project/load_scene.h"
+#include "engine/io/project/project_file.h"
 #include "engine/scene/framing.h"
 
 namespace gse::pipeline {

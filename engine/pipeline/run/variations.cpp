@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "engine/base/check.h"
-#include "engine/io/drawing.h"
-#include "engine/io/image_file.h"
+#include "engine/io/image/drawing.h"
+#include "engine/io/image/image_file.h"
 #include "engine/math/camera.h"
 
 namespace gse::pipeline {

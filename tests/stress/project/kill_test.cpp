@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "engine/base/log.h"
-#include "engine/io/autosave.h"
+#include "engine/io/project/autosave.h"
 #include "tests/unit/io/project_helpers.h"
 
 namespace kill_test {

@@ -3,8 +3,8 @@
 #include <doctest/doctest.h>
 
 #include "app/session/application.h"
-#include "engine/io/image_file.h"
-#include "engine/io/scene_io.h"
+#include "engine/io/image/image_file.h"
+#include "engine/io/project/load_scene.h"
 #include "engine/scene/label_ops.h"
 #include "tests/ui/app/session.h"
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/io/scene_io.h"
+#include "engine/io/project/load_scene.h"
 #include "tests/ui/app/session.h"
 
 namespace selection_test {

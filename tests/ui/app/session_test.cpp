@@ -11,9 +11,9 @@
 
 #include "app/session/application.h"
 #include "engine/base/file.h"
-#include "engine/io/cameras.h"
-#include "engine/io/image_file.h"
-#include "engine/io/scene_io.h"
+#include "engine/io/cameras/cameras.h"
+#include "engine/io/image/image_file.h"
+#include "engine/io/project/load_scene.h"
 #include "engine/pipeline/report/film.h"
 #include "engine/scene/label_ops.h"
 #include "tests/ui/app/session.h"

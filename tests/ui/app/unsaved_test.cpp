@@ -6,8 +6,9 @@
 #include <limits>
 
 #include "engine/base/file.h"
-#include "engine/io/cameras.h"
-#include "engine/io/scene_io.h"
+#include "engine/io/cameras/cameras.h"
+#include "engine/io/project/load_scene.h"
+#include "engine/io/scene/scene_file.h"
 #include "engine/pipeline/run/scene_tools.h"
 #include "tests/ui/app/session.h"
 

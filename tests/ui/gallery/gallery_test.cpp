@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <functional>
 
-#include "engine/io/image_file.h"
+#include "engine/io/image/image_file.h"
 #include "tests/test_paths.h"
 #include "tests/ui/support/harness.h"
 #include "ui/keys.h"

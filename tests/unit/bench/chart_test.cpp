@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/io/image_file.h"
+#include "engine/io/image/image_file.h"
 #include "engine/laboratory/bench/growth.h"
 #include "engine/laboratory/bench/pareto_chart.h"
 #include "engine/laboratory/bench/setting_points.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/io/image_file.h"
+#include "engine/io/image/image_file.h"
 #include "engine/laboratory/bench/pareto_chart.h"
 #include "tests/test_paths.h"
 

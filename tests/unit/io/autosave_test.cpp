@@ -5,8 +5,8 @@
 #include <cstdlib>
 
 #include "engine/base/log.h"
-#include "engine/io/autosave.h"
-#include "engine/io/user_files.h"
+#include "engine/io/files/user_files.h"
+#include "engine/io/project/autosave.h"
 #include "tests/unit/io/project_helpers.h"
 
 namespace autosave_test {

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/io/cameras.h"
-#include "engine/io/encoding.h"
+#include "engine/io/bytes/encoding.h"
+#include "engine/io/cameras/cameras.h"
 #include "tests/unit/io/io_helpers.h"
 
 namespace cameras_test {

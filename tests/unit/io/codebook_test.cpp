@@ -1,6 +1,6 @@
 // Quantisers of the writers: few values are kept exactly, many are near their code; nothing depends on
 // threads.
-#include "engine/io/codebook.h"
+#include "engine/io/formats/sog/codebook.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "engine/io/film_check.h"
-#include "engine/io/video.h"
+#include "engine/io/image/film_check.h"
+#include "engine/io/image/video.h"
 #include "tests/unit/io/io_helpers.h"
 
 namespace film_test {

@@ -3,7 +3,7 @@
 #include <regex>
 
 #include "engine/base/log.h"
-#include "engine/io/encoding.h"
+#include "engine/io/bytes/encoding.h"
 #include "tests/unit/io/io_helpers.h"
 
 namespace format_loss_test {

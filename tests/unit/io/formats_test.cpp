@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "engine/io/encoding.h"
-#include "engine/io/formats.h"
-#include "engine/io/inflate.h"
+#include "engine/io/bytes/encoding.h"
+#include "engine/io/bytes/inflate.h"
+#include "engine/io/formats/formats.h"
 #include "tests/unit/io/io_helpers.h"
 
 namespace formats_test {

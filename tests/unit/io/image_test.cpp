@@ -2,8 +2,8 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/io/image_file.h"
-#include "engine/io/video.h"
+#include "engine/io/image/image_file.h"
+#include "engine/io/image/video.h"
 #include "tests/unit/io/io_helpers.h"
 
 namespace image_test {

@@ -15,7 +15,8 @@
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/random.h"
-#include "engine/io/scene_io.h"
+#include "engine/io/project/load_scene.h"
+#include "engine/io/scene/scene_file.h"
 #include "tests/test_paths.h"
 
 namespace gse::test {

@@ -1,8 +1,8 @@
 // Names that are not UTF-8 come back from projects, autosaves and the list of recent files.
 #include <cstdlib>
 
-#include "engine/io/autosave.h"
-#include "engine/io/user_files.h"
+#include "engine/io/files/user_files.h"
+#include "engine/io/project/autosave.h"
 #include "tests/unit/io/project_helpers.h"
 
 namespace names_test {

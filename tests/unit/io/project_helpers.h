@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "engine/io/project_file.h"
+#include "engine/io/project/project_file.h"
 #include "tests/unit/io/io_helpers.h"
 #include "tests/unit/scene/random_sets.h"
 

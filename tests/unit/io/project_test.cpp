@@ -2,9 +2,9 @@
 #include <fstream>
 
 #include "engine/base/log.h"
-#include "engine/io/project_description.h"
-#include "engine/io/project_parts.h"
-#include "engine/io/zip_archive.h"
+#include "engine/io/bytes/zip_archive.h"
+#include "engine/io/project/project_description.h"
+#include "engine/io/project/project_parts.h"
 #include "tests/unit/io/project_helpers.h"
 
 namespace project_test {

@@ -5,11 +5,11 @@
 #include <limits>
 
 #include "engine/base/memory.h"
-#include "engine/io/claims.h"
-#include "engine/io/encoding.h"
-#include "engine/io/formats.h"
-#include "engine/io/inflate.h"
-#include "engine/io/zip_archive.h"
+#include "engine/io/bytes/claims.h"
+#include "engine/io/bytes/encoding.h"
+#include "engine/io/bytes/inflate.h"
+#include "engine/io/bytes/zip_archive.h"
+#include "engine/io/formats/formats.h"
 #include "tests/unit/io/io_helpers.h"
 
 namespace robustness_test {

@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/base/json.h"
-#include "engine/io/encoding.h"
-#include "engine/io/formats.h"
-#include "engine/io/sog_files.h"
+#include "engine/io/bytes/encoding.h"
+#include "engine/io/formats/formats.h"
+#include "engine/io/formats/sog/sog_files.h"
 #include "engine/scene/morton.h"
 #include "tests/unit/io/io_helpers.h"
 

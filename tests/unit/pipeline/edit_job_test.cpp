@@ -6,7 +6,7 @@
 #include <cmath>
 #include <memory>
 
-#include "engine/io/scene_io.h"
+#include "engine/io/project/load_scene.h"
 #include "engine/laboratory/synth/without_ground.h"
 #include "engine/pipeline/models/installed.h"
 #include "engine/pipeline/run/edit_job.h"

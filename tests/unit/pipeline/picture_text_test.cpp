@@ -8,9 +8,9 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
-#include "engine/io/cameras.h"
-#include "engine/io/image_file.h"
-#include "engine/io/scene_io.h"
+#include "engine/io/cameras/cameras.h"
+#include "engine/io/image/image_file.h"
+#include "engine/io/scene/scene_file.h"
 #include "engine/pipeline/report/scene_report.h"
 #include "engine/pipeline/run/scene_tools.h"
 #include "tests/test_paths.h"

@@ -14,7 +14,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
-#include "engine/io/scene_io.h"
+#include "engine/io/project/load_scene.h"
 #include "engine/pipeline/models/cached_model.h"
 #include "engine/pipeline/models/installed.h"
 #include "engine/pipeline/models/model_identity.h"

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/io/scene_io.h"
+#include "engine/io/project/load_scene.h"
 #include "engine/pipeline/models/installed.h"
 #include "engine/pipeline/models/neural_loader.h"
 #include "engine/pipeline/run/edit_job.h"

@@ -4,8 +4,9 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
-#include "engine/io/cameras.h"
-#include "engine/io/scene_io.h"
+#include "engine/io/cameras/cameras.h"
+#include "engine/io/project/load_scene.h"
+#include "engine/io/scene/scene_file.h"
 #include "engine/laboratory/synth/synth.h"
 #include "engine/pipeline/run/scene_loading.h"
 #include "tests/test_paths.h"

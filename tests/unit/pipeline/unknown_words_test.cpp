@@ -9,7 +9,7 @@
 
 #include "engine/base/error.h"
 #include "engine/edit/request/words.h"
-#include "engine/io/scene_io.h"
+#include "engine/io/project/load_scene.h"
 #include "engine/math/sh.h"
 #include "engine/pipeline/models/installed.h"
 #include "engine/pipeline/models/model_words.h"

@@ -1,0 +1,33 @@
+// Numbered names.
+#include "engine/io/files/free_path.h"
+
+#include <fmt/format.h>
+
+#include <string>
+
+namespace gse {
+
+std::filesystem::path first_free(const std::filesystem::path& wanted) {
+    std::error_code ignored;
+    const auto taken = [&](const std::filesystem::path& path) {
+        if (!std::filesystem::exists(std::filesystem::symlink_status(path, ignored))) return false;
+        return !std::filesystem::is_directory(path, ignored) || !std::filesystem::is_empty(path, ignored);
+    };
+    const std::string file = wanted.filename().string();
+    const std::string ending =
+        file.ends_with(".compressed.ply") ? ".compressed.ply" : wanted.extension().string();
+    std::string stem = file.substr(0, file.size() - ending.size());
+    int number = 2;
+    const auto dash = stem.find_last_not_of("0123456789");
+    const bool numbered = dash != std::string::npos && dash > 0 && stem[dash] == '-' &&
+                          dash + 1 < stem.size() && stem.size() - dash < 8;
+    if (numbered) {
+        number = std::stoi(stem.substr(dash + 1)) + 1;
+        stem.resize(dash);
+    }
+    auto path = wanted;
+    for (; taken(path); ++number) path = wanted.parent_path() / fmt::format("{}-{}{}", stem, number, ending);
+    return path;
+}
+
+}  // namespace gse

@@ -1,0 +1,327 @@
+// SOG: quantised attributes in lossless WebP textures, described by meta.json; version 2 and its predecessor.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <optional>
+#include <set>
+
+#include "engine/base/error.h"
+#include "engine/base/file.h"
+#include "engine/base/json.h"
+#include "engine/base/memory.h"
+#include "engine/io/bytes/claims.h"
+#include "engine/io/bytes/encoding.h"
+#include "engine/io/bytes/json_numbers.h"
+#include "engine/io/formats/formats.h"
+#include "engine/io/formats/sog/codebook.h"
+#include "engine/io/formats/sog/sog_files.h"
+
+namespace gse::io {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::size_t PaletteColumns = 64;  // palette entries side by side in the centroid texture
+constexpr std::uint64_t LargestDescription = std::uint64_t{4}
+                                             << 20;  // bytes of a meta.json, which has a few thousand
+constexpr std::uint64_t LargestCount = std::uint64_t{16383} * 16383;  // a WebP picture has no more texels
+constexpr std::uint64_t LargestTexture =
+    LargestCount * 4 + (std::uint64_t{1} << 20);  // bytes of its file, were nothing compressed
+
+[[noreturn]] void throw_malformed_sog(const std::string& what) {
+    throw Error(ErrorCode::Malformed, "the SOG scene " + what,
+                "the file is damaged or written by an unknown version");
+}
+
+/// One scene being read: its description and where the textures are.
+struct Source {
+    const Json& meta;
+    const SogFiles& files;
+    std::size_t count = 0;
+    bool version1 = false;
+
+    Texture texture(const char* part, std::size_t index) const {
+        const std::string name = meta.at(part).at("files").at(index).get<std::string>();
+        return decode_webp(files.read(name, LargestTexture), name, files.stored_bytes());
+    }
+    Texture splat_texture(const char* part, std::size_t index) const {
+        Texture result = texture(part, index);
+        if (result.texel_count() < count)
+            throw_malformed_sog(fmt::format("has a \"{}\" texture of {} texels for {} splats", part,
+                                            result.texel_count(), count));
+        return result;
+    }
+};
+
+template <std::size_t N> std::array<double, N> numbers(const Json& json) {
+    std::array<double, N> result{};
+    for (std::size_t i = 0; i < N; ++i) result[i] = json.at(i).get<double>();
+    return result;
+}
+
+/// Byte -> value for one channel: a codebook (v2) or a straight line between two bounds (v1).
+using Decoder = std::array<float, CodebookSize>;
+
+Decoder codebook(const Json& part) {
+    const Json& values = part.at("codebook");
+    if (values.size() < CodebookSize) throw_malformed_sog("has a codebook of fewer than 256 values");
+    Decoder result{};
+    for (std::size_t i = 0; i < CodebookSize; ++i) result[i] = static_cast<float>(values.at(i).get<double>());
+    return result;
+}
+
+Decoder line(double low, double high) {
+    Decoder result{};
+    for (std::size_t i = 0; i < CodebookSize; ++i)
+        result[i] = static_cast<float>(low + (high - low) * static_cast<double>(i) / 255);
+    return result;
+}
+
+/// Decoders of `channels` channels of a part.
+std::vector<Decoder> decoders(const Source& source, const char* part, std::size_t channels) {
+    const Json& json = source.meta.at(part);
+    if (!source.version1) return std::vector<Decoder>(channels, codebook(json));
+    std::vector<Decoder> result;
+    for (std::size_t i = 0; i < channels; ++i) {
+        const bool scalar = json.at("mins").is_number();
+        result.push_back(line((scalar ? json.at("mins") : json.at("mins").at(i)).get<double>(),
+                              (scalar ? json.at("maxs") : json.at("maxs").at(i)).get<double>()));
+    }
+    return result;
+}
+
+void read_positions(const Source& source, GaussianData& data) {
+    const Texture low = source.splat_texture("means", 0);
+    const Texture high = source.splat_texture("means", 1);
+    const auto mins = numbers<3>(source.meta.at("means").at("mins"));
+    const auto maxs = numbers<3>(source.meta.at("means").at("maxs"));
+    for (std::size_t row = 0; row < source.count; ++row)
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const int code = low.texel(row)[axis] | (high.texel(row)[axis] << 8);
+            const double value = mins[axis] + (maxs[axis] - mins[axis]) * code / 65535;
+            data.position[row * 3 + axis] =
+                static_cast<float>(std::copysign(std::expm1(std::abs(value)), value));
+        }
+}
+
+void read_scales(const Source& source, GaussianData& data) {
+    const Texture texture = source.splat_texture("scales", 0);
+    const std::vector<Decoder> decode = decoders(source, "scales", 3);
+    for (std::size_t row = 0; row < source.count; ++row)
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            data.log_scale[row * 3 + axis] = decode[axis][texture.texel(row)[axis]];
+}
+
+/// Alpha 252 + i names the largest of (w,x,y,z); red, green, blue are the others in order. Other alphas: no
+/// rotation.
+void read_rotations(const Source& source, GaussianData& data) {
+    const Texture texture = source.splat_texture("quats", 0);
+    for (std::size_t row = 0; row < source.count; ++row) {
+        const std::uint8_t* texel = texture.texel(row);
+        std::array<double, 4> q = {1, 0, 0, 0};
+        if (texel[3] >= 252) {
+            const std::size_t largest = texel[3] - 252u;
+            double rest = 1;
+            std::size_t next = 0;
+            for (std::size_t i = 0; i < 4; ++i) {
+                if (i == largest) continue;
+                q[i] = (texel[next++] / 255.0 * 2 - 1) / std::numbers::sqrt2;
+                rest -= q[i] * q[i];
+            }
+            q[largest] = std::sqrt(std::max(0.0, rest));
+        }
+        for (std::size_t i = 0; i < 4; ++i) data.rotation[row * 4 + i] = static_cast<float>(q[i]);
+    }
+}
+
+void read_base_colours(const Source& source, GaussianData& data) {
+    const Texture texture = source.splat_texture("sh0", 0);
+    const std::vector<Decoder> decode = decoders(source, "sh0", source.version1 ? 4 : 3);
+    const std::size_t stride = data.sh_stride();
+    for (std::size_t row = 0; row < source.count; ++row) {
+        const std::uint8_t* texel = texture.texel(row);
+        for (std::size_t c = 0; c < 3; ++c) data.sh[row * stride + c] = decode[c][texel[c]];
+        data.opacity_logit[row] = source.version1 ? decode[3][texel[3]] : byte_logits()[texel[3]];
+    }
+}
+
+int sh_degree_of(const Source& source, const Texture* centroids) {
+    if (centroids == nullptr) return 0;
+    const int degree = degree_of_rest(centroids->width / PaletteColumns);
+    if (degree <= 0 || centroids->width % PaletteColumns != 0)
+        throw_malformed_sog(
+            fmt::format("has an SH palette {} texels wide; 192, 512 or 960 are known", centroids->width));
+    return degree;
+}
+
+/// Each splat has a 16-bit number of a palette entry, whose K texels are its coefficients.
+void read_palette_sh(const Source& source, const Texture& centroids, GaussianData& data) {
+    const Texture labels = source.splat_texture("shN", 1);
+    const Decoder decode = decoders(source, "shN", 1)[0];
+    const std::size_t rest = rest_of_degree(data.sh_degree);
+    const std::size_t stride = data.sh_stride();
+    for (std::size_t row = 0; row < source.count; ++row) {
+        const std::size_t entry =
+            labels.texel(row)[0] | (static_cast<std::size_t>(labels.texel(row)[1]) << 8);
+        const std::size_t line_of = entry / PaletteColumns;
+        if (line_of >= centroids.height) continue;  // an entry that is not there: base colour only
+        const std::size_t first = line_of * centroids.width + entry % PaletteColumns * rest;
+        float* sh = data.sh.data() + row * stride + 3;
+        for (std::size_t k = 0; k < rest; ++k)
+            for (std::size_t c = 0; c < 3; ++c) *sh++ = decode[centroids.texel(first + k)[c]];
+    }
+}
+
+std::size_t count_of(const Json& meta, bool version1) {
+    const Json& stated = version1 ? meta.at("means").at("shape").at(0) : meta.at("count");
+    const std::uint64_t count = whole_number(stated, LargestCount, "number of splats of the SOG scene");
+    if (count == 0) throw_malformed_sog("holds no splats");
+    return static_cast<std::size_t>(count);
+}
+
+Scene read_scene(const SogFiles& files, const Json& meta) {
+    const bool version1 = !meta.contains("version");
+    const std::uint64_t version =
+        version1 ? 1 : whole_number(meta.at("version"), 1000, "version of the SOG scene");
+    if (version > 2)
+        throw Error(ErrorCode::Unsupported, fmt::format("SOG version {} is not known; 1 and 2 are", version));
+    const Source source{meta, files, count_of(meta, version1), version1};
+    check_claim({splat_bytes(source.count, meta.contains("shN") ? MaxShDegree : 0), files.stored_bytes()},
+                fmt::format("the SOG scene's {} splats", source.count));
+    source.splat_texture("sh0", 0);  // proves the count before anything of its size is made
+    std::optional<Texture> centroids;
+    if (meta.contains("shN") && !meta.at("shN").is_null()) centroids = source.texture("shN", 0);
+    GaussianData data;
+    data.sh_degree = sh_degree_of(source, centroids ? &*centroids : nullptr);
+    data.resize(source.count);
+    read_positions(source, data);
+    read_scales(source, data);
+    read_rotations(source, data);
+    read_base_colours(source, data);
+    if (centroids) read_palette_sh(source, *centroids, data);
+    Scene scene;
+    scene.info.format = "sog";
+    scene.info.antialiased =
+        meta.value("antialias", false) || meta.value("model", std::string()) == "antialiased";
+    if (meta.value("model", std::string()) == "2dgs")
+        scene.info.warnings.push_back("the file asks for 2DGS rendering; it is drawn as 3DGS");
+    scene.gaussians = GaussianSet(std::move(data));
+    return scene;
+}
+
+Json parse_json(std::span<const std::byte> bytes) {
+    const char* text = reinterpret_cast<const char*>(bytes.data());
+    return gse::parse_json({text, bytes.size()}, "the description of the SOG scene");
+}
+
+/// JSON complaints (missing keys, wrong types, bad syntax) become ours.
+template <class F> auto with_json_errors(F&& body) {
+    try {
+        return body();
+    } catch (const nlohmann::json::exception& failure) {
+        throw_malformed_sog(std::string("has a description that cannot be understood (") + failure.what() +
+                            ")");
+    }
+}
+
+void append_padded(const std::vector<float>& from, std::size_t from_stride, std::vector<float>& to,
+                   std::size_t to_stride) {
+    for (std::size_t i = 0; i < from.size(); i += from_stride) {
+        to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(i),
+                  from.begin() + static_cast<std::ptrdiff_t>(i + from_stride));
+        to.insert(to.end(), to_stride - from_stride, 0.0f);
+    }
+}
+
+GaussianSet concatenate(const std::vector<GaussianSet>& parts) {
+    if (parts.size() == 1) return parts.front();
+    GaussianData all;
+    for (const GaussianSet& part : parts) all.sh_degree = std::max(all.sh_degree, part.sh_degree());
+    for (const GaussianSet& part : parts) {
+        const GaussianData data = part.to_data();
+        append_padded(data.position, 3, all.position, 3);
+        append_padded(data.log_scale, 3, all.log_scale, 3);
+        append_padded(data.rotation, 4, all.rotation, 4);
+        append_padded(data.opacity_logit, 1, all.opacity_logit, 1);
+        append_padded(data.sh, data.sh_stride(), all.sh, all.sh_stride());
+    }
+    return GaussianSet(std::move(all));
+}
+
+/// Numbers of files in the order in which they were first named.
+struct FileNumbers {
+    std::vector<std::size_t> order;
+    std::set<std::size_t> seen;
+};
+
+/// The files that a node and its children name for this level; parse_json has bounded the depth.
+void collect_files(const Json& node, const std::string& level, FileNumbers& files) {
+    if (node.contains("lods") && node.at("lods").contains(level)) {
+        const std::size_t file =
+            whole_number(node.at("lods").at(level).at("file"), LargestCount, "file number of a level");
+        if (files.seen.insert(file).second) files.order.push_back(file);
+    }
+    if (!node.contains("children")) return;
+    for (const Json& child : node.at("children")) collect_files(child, level, files);
+}
+
+/// Each file once, however often it is listed; none outside of the scene's folder.
+std::vector<std::filesystem::path> part_files(const std::filesystem::path& folder, const Json& json) {
+    FileNumbers files;
+    collect_files(json.at("tree"), "0", files);
+    if (files.order.empty()) throw_malformed_sog("names no file for its finest level");
+    std::vector<std::filesystem::path> paths;
+    std::set<std::filesystem::path> seen;
+    for (const std::size_t number : files.order) {
+        const auto name =
+            std::filesystem::path(json.at("filenames").at(number).get<std::string>()).lexically_normal();
+        if (name.is_absolute() || std::find(name.begin(), name.end(), "..") != name.end())
+            throw_malformed_sog("names a file outside of its folder");
+        if (seen.insert(name).second) paths.push_back(folder / name);
+    }
+    return paths;
+}
+
+}  // namespace
+
+bool detect_sog(Bytes bytes, std::string_view) {
+    return bytes.size() >= 4 && std::memcmp(bytes.data(), "PK\x03\x04", 4) == 0;
+}
+
+Scene read_sog(const SogFiles& files, const std::string& meta) {
+    return with_json_errors(
+        [&] { return read_scene(files, parse_json(files.read(meta, LargestDescription))); });
+}
+
+Scene parse_sog(Bytes bytes) { return read_sog(*open_sog_archive(bytes), "meta.json"); }
+
+Scene load_sog_folder(const std::filesystem::path& meta) {
+    return read_sog(*open_sog_folder(meta.parent_path()), meta.filename().string());
+}
+
+Scene load_sog_levels(const std::filesystem::path& lod_meta) {
+    return with_json_errors([&] {
+        const FileBytes file(lod_meta);
+        const Json json = parse_json(file.bytes());
+        std::vector<GaussianSet> parts;
+        Scene scene;
+        std::uint64_t bytes = 0;
+        for (const auto& file_of_part : part_files(lod_meta.parent_path(), json)) {
+            Scene part = load_sog_folder(file_of_part);
+            parts.push_back(part.gaussians);
+            bytes += part.gaussians.byte_size();
+            if (parts.size() == 1) scene.info = std::move(part.info);
+        }
+        if (parts.size() > 1) require_memory(bytes, "the scene's finest level");
+        scene.gaussians = concatenate(parts);
+        scene.info.warnings.push_back("of the levels of detail, only the finest is loaded");
+        return scene;
+    });
+}
+
+}  // namespace gse::io
