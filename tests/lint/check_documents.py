@@ -61,6 +61,12 @@ def headings(path):
     return re.findall(r"^#+ (.*)$", FENCE.sub("", path.read_text()), re.M)
 
 
+def citable(path):
+    """What sources may cite of a document: its headings, and the first cells of its tables ("SKIPS.md, E5")."""
+    cells = re.findall(r"^\| *([\w ]+?) *\|", path.read_text(), re.M)
+    return {title.lower() for title in headings(path) + cells}
+
+
 def documents(root):
     listed = subprocess.run(["git", "-C", str(root), "ls-files", "-co", "--exclude-standard", "*.md"],
                             capture_output=True, text=True)
@@ -184,7 +190,7 @@ def check(root, program_paths):
     programs = Programs(program_paths)
     titles = {}
     for path in documents(root):
-        titles[path.stem] = {title.lower() for title in headings(path)}
+        titles[path.stem] = citable(path)
         yield from check_links(root, path)
         artists = path == root / "README.md" or path.parent == root / "assets/guide"
         if artists:
