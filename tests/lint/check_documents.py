@@ -169,7 +169,7 @@ def check_guide(root, programs):
     """The guide as HTML: it can be made, and its links lead somewhere."""
     with tempfile.TemporaryDirectory() as folder:
         run = subprocess.run([sys.executable, str(root / "packaging/guide"), programs.paths["gseditpro"],
-                              str(root / "ui/keys.h"), folder], capture_output=True, text=True)
+                              str(next((root / "ui").rglob("keys.h"), root)), folder], capture_output=True, text=True)
         if run.returncode != 0:
             yield f"packaging/guide: {run.stderr.strip()}"
             return
