@@ -8,6 +8,7 @@
 
 #include "engine/base/random.h"
 #include "engine/io/cameras/cameras.h"
+#include "engine/io/formats/scene_formats.h"
 #include "engine/scene/framing.h"
 #include "engine/scene/viewpoints.h"
 #include "ui/sentence.h"
@@ -77,13 +78,11 @@ void with_unsaved_work(Context& context, const std::string& what, std::function<
 }
 
 const std::vector<std::string>& scene_extensions() {
-    static const std::vector<std::string> Endings{".ply",    ".spz",  ".sog",  ".splat",
-                                                  ".ksplat", ".json", ".gsep", ".png"};
-    return Endings;
-}
-
-const std::vector<std::string>& writable_extensions() {
-    static const std::vector<std::string> Endings{".ply", ".splat", ".spz", ".sog"};
+    static const std::vector<std::string> Endings = [] {
+        std::vector<std::string> endings = readable_extensions();
+        for (const char* other : {".json", ".gsep", ".png"}) endings.emplace_back(other);
+        return endings;
+    }();
     return Endings;
 }
 

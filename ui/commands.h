@@ -74,7 +74,6 @@ std::size_t label_count(Context& context);
 
 /// Endings the readers know.
 const std::vector<std::string>& scene_extensions();
-const std::vector<std::string>& writable_extensions();
 const std::vector<std::string>& film_extensions();
 
 }  // namespace gse::ui

@@ -17,6 +17,7 @@
 #include "engine/edit/interfaces/view_targets.h"
 #include "engine/edit/request/request.h"
 #include "engine/edit/search/locate.h"
+#include "engine/io/formats/scene_formats.h"
 #include "engine/math/framing.h"
 #include "engine/pipeline/report/evidence_pictures.h"
 #include "engine/scene/camera_key.h"
@@ -223,8 +224,8 @@ struct ExportSettings {
     std::string scene_path = "edited.ply";  // format by extension
     bool with_labels = false;
     bool visible_only = false;
-    int spz_version = 3;
-    std::string viewpoints_path = "cameras.json";  // format by name: transforms... is nerfstudio's
+    FormatChoices format_choices = standard_choices();  // option of a scene format -> value
+    std::string viewpoints_path = "cameras.json";       // format by name: transforms... is nerfstudio's
     std::string camera_path_path = "camera_path.json";
 
     template <class Self, class F> static void visit_fields(Self& self, F&& f) {
@@ -242,10 +243,14 @@ struct ExportSettings {
         f("elevation_degrees", self.elevation_degrees, "Height above the horizon.", Range{-89, 89});
         f("around_label", self.around_label, "Turn around what is labelled.");
         f("before_after", self.before_after, "Before and after side by side.");
-        f("scene_path", self.scene_path, "File of the scene: .ply, .compressed.ply, .splat, .spz, .sog.");
-        f("with_labels", self.with_labels, "Write the label as a float column (PLY).");
+        f("scene_path", self.scene_path, "File of the scene; its ending says the format.");
+        f("with_labels", self.with_labels,
+          "Write the label as a float column, where the format has room for it.");
         f("visible_only", self.visible_only, "Leave out what is hidden in the window.");
-        f("spz_version", self.spz_version, "Version of a .spz file.", Range{2, 4});
+        for (const io::FormatOption* option : format_options())
+            f(option->name.c_str(), self.format_choices.find(option->name)->second, option->help.c_str(),
+              Range{static_cast<double>(option->values.front().value),
+                    static_cast<double>(option->values.back().value)});
         f("viewpoints_path", self.viewpoints_path,
           "File of the viewpoints: cameras.json or transforms.json.");
         f("camera_path_path", self.camera_path_path, "File of the camera path.");

@@ -8,6 +8,7 @@
 #include "app/cli/engine_names.h"
 #include "engine/base/error.h"
 #include "engine/base/print.h"
+#include "engine/io/formats/scene_formats.h"
 #include "engine/io/project/load_scene.h"
 #include "engine/io/project/project_file.h"
 #include "engine/io/scene/scene_file.h"
@@ -50,7 +51,10 @@ void add_project_command(CLI::App& app, CommandContext&) {
     command->add_flag("--json", options->json, "Print JSON");
     auto* output = command->add_option("--export", options->output,
                                        "Write the scene with the edits that are on to this file");
-    command->add_option("--label", options->label, "With --export to a .ply: this label as columns")
+    command
+        ->add_option("--label", options->label,
+                     fmt::format("With --export to a {}: this label as columns",
+                                 in_words(extensions_that_keep(&io::SceneFormat::keeps_labels), "or")))
         ->needs(output);
     command->callback([options] {
         const ProjectSummary summary = read_project_summary(options->input);

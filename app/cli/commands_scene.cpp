@@ -13,6 +13,7 @@
 #include "engine/base/path_text.h"
 #include "engine/base/print.h"
 #include "engine/io/cameras/cameras.h"
+#include "engine/io/formats/scene_formats.h"
 #include "engine/io/image/image_file.h"
 #include "engine/io/project/load_scene.h"
 #include "engine/io/scene/scene_file.h"
@@ -76,7 +77,24 @@ void add_info(CLI::App& app, CommandContext&) {
 }
 
 bool has_room_for_labels(const std::filesystem::path& output) {
-    return output.extension() == ".ply" && output.stem().extension() != ".compressed";
+    const io::SceneFormat* format = format_written_to(output);
+    return format != nullptr && format->keeps_labels;
+}
+
+std::string output_help() { return "New file: " + in_words(writable_extensions(), "or"); }
+
+/// Endings of the formats that have room for labels.
+std::string labelled_formats() {
+    return in_words(extensions_that_keep(&io::SceneFormat::keeps_labels), "or");
+}
+
+/// One command line option per option of a scene format.
+void add_format_options(CLI::App& command, SaveOptions& save) {
+    save.choices = standard_choices();
+    for (const io::FormatOption* option : format_options())
+        command.add_option(option_name(option->name), save.choices[option->name], option->help)
+            ->capture_default_str()
+            ->check(CLI::Range(option->values.front().value, option->values.back().value));
 }
 
 void refuse_same_file(const std::filesystem::path& input, const std::filesystem::path& output) {
@@ -95,16 +113,12 @@ void add_convert(CLI::App& app, CommandContext&) {
     auto options = std::make_shared<SceneOptions>();
     auto* command = app.add_subcommand("convert", "Write a scene in another format");
     command->add_option("input", options->input, "Scene file or folder")->required();
-    command->add_option("output", options->output, "New file: .ply, .compressed.ply, .splat, .spz or .sog")
-        ->required();
+    command->add_option("output", options->output, output_help())->required();
     command->add_option("--format", options->save.format,
-                        "ply, compressed.ply, splat, spz or sog; from the name when left out");
-    command
-        ->add_option("--spz-version", options->save.spz_version,
-                     "Of a .spz: 3 (most programs read it), 4 (newest) or 2 (oldest)")
-        ->capture_default_str()
-        ->check(CLI::Range(2, 4));
-    command->add_flag("--labels", options->labels, "Keep label columns (PLY only)");
+                        in_words(writable_formats(), "or") + "; from the name when left out");
+    add_format_options(*command, options->save);
+    command->add_flag("--labels", options->labels,
+                      fmt::format("Keep label columns ({} only)", labelled_formats()));
     command->add_flag("--drop-unusable", options->drop, "Leave out splats with NaN or illegal infinities");
     command->callback([options] {
         Scene scene = load_scene(options->input);
@@ -117,7 +131,8 @@ void add_convert(CLI::App& app, CommandContext&) {
         SaveOptions save = options->save;
         if (options->labels && !scene.labels.labels.empty()) save.from_label = &scene.labels.labels.front();
         else if (!scene.labels.labels.empty())
-            log::warning("the labels of the scene are not written; --labels keeps them in a .ply");
+            log::warning("the labels of the scene are not written; --labels keeps them in a {}",
+                         labelled_formats());
         refuse_same_file(options->input, options->output);
         const SavedRows rows = save_scene(options->output, scene, save);
         print("{} splats written to {}{}\n", rows.written, options->output.string(), left_out_text(rows));
@@ -133,8 +148,7 @@ void add_adjust(CLI::App& app, CommandContext&) {
     auto options = std::make_shared<AdjustOptions>();
     auto* command = app.add_subcommand("adjust", "Write a scene with its colours adjusted");
     command->add_option("input", options->input, "Scene file or folder")->required();
-    command->add_option("output", options->output, "New file: .ply, .compressed.ply, .splat, .spz or .sog")
-        ->required();
+    command->add_option("output", options->output, output_help())->required();
     command->add_flag("--use-label", options->use_label,
                       "Of what the scene's own label marks, not of all splats");
     bind_fields(*command, options->colours, "Colours");

@@ -161,9 +161,9 @@ void Application::write_scene(const std::filesystem::path& path) {
             *label = {named->name, weight ? weight : bits,
                       std::make_shared<const std::vector<std::uint8_t>>(bits->begin(), bits->end())};
     }
-    auto work = [=, spz_version = model_.exports.spz_version](const JobControl& control) {
+    auto work = [=, choices = model_.exports.format_choices](const JobControl& control) {
         control.report("writing", 0, 0);
-        SaveOptions save{.spz_version = spz_version};
+        SaveOptions save{.choices = choices};
         if (label->bits) save.from_label = label.get();
         save_scene(path, *scene, save);
     };

@@ -36,7 +36,7 @@ Label make_label(std::string name, std::vector<float> weight, float threshold);
 
 /// What the file (or the generator) said beside the Gaussians.
 struct SceneInfo {
-    std::string format;                 // "ply", "compressed.ply", "splat", "spz", "sog", "synthetic"
+    std::string format;                 // name of a scene format ("spz"), or "synthetic"
     Vec3 up{0, -1, 0};                  // world up; 3DGS scenes follow COLMAP, -y up
     bool up_known = false;              // true when the file stated it
     bool antialiased = false;           // trained with opacity compensation

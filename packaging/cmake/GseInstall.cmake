@@ -10,9 +10,10 @@ endforeach()
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/assets/ DESTINATION share/gseditpro
   REGEX "assets/guide$" EXCLUDE    # as HTML: GseGuide.cmake
   PATTERN log EXCLUDE)        # of the bundled model's training
-install(FILES ${CMAKE_SOURCE_DIR}/packaging/gseditpro.desktop DESTINATION share/applications)
+include(GseDesktopFiles)
+install(FILES ${CMAKE_BINARY_DIR}/desktop/gseditpro.desktop DESTINATION share/applications)
 install(FILES ${CMAKE_SOURCE_DIR}/packaging/gseditpro.svg DESTINATION share/icons/hicolor/scalable/apps)
-install(FILES ${CMAKE_SOURCE_DIR}/packaging/gseditpro-mime.xml DESTINATION share/mime/packages RENAME gseditpro.xml)
+install(FILES ${CMAKE_BINARY_DIR}/desktop/gseditpro-mime.xml DESTINATION share/mime/packages RENAME gseditpro.xml)
 install(FILES ${CMAKE_SOURCE_DIR}/packaging/copyright DESTINATION share/doc/gseditpro)
 
 # One changelog of all pages, newest first. Debian wants it packed, with nothing in it that differs from build to build.
@@ -48,8 +49,8 @@ is meant by the attention of a text-to-image model, labels those splats, and
 optimizes them while you watch. A small model comes with it; Stable Diffusion
 weights of your own are read.
 .
-It reads and writes PLY, compressed PLY, .splat, .spz and .sog, and takes
-pictures and turntables.")
+It reads and writes the common files of splat scenes, and takes pictures and
+turntables.")
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)

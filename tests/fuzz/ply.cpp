@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "engine/io/formats/ply/gaussian_ply.h"
 #include "tests/fuzz/fuzz_helpers.h"
 
 namespace gse::fuzz {

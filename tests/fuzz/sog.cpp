@@ -4,6 +4,7 @@
 #include <string>
 
 #include "engine/io/formats/sog/sog_files.h"
+#include "engine/io/formats/sog/sog_format.h"
 #include "tests/fuzz/fuzz_helpers.h"
 
 namespace {
@@ -44,7 +45,7 @@ private:
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const io::Bytes bytes = fuzz::as_bytes(data, size);
     return fuzz::exercise([&] {
-        if (io::detect_sog(bytes, "")) fuzz::exercise_scene(io::parse_sog(bytes));
+        if (find_format("sog")->detect(bytes)) fuzz::exercise_scene(io::parse_sog(bytes));
         else fuzz::exercise_scene(io::read_sog(PlainParts(bytes), "meta.json"));
     });
 }

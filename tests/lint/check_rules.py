@@ -30,7 +30,7 @@ ARROWS = {
 SUB_ROOMS = {
     "io": {
         "bytes": set(),
-        "files": set(),
+        "files": {"formats"},
         "image": {"bytes"},
         "formats": {"bytes"},
         "formats/ply": {"bytes", "formats"},

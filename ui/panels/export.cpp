@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "engine/io/cameras/cameras.h"
+#include "engine/io/formats/scene_formats.h"
 #include "ui/commands.h"
 #include "ui/panels/panels.h"
 #include "ui/state.h"
@@ -205,28 +206,32 @@ void draw_camera_path(Context& context) {
         context.actions.export_camera_path(true);
 }
 
-void draw_spz_version(Context& context) {
-    constexpr std::array<const char*, 3> names{"Version 2", "3", "4"};
-    int chosen = std::clamp(context.exports.spz_version - 2, 0, 2);
-    if (segmented(context, "export.spz_version", names, chosen)) {
-        context.exports.spz_version = chosen + 2;
-        context.exports_changed = true;
+/// The options of the format that the scene is written in.
+void draw_format_options(Context& context, const io::SceneFormat& format) {
+    for (const io::FormatOption& option : format.options) {
+        std::vector<const char*> labels;
+        for (const auto& value : option.values) labels.push_back(value.label.c_str());
+        const int first = option.values.front().value;
+        int& value = context.exports.format_choices[option.name];
+        int chosen = std::clamp(value - first, 0, static_cast<int>(labels.size()) - 1);
+        if (segmented(context, ("export." + option.name), labels, chosen)) {
+            value = first + chosen;
+            context.exports_changed = true;
+        }
+        dim_text(option.values[static_cast<std::size_t>(chosen)].note);
     }
-    dim_text(chosen == 0   ? "For the oldest programs; rotations are coarser."
-             : chosen == 1 ? "What most programs read."
-                           : "The newest: not read by every program yet.");
 }
 
 void draw_scene_file(Context& context) {
     heading(context, "Scene");
     path_row(context, "export.scene_path", &ExportSettings::scene_path, writable_extensions());
-    const bool ply = has_extension(context.exports.scene_path, std::vector<std::string>{".ply"}) &&
-                     !has_extension(context.exports.scene_path, std::vector<std::string>{".compressed.ply"});
+    const io::SceneFormat* format = format_written_to(path_of(context.exports.scene_path));
+    const bool exact = format != nullptr && format->exact;
+    const bool labels = format != nullptr && format->keeps_labels;
     if (checkbox(context, "export.with_labels", "With the label as a column", context.exports.with_labels,
                  "A float per splat; plain PLY only"))
         context.exports_changed = true;
-    if (has_extension(context.exports.scene_path, std::vector<std::string>{".spz"}))
-        draw_spz_version(context);
+    if (format != nullptr) draw_format_options(context, *format);
     const std::string why = why_not_write(context, context.exports.scene_path, writable_extensions());
     std::string what = context.model.result_waiting ? "Writes the scene" : "Writes the edited scene";
     if (context.scene_open())
@@ -234,8 +239,8 @@ void draw_scene_file(Context& context) {
             fmt::format("{}, {} splats", context.model.result_waiting ? " with the result that waits" : "",
                         count_text(context.model.result_waiting ? context.model.result_splats
                                                                 : context.document().current.size()));
-    if (!ply) what += ". This format rounds values; PLY keeps every bit";
-    if (context.exports.with_labels && !ply) what += "; labels are left out";
+    if (!exact) what += ". This format rounds values; PLY keeps every bit";
+    if (context.exports.with_labels && !labels) what += "; labels are left out";
     say(why, what + ".");
     if (button(context,
                {.name = "export.scene", .text = "Save scene", .why_off = why, .look = Look::Primary}))

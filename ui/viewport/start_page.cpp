@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "engine/io/formats/scene_formats.h"
 #include "ui/commands.h"
 #include "ui/glyphs.h"
 #include "ui/state.h"
@@ -105,8 +106,9 @@ void draw_start_page(Context& context) {
     draw_recoverable(context);
     heading(context, "Drop a scene here");
     wrapped_text(
-        "PLY, compressed PLY, SPZ, SOG or splat files; a folder with a scene and its cameras; a project "
-        "(.gsep); or a screenshot that this program saved.");
+        fmt::format("{} files; a folder with a scene and its cameras; a project "
+                    "(.gsep); or a screenshot that this program saved.",
+                    in_words(readable_names(), "or")));
     ImGui::Spacing();
     if (button(context, {.name = "start.open",
                          .text = "Open...",

@@ -5,7 +5,20 @@
 
 #include <string>
 
+#include "engine/io/formats/scene_formats.h"
+
 namespace gse {
+namespace {
+
+/// Ending of a file's name: all of a scene format's (".compressed.ply"), else what follows the last dot.
+std::string ending_of(const std::string& file) {
+    std::string ending = std::filesystem::path(file).extension().string();
+    for (const std::string& extension : readable_extensions())
+        if (file.ends_with(extension) && extension.size() > ending.size()) ending = extension;
+    return ending;
+}
+
+}  // namespace
 
 std::filesystem::path first_free(const std::filesystem::path& wanted) {
     std::error_code ignored;
@@ -14,8 +27,7 @@ std::filesystem::path first_free(const std::filesystem::path& wanted) {
         return !std::filesystem::is_directory(path, ignored) || !std::filesystem::is_empty(path, ignored);
     };
     const std::string file = wanted.filename().string();
-    const std::string ending =
-        file.ends_with(".compressed.ply") ? ".compressed.ply" : wanted.extension().string();
+    const std::string ending = ending_of(file);
     std::string stem = file.substr(0, file.size() - ending.size());
     int number = 2;
     const auto dash = stem.find_last_not_of("0123456789");

@@ -11,7 +11,7 @@
 #include "engine/io/bytes/claims.h"
 #include "engine/io/bytes/encoding.h"
 #include "engine/io/bytes/half.h"
-#include "engine/io/formats/formats.h"
+#include "engine/io/formats/scene_format.h"
 
 namespace gse::io {
 namespace {
@@ -170,10 +170,6 @@ void read_section(const Header& header, const Section& section, ByteReader& read
     }
 }
 
-}  // namespace
-
-bool detect_ksplat(Bytes, std::string_view name) { return name.ends_with(".ksplat"); }
-
 Scene parse_ksplat(Bytes bytes) {
     const Header header = parse_header(bytes);
     ByteReader reader(bytes, "the .ksplat file");
@@ -196,6 +192,16 @@ Scene parse_ksplat(Bytes bytes) {
     scene.info.format = "ksplat";
     scene.gaussians = GaussianSet(std::move(data));
     return scene;
+}
+
+}  // namespace
+
+SceneFormat ksplat_format() {
+    return {.name = "ksplat",
+            .title = ".ksplat",
+            .extensions = {".ksplat"},
+            .mime = {.type = "model/x-ksplat", .comment = "Gaussian splats (.ksplat)"},
+            .read = parse_ksplat};
 }
 
 }  // namespace gse::io

@@ -1,6 +1,7 @@
-// Options of writing a scene: format, columns of labels, version of a .spz file.
+// Options of writing a scene: format, columns of labels, choices of the format's own options.
 #pragma once
 
+#include <map>
 #include <span>
 #include <string>
 
@@ -8,18 +9,20 @@
 
 namespace gse {
 
-/// What to write beside the Gaussians.
+/// Values of format options by their names ("spz_version"). An option that is not named has its default.
+using FormatChoices = std::map<std::string, int>;
+
+/// Settings of save_scene().
 struct SaveOptions {
-    /// "ply", "compressed.ply", "splat", "spz" or "sog"; empty = from the file's name.
+    /// Name of a format that can be written ("compressed.ply"); empty = from the file's name.
     std::string format = {};
-    /// Optional columns of a 3DGS PLY, each empty or one value per row; written as floats after rot_3.
+    /// Optional columns of a 3DGS PLY, each empty or one value per row. Written as floats after rot_3.
     std::span<const float> label = {};
     std::span<const float> label_weight = {};
-    /// Takes `label` and `label_weight` from this label instead (must have one value per row).
+    /// Label whose bits and weights replace `label` and `label_weight`. Must have one value per row.
     const Label* from_label = nullptr;
-    /// Version of a .spz file: 3 is what most programs read, 4 the newest (smaller), 2 for the oldest ones
-    /// (coarser rotations).
-    int spz_version = 3;
+    /// Options of the format itself; those of other formats are ignored.
+    FormatChoices choices = {};
 };
 
 }  // namespace gse

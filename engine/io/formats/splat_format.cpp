@@ -9,7 +9,7 @@
 #include "engine/io/bytes/byte_reader.h"
 #include "engine/io/bytes/claims.h"
 #include "engine/io/bytes/encoding.h"
-#include "engine/io/formats/formats.h"
+#include "engine/io/formats/scene_format.h"
 
 namespace gse::io {
 namespace {
@@ -39,10 +39,6 @@ void parse_row(const std::byte* source, GaussianData& data, std::size_t row) {
     for (std::size_t i = 0; i < 4; ++i) data.rotation[row * 4 + i] = static_cast<float>(q[i] / norm);
 }
 
-}  // namespace
-
-bool detect_splat(Bytes, std::string_view name) { return name.ends_with(".splat"); }
-
 Scene parse_splat(Bytes bytes) {
     if (bytes.empty() || bytes.size() % RowBytes != 0)
         throw Error(ErrorCode::Malformed,
@@ -60,7 +56,7 @@ Scene parse_splat(Bytes bytes) {
     return scene;
 }
 
-std::string write_splat(const Scene& scene) {
+std::vector<std::uint32_t> write_splat(const Scene& scene, const SaveOptions&, const TakePiece& take) {
     const GaussianSet set = storable_rows(scene.gaussians, ".splat");
     if (set.sh_degree() > 0)
         log::warning("a .splat file keeps base colours only; view-dependent colour is lost");
@@ -78,7 +74,19 @@ std::string write_splat(const Scene& scene) {
         for (const double component : unit_quaternion(set.rotation().data() + row * 4))
             append_value(out, to_byte(component * 128 + 128));
     }
-    return out;
+    take(out);
+    return {};
+}
+
+}  // namespace
+
+SceneFormat splat_format() {
+    return {.name = "splat",
+            .title = ".splat",
+            .extensions = {".splat"},
+            .mime = {.type = "model/x-splat", .comment = "Gaussian splats (.splat)"},
+            .read = parse_splat,
+            .write = write_splat};
 }
 
 }  // namespace gse::io

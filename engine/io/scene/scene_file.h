@@ -43,7 +43,4 @@ struct SavedRows {
 /// format changed is measured on the written bytes and told with log::warning, worst error per field.
 SavedRows save_scene(const std::filesystem::path& path, const Scene& scene, const SaveOptions& options = {});
 
-/// Names for SaveOptions::format, in the order a user should see them.
-std::vector<std::string> writable_formats();
-
 }  // namespace gse

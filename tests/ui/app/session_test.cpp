@@ -534,7 +534,7 @@ DOCTEST_TEST_CASE("pictures, films, scenes and camera paths are written; mistake
     exports.film_path = (place.folder / "turn").string();
     exports.scene_path = (place.folder / "out.spz").string();
     exports.camera_path_path = (place.folder / "path.json").string();
-    exports.spz_version = 4;
+    exports.format_choices["spz_version"] = 4;
     session.app.set_exports(exports);
     session.app.update(session.preview);
     session.app.export_picture();

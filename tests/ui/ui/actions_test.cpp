@@ -492,7 +492,7 @@ DOCTEST_TEST_CASE("views, export, scene, models, settings") {
     harness.application.model().exports.scene_path = "out.spz";
     harness.frame(2);
     DOCTEST_CHECK(asks(harness, "export.spz_version.4", "set_exports"));
-    DOCTEST_CHECK(harness.application.model().exports.spz_version == 4);
+    DOCTEST_CHECK(harness.application.model().exports.format_choices["spz_version"] == 4);
     harness.application.model().exports.film_path = "film.avi";
     harness.application.model().exports.picture_path.clear();
     harness.frame(2);

@@ -4,7 +4,9 @@
 
 #include "engine/io/bytes/encoding.h"
 #include "engine/io/bytes/inflate.h"
-#include "engine/io/formats/formats.h"
+#include "engine/io/formats/ply/compressed_ply.h"
+#include "engine/io/formats/scene_formats.h"
+#include "engine/io/formats/spz/spz_format.h"
 #include "tests/unit/io/io_helpers.h"
 
 namespace formats_test {
@@ -80,7 +82,7 @@ DOCTEST_TEST_CASE("SPZ round trip stays within its steps, in every version") {
             DOCTEST_CAPTURE(version);
             DOCTEST_CAPTURE(degree);
             const Scene scene = random_scene(500, degree, 20 + static_cast<std::uint64_t>(degree));
-            const SaveOptions options{.spz_version = version};
+            const SaveOptions options{.choices = {{"spz_version", version}}};
             const Scene again = reload(scene, "a.spz", options);
             DOCTEST_REQUIRE(again.gaussians.size() == 500);
             DOCTEST_REQUIRE(again.gaussians.sh_degree() == degree);
@@ -121,8 +123,9 @@ DOCTEST_TEST_CASE(
     DOCTEST_CHECK(fourth.info.warnings.empty());
     ScratchFolder scratch;
     for (const int version : {-1, 0, 1, 5}) {
-        const auto refused =
-            error_of([&] { save_scene(scratch.path() / "a.spz", scene, {.spz_version = version}); });
+        const auto refused = error_of([&] {
+            save_scene(scratch.path() / "a.spz", scene, {.choices = {{"spz_version", version}}});
+        });
         DOCTEST_REQUIRE(refused.has_value());
         DOCTEST_CHECK(refused->code() == ErrorCode::InvalidArgument);
     }

@@ -15,6 +15,7 @@
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/random.h"
+#include "engine/io/formats/scene_formats.h"
 #include "engine/io/project/load_scene.h"
 #include "engine/io/scene/scene_file.h"
 #include "tests/test_paths.h"
@@ -33,6 +34,14 @@ template <class F> std::optional<Error> error_of(F&& body) {
         body();
     } catch (const Error& error) { return error; }
     return std::nullopt;
+}
+
+/// The file's bytes in the format of that name.
+inline std::string written_as(const std::string& format, const Scene& scene,
+                              const SaveOptions& options = {}) {
+    std::string bytes;
+    find_format(format)->write(scene, options, [&](std::string_view piece) { bytes += piece; });
+    return bytes;
 }
 
 /// Plausible splats: positions within +-`extent`, scales of some hundredths, any colour and rotation.

@@ -6,7 +6,7 @@
 #include <functional>
 #include <limits>
 
-#include "engine/io/formats/formats.h"
+#include "engine/io/formats/ply/gaussian_ply.h"
 #include "tests/unit/io/io_helpers.h"
 
 namespace ply_test {

@@ -9,7 +9,7 @@
 #include "engine/io/bytes/encoding.h"
 #include "engine/io/bytes/inflate.h"
 #include "engine/io/bytes/zip_archive.h"
-#include "engine/io/formats/formats.h"
+#include "engine/io/formats/scene_formats.h"
 #include "tests/unit/io/io_helpers.h"
 
 namespace robustness_test {
@@ -28,12 +28,9 @@ struct Sample {
 std::vector<Sample> samples() {
     std::vector<Sample> result;
     const Scene scene = random_scene(3, 1, 40);
-    result.push_back({"a.ply", io::write_gaussian_ply(scene, {})});
-    result.push_back({"a.compressed.ply", io::write_compressed_ply(scene)});
-    result.push_back({"a.splat", io::write_splat(scene)});
-    result.push_back({"a.spz", io::write_spz(scene)});
-    result.push_back({"four.spz", io::write_spz(scene, 4)});
-    result.push_back({"a.sog", io::write_sog(scene)});
+    for (const std::string& format : writable_formats())
+        result.push_back({"a." + format, written_as(format, scene)});
+    result.push_back({"four.spz", written_as("spz", scene, {.choices = {{"spz_version", 4}}})});
     const auto fixtures = data_folder() / "fixtures";
     for (const char* name : {"splat-transform/minimal-raw.spz", "splat-transform/minimal-v2.spz",
                              "splat-transform/minimal-v4.spz", "gsplat-rs/minimal_ascii.ply"})
@@ -87,7 +84,7 @@ DOCTEST_TEST_CASE("changed bytes never crash a reader") {
 }
 
 DOCTEST_TEST_CASE("huge counts are refused without allocating") {
-    const std::string ply = io::write_gaussian_ply(random_scene(2, 3, 1), {});
+    const std::string ply = written_as("ply", random_scene(2, 3, 1));
     const long before = peak_kilobytes();
     for (const char* count :
          {"4294967295", "18446744073709551615", "9999999999999999999999", "74382384379286256"}) {
@@ -111,7 +108,7 @@ DOCTEST_TEST_CASE("huge counts are refused without allocating") {
     }
     streams += std::string(60, 'x');
     DOCTEST_CHECK(error_of([&] { parse_scene(as_bytes(streams), "x.spz"); }).has_value());
-    std::string compressed = io::write_compressed_ply(random_scene(2, 0, 1));
+    std::string compressed = written_as("compressed.ply", random_scene(2, 0, 1));
     compressed.replace(compressed.find("element vertex 2"), 16, "element vertex 4000000000");
     DOCTEST_CHECK(error_of([&] { parse_scene(as_bytes(compressed), "x.ply"); }).has_value());
     constexpr long AllowedKilobytes = 64 * 1024;
@@ -193,7 +190,7 @@ DOCTEST_TEST_CASE("a file full of NaN loads, and the statistics say so") {
         std::fill(values->begin(), values->end(), std::numeric_limits<float>::quiet_NaN());
     Scene scene;
     scene.gaussians = GaussianSet(data);
-    const Scene again = parse_scene(as_bytes(io::write_gaussian_ply(scene, {})), "x.ply");
+    const Scene again = parse_scene(as_bytes(written_as("ply", scene)), "x.ply");
     DOCTEST_CHECK(compute_statistics(again.gaussians).nan_rows == 50);
     DOCTEST_CHECK(drop_unusable(again.gaussians).empty());
 }

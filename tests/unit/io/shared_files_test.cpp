@@ -1,7 +1,6 @@
 // Every third-party file of the shared data opens or gives the right sentence.
 #include <algorithm>
 
-#include "engine/io/formats/formats.h"
 #include "tests/unit/io/io_helpers.h"
 
 namespace shared_files_test {

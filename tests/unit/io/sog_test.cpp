@@ -5,8 +5,8 @@
 
 #include "engine/base/json.h"
 #include "engine/io/bytes/encoding.h"
-#include "engine/io/formats/formats.h"
 #include "engine/io/formats/sog/sog_files.h"
+#include "engine/io/formats/sog/sog_format.h"
 #include "engine/scene/morton.h"
 #include "tests/unit/io/io_helpers.h"
 

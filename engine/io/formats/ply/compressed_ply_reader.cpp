@@ -10,8 +10,8 @@
 #include "engine/io/bytes/byte_reader.h"
 #include "engine/io/bytes/claims.h"
 #include "engine/io/bytes/encoding.h"
-#include "engine/io/formats/formats.h"
 #include "engine/io/formats/ply/compressed_ply.h"
+#include "engine/io/formats/ply/gaussian_ply.h"
 #include "engine/io/formats/ply/ply_body.h"
 #include "engine/io/formats/ply/ply_comments.h"
 
@@ -187,13 +187,15 @@ Rows take_rows(Bytes bytes, const PlyHeader& header, const Elements& elements) {
 
 }  // namespace
 
-bool detect_compressed_ply(Bytes bytes, std::string_view) {
+bool detect_compressed_ply(Bytes bytes) {
     if (!is_ply(bytes)) return false;
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     const std::string_view header = text.substr(0, text.find("end_header"));
     return header.find("packed_position") != std::string_view::npos &&
            header.find("element chunk") != std::string_view::npos;
 }
+
+namespace {
 
 Scene parse_compressed_ply(Bytes bytes) {
     const PlyHeader header = parse_ply_header(bytes);
@@ -224,6 +226,27 @@ Scene parse_compressed_ply(Bytes bytes) {
     read_comments(header, scene.info);
     scene.gaussians = GaussianSet(std::move(data));
     return scene;
+}
+
+std::vector<std::uint32_t> write_in_new_order(const Scene& scene, const SaveOptions&, const TakePiece& take) {
+    std::vector<std::uint32_t> order;
+    take(write_compressed_ply(scene, &order));
+    return order;
+}
+
+}  // namespace
+
+SceneFormat compressed_ply_format() {
+    return {.name = "compressed.ply",
+            .title = "compressed PLY",
+            .extensions = {".compressed.ply"},
+            .mime = ply_mime(),
+            .detect = detect_compressed_ply,
+            .may_be_scene = may_be_gaussian_ply,
+            .read = parse_compressed_ply,
+            .write = write_in_new_order,
+            .keeps_antialiasing = true,
+            .keeps_up = true};
 }
 
 }  // namespace gse::io

@@ -9,7 +9,6 @@
 
 #include "engine/base/log.h"
 #include "engine/io/bytes/encoding.h"
-#include "engine/io/formats/formats.h"
 #include "engine/io/formats/ply/compressed_ply.h"
 #include "engine/io/formats/ply/ply_comments.h"
 #include "engine/scene/morton.h"

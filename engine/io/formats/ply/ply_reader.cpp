@@ -15,7 +15,8 @@
 #include "engine/io/bytes/claims.h"
 #include "engine/io/bytes/encoding.h"
 #include "engine/io/bytes/label_weights.h"
-#include "engine/io/formats/formats.h"
+#include "engine/io/formats/ply/compressed_ply.h"
+#include "engine/io/formats/ply/gaussian_ply.h"
 #include "engine/io/formats/ply/ply_body.h"
 #include "engine/io/formats/ply/ply_comments.h"
 
@@ -279,9 +280,41 @@ Scene fill_scene(Described& described, const std::function<void(std::span<const 
     return filled;
 }
 
+bool detect_gaussian_ply(Bytes bytes) { return is_ply(bytes) && !detect_compressed_ply(bytes); }
+
 }  // namespace
 
-bool detect_ply(Bytes bytes, std::string_view) { return is_ply(bytes); }
+bool may_be_gaussian_ply(std::string_view start) {
+    const bool whole = start.starts_with("ply") && start.find("end_header") != std::string_view::npos;
+    return !whole || start.find("scale_0") != std::string_view::npos ||
+           start.find("packed_position") != std::string_view::npos;
+}
+
+MimeType ply_mime() {
+    return {.type = "model/ply",
+            .comment = "polygon or splat file",
+            .acronym = "PLY",
+            .expanded_acronym = "Polygon File Format",
+            .alias = "application/x-ply",
+            .magic = {"ply\\n", "ply\\r"},
+            .own_icon = false};
+}
+
+SceneFormat gaussian_ply_format() {
+    return {.name = "ply",
+            .title = "PLY",
+            .extensions = {".ply"},
+            .mime = ply_mime(),
+            .detect = detect_gaussian_ply,
+            .may_be_scene = may_be_gaussian_ply,
+            .read = parse_gaussian_ply,
+            .read_pieces = load_gaussian_ply,
+            .write = write_gaussian_ply,
+            .exact = true,
+            .keeps_labels = true,
+            .keeps_antialiasing = true,
+            .keeps_up = true};
+}
 
 Scene parse_gaussian_ply(Bytes bytes) {
     Described described(bytes);
@@ -304,8 +337,7 @@ std::optional<Scene> load_gaussian_ply(const InputFile& file) {
         static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), LongestHeader)));
     file.read(0, start);
     const std::string_view text(reinterpret_cast<const char*>(start.data()), start.size());
-    if (!is_ply(start) || text.find("end_header") == std::string_view::npos ||
-        detect_compressed_ply(start, ""))
+    if (!is_ply(start) || text.find("end_header") == std::string_view::npos || detect_compressed_ply(start))
         return std::nullopt;
     Described described(start);
     const PlyElement& vertex = *described.vertex;

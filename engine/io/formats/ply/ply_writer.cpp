@@ -8,7 +8,7 @@
 #include "engine/base/check.h"
 #include "engine/base/error.h"
 #include "engine/io/bytes/encoding.h"
-#include "engine/io/formats/formats.h"
+#include "engine/io/formats/ply/gaussian_ply.h"
 #include "engine/io/formats/ply/ply_comments.h"
 
 namespace gse::io {
@@ -60,8 +60,8 @@ std::string header_text(const Scene& scene, const SaveOptions& options, const La
 
 }  // namespace
 
-void write_gaussian_ply(const Scene& scene, const SaveOptions& options,
-                        const std::function<void(std::string_view piece)>& take) {
+std::vector<std::uint32_t> write_gaussian_ply(const Scene& scene, const SaveOptions& options,
+                                              const TakePiece& take) {
     const LabelColumns columns = label_columns(scene, options);
     const GaussianSpans set = scene.gaussians.spans();
     const std::size_t rest = rest_of_degree(set.sh_degree);
@@ -93,12 +93,7 @@ void write_gaussian_ply(const Scene& scene, const SaveOptions& options,
               static_cast<std::size_t>(next - values.data()) * sizeof(float)});
         next = values.data();
     }
-}
-
-std::string write_gaussian_ply(const Scene& scene, const SaveOptions& options) {
-    std::string out;
-    write_gaussian_ply(scene, options, [&](std::string_view piece) { out += piece; });
-    return out;
+    return {};
 }
 
 }  // namespace gse::io

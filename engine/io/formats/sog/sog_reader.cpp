@@ -17,9 +17,9 @@
 #include "engine/io/bytes/claims.h"
 #include "engine/io/bytes/encoding.h"
 #include "engine/io/bytes/json_numbers.h"
-#include "engine/io/formats/formats.h"
 #include "engine/io/formats/sog/codebook.h"
 #include "engine/io/formats/sog/sog_files.h"
+#include "engine/io/formats/sog/sog_format.h"
 
 namespace gse::io {
 namespace {
@@ -32,6 +32,8 @@ constexpr std::uint64_t LargestDescription = std::uint64_t{4}
 constexpr std::uint64_t LargestCount = std::uint64_t{16383} * 16383;  // a WebP picture has no more texels
 constexpr std::uint64_t LargestTexture =
     LargestCount * 4 + (std::uint64_t{1} << 20);  // bytes of its file, were nothing compressed
+
+constexpr const char* LevelList = "lod-meta.json";  // of a streamed scene
 
 [[noreturn]] void throw_malformed_sog(const std::string& what) {
     throw Error(ErrorCode::Malformed, "the SOG scene " + what,
@@ -287,11 +289,9 @@ std::vector<std::filesystem::path> part_files(const std::filesystem::path& folde
     return paths;
 }
 
-}  // namespace
+bool detect_sog(Bytes bytes) { return bytes.size() >= 4 && std::memcmp(bytes.data(), "PK\x03\x04", 4) == 0; }
 
-bool detect_sog(Bytes bytes, std::string_view) {
-    return bytes.size() >= 4 && std::memcmp(bytes.data(), "PK\x03\x04", 4) == 0;
-}
+}  // namespace
 
 Scene read_sog(const SogFiles& files, const std::string& meta) {
     return with_json_errors(
@@ -300,10 +300,14 @@ Scene read_sog(const SogFiles& files, const std::string& meta) {
 
 Scene parse_sog(Bytes bytes) { return read_sog(*open_sog_archive(bytes), "meta.json"); }
 
+namespace {
+
+/// Reads an unpacked archive: `meta` is its meta.json.
 Scene load_sog_folder(const std::filesystem::path& meta) {
     return read_sog(*open_sog_folder(meta.parent_path()), meta.filename().string());
 }
 
+/// Reads the finest level of a streamed SOG: `lod_meta` is its lod-meta.json.
 Scene load_sog_levels(const std::filesystem::path& lod_meta) {
     return with_json_errors([&] {
         const FileBytes file(lod_meta);
@@ -322,6 +326,34 @@ Scene load_sog_levels(const std::filesystem::path& lod_meta) {
         scene.info.warnings.push_back("of the levels of detail, only the finest is loaded");
         return scene;
     });
+}
+
+Scene read_unpacked_sog(const std::filesystem::path& file) {
+    return file.filename() == LevelList ? load_sog_levels(file) : load_sog_folder(file);
+}
+
+std::vector<std::uint32_t> write_sog_archive(const Scene& scene, const SaveOptions&, const TakePiece& take) {
+    std::vector<std::uint32_t> order;
+    take(write_sog(scene, &order));
+    return order;
+}
+
+}  // namespace
+
+SceneFormat sog_format() {
+    return {.name = "sog",
+            .title = "SOG",
+            .extensions = {".sog"},
+            .file_names = {LevelList, "meta.json"},
+            .mime = {.type = "model/x-sog",
+                     .comment = "Gaussian splats (SOG)",
+                     .parent = "application/zip",
+                     .weight = 60},
+            .detect = detect_sog,
+            .read = parse_sog,
+            .read_folder = read_unpacked_sog,
+            .write = write_sog_archive,
+            .keeps_antialiasing = true};
 }
 
 }  // namespace gse::io

@@ -13,9 +13,9 @@
 #include "engine/base/thread_pool.h"
 #include "engine/io/bytes/encoding.h"
 #include "engine/io/bytes/zip_archive.h"
-#include "engine/io/formats/formats.h"
 #include "engine/io/formats/sog/codebook.h"
 #include "engine/io/formats/sog/sog_files.h"
+#include "engine/io/formats/sog/sog_format.h"
 #include "engine/scene/morton.h"
 
 namespace gse::io {

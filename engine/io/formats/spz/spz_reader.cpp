@@ -19,7 +19,6 @@
 #include "engine/io/bytes/encoding.h"
 #include "engine/io/bytes/half.h"
 #include "engine/io/bytes/inflate.h"
-#include "engine/io/formats/formats.h"
 #include "engine/io/formats/spz/spz_format.h"
 
 namespace gse::io {
@@ -295,14 +294,45 @@ bool is_bare(Bytes bytes) {
     return bytes.size() >= 4 && load_scalar<std::uint32_t>(bytes.data()) == SpzMagic;
 }
 
-}  // namespace
-
-bool detect_spz(Bytes bytes, std::string_view) { return is_gzip(bytes) || is_bare(bytes); }
+bool detect_spz(Bytes bytes) { return is_gzip(bytes) || is_bare(bytes); }
 
 Scene parse_spz(Bytes bytes) {
     if (is_gzip(bytes)) return parse_gzip(bytes);
     const bool streams = bytes.size() >= 8 && load_scalar<std::uint32_t>(bytes.data() + 4) >= 4;
     return streams ? parse_streams(bytes) : parse_flat(bytes);
+}
+
+FormatOption version_option() {
+    return {.name = "spz_version",
+            .help = "Version of a .spz: 3 (most programs read it), 4 (newest) or 2 (oldest)",
+            .values = {{OldestSpzVersion, "Version 2", "For the oldest programs; rotations are coarser."},
+                       {UsualSpzVersion, "3", "What most programs read."},
+                       {NewestSpzVersion, "4", "The newest: not read by every program yet."}},
+            .standard = UsualSpzVersion};
+}
+
+std::vector<std::uint32_t> write_chosen_spz(const Scene& scene, const SaveOptions& options,
+                                            const TakePiece& take) {
+    take(write_spz(scene, chosen_value(version_option(), options)));
+    return {};
+}
+
+}  // namespace
+
+SceneFormat spz_format() {
+    return {.name = "spz",
+            .title = "SPZ",
+            .extensions = {".spz"},
+            .mime = {.type = "model/x-spz",
+                     .comment = "Gaussian splats (SPZ)",
+                     .magic = {"NGSP"},
+                     .magic_priority = 60,
+                     .weight = 60},
+            .detect = detect_spz,
+            .read = parse_spz,
+            .write = write_chosen_spz,
+            .keeps_antialiasing = true,
+            .options = {version_option()}};
 }
 
 }  // namespace gse::io

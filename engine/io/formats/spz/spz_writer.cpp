@@ -10,13 +10,11 @@
 #include "engine/base/log.h"
 #include "engine/io/bytes/encoding.h"
 #include "engine/io/bytes/inflate.h"
-#include "engine/io/formats/formats.h"
 #include "engine/io/formats/spz/spz_format.h"
 
 namespace gse::io {
 namespace {
 
-constexpr int OldestVersion = 2, NewestVersion = 4;
 constexpr int WordRotations = 3;    // from this version on a rotation is one word instead of three bytes
 constexpr int SeparateStreams = 4;  // from this version on every attribute is compressed by itself
 constexpr std::uint32_t HeaderOfStreams = 32;  // bytes before the table, where there are no extensions
@@ -107,14 +105,14 @@ std::string join_streams(std::string header, const Streams& streams) {
     return header + frames;
 }
 
-}  // namespace
-
 void check_spz_version(int version) {
-    if (version < OldestVersion || version > NewestVersion)
+    if (version < OldestSpzVersion || version > NewestSpzVersion)
         throw Error(ErrorCode::InvalidArgument,
                     "version " + std::to_string(version) + " of .spz cannot be written",
                     "use 3 (most programs read it), 4 (the newest) or 2 (the oldest programs)");
 }
+
+}  // namespace
 
 std::string write_spz(const Scene& scene, int version) {
     check_spz_version(version);
