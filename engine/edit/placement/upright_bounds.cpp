@@ -21,7 +21,7 @@ constexpr double GroundReach =
 constexpr double StemReach =
     0.8;  // of the larger of height and width, down, where there is none so near: a label may lack the stem
 constexpr double GroundWidth = 1.5;      // of a foot's radius: so far out its ground is looked for at least
-constexpr std::size_t LeastGround = 20;  // rows that make a ground
+constexpr std::size_t LeastGroundRows = 20;  // rows that make a ground
 constexpr double FigureWidth = 0.75;     // of its width, the least that a figure is high
 
 std::vector<Vec3> shown_rows(const GaussianSet& set, std::span<const std::uint8_t> bits, const Frame& frame,
@@ -71,7 +71,7 @@ double ground_at(const std::vector<Vec3>& others, const UprightBounds& thing, do
         if (above < 0 && above >= -StemReach * size) below.push_back(p.y);
     }
     for (auto* ground : {&near, &below})
-        if (ground->size() >= LeastGround) return quantile(std::move(*ground), 0.5);
+        if (ground->size() >= LeastGroundRows) return quantile(std::move(*ground), 0.5);
     return thing.foot.y;
 }
 

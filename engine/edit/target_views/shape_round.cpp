@@ -25,7 +25,7 @@ constexpr double LeastFramedAdded =
 // .4 .459, .3 .457; thin parts are missed more often than drawn too wide. Of what becomes another .5 and .4
 // are alike.
 constexpr double LevelOfAdded = 0.4;
-constexpr std::size_t LeastViews = 3;  // fewer do not enclose a space
+constexpr std::size_t LeastOutlines = 3;  // fewer do not enclose a space
 /// The rim of a thing is part of a pixel.
 Image softened(const Mask& mask) { return mean_of_neighbours(mask_image(mask)); }
 
@@ -106,7 +106,7 @@ CutOut ShapeFinder::cut_out(const std::vector<EditView>& views, EditedViews& dra
         job.report("cutting out the new thing", static_cast<int>(v + 1), static_cast<int>(views.size()));
     }
     found.scalars["views_with_thing"] = static_cast<double>(found.usable.size());
-    if (found.usable.size() < LeastViews)
+    if (found.usable.size() < LeastOutlines)
         throw Error(ErrorCode::Model,
                     fmt::format("the model drew \"{}\" into only {} of {} views", word_, found.usable.size(),
                                 views.size()),
