@@ -1,7 +1,8 @@
-// Splats in depth order -> lists of the tiles their ellipses touch, exactly: per band of a tile's height the ellipse's
-// largest extent in x, on pixel centres. Every invocation owns a stretch of the depth order, so lists stay in order.
-// COUNT: pairs per tile and stretch; else: rows to their places. LIMITED: for llvmpipe, which silently leaves every loop
-// of an invocation once 65,535 turns have been made in all; what is left is done in further rounds.
+// Splats in depth order -> lists of the tiles their ellipses touch, exactly: per band of a tile's height the
+// ellipse's largest extent in x, on pixel centres. Every invocation owns a stretch of the depth order, so
+// lists stay in order. COUNT: pairs per tile and stretch; else: rows to their places. LIMITED: for llvmpipe,
+// which silently leaves every loop of an invocation once 65,535 turns have been made in all; what is left is
+// done in further rounds.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #ifdef LIMITED
@@ -71,12 +72,14 @@ void main() {
                 if (++band > end_band) break;
                 const float low = float(band) * tile_size + 0.5 - a.y;
                 const float from = max(low, -half_height), to = min(low + tile_size - 1.0, half_height);
-                // The right edge is a concave function of dy with its top at `lean`; the left edge is its mirror image.
+                // The right edge is a concave function of dy with its top at `lean`; the left edge is its
+                // mirror image.
                 const float right = min(max(lean, from), to), left = min(max(-lean, from), to);
                 const float right_v = right * b.x, left_v = left * b.x;
                 const float x_right =
                     a.x + right * slope + sqrt(max(reach - right_v * right_v, 0.0)) * inverse_l1 + Margin;
-                const float x_left = a.x + left * slope - sqrt(max(reach - left_v * left_v, 0.0)) * inverse_l1 - Margin;
+                const float half_left = sqrt(max(reach - left_v * left_v, 0.0)) * inverse_l1;
+                const float x_left = a.x + left * slope - half_left - Margin;
                 column = int(clamp(ceil((x_left - tile_size + 0.5) / tile_size), 0.0, float(columns)));
                 last_column = int(clamp(floor((x_right - 0.5) / tile_size), -1.0, float(columns - 1)));
                 if (from > to) last_column = -1;

@@ -1,5 +1,5 @@
-// Tiles of 8x8 pixels, front to back; one subgroup of 8 invocations a tile, a row of 8 pixels each. The subgroup fetches
-// 8 splats at a time and hands them round, because loads are what costs on software devices.
+// Tiles of 8x8 pixels, front to back; one subgroup of 8 invocations a tile, a row of 8 pixels each. The
+// subgroup fetches 8 splats at a time and hands them round, because loads are what costs on software devices.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require

@@ -1,5 +1,5 @@
-// Tiles of 16x16 pixels, front to back; 64 invocations a tile, 4 pixels of a row each, splats fetched together into shared
-// memory. Works with any subgroup size.
+// Tiles of 16x16 pixels, front to back; 64 invocations a tile, 4 pixels of a row each, splats fetched
+// together into shared memory. Works with any subgroup size.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"
@@ -23,8 +23,10 @@ void main() {
             const int row = int(texelFetch(fetch_pairs, int(at + lane)).x);
             const vec4 b = texelFetch(fetch_b, row);
             shared_a[lane] = texelFetch(fetch_a, row);
-            shared_b[lane] = vec4(b.xy, WithDepth != 0 ? uintBitsToFloat(texelFetch(fetch_keys, row).x) : 0.0, 0.0);
-            shared_colour[lane] = vec4(unpackHalf2x16(floatBitsToUint(b.z)), unpackHalf2x16(floatBitsToUint(b.w)));
+            const float depth = WithDepth != 0 ? uintBitsToFloat(texelFetch(fetch_keys, row).x) : 0.0;
+            shared_b[lane] = vec4(b.xy, depth, 0.0);
+            shared_colour[lane] =
+                vec4(unpackHalf2x16(floatBitsToUint(b.z)), unpackHalf2x16(floatBitsToUint(b.w)));
         }
         barrier();
         const uint count = min(range.y - at, 64);

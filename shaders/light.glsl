@@ -1,6 +1,8 @@
-// The sums of PIXELS neighbouring pixels of a row, held by one invocation. Needs Mode and the With... constants.
+// The sums of PIXELS neighbouring pixels of a row, held by one invocation. Needs Mode and the With...
+// constants.
 
-float running[PIXELS], covered[PIXELS], red[PIXELS], green[PIXELS], blue[PIXELS], depth[PIXELS], value[PIXELS];
+float running[PIXELS], covered[PIXELS], depth[PIXELS], value[PIXELS];
+float red[PIXELS], green[PIXELS], blue[PIXELS];
 
 void start_light(uvec2 corner) {
     for (int k = 0; k < PIXELS; ++k) {
@@ -44,7 +46,8 @@ void store_light(uvec2 corner) {
         if (corner.y >= frame.size.y || corner.x + k >= frame.size.x) continue;
         const uint pixel = corner.y * frame.size.x + corner.x + k;
         const vec3 rgb = vec3(red[k], green[k], blue[k]);
-        imageStore(picture, ivec2(corner.x + k, corner.y), resolve(rgb, covered[k], depth[k], value[k], Mode));
+        const vec4 shown = resolve(rgb, covered[k], depth[k], value[k], Mode);
+        imageStore(picture, ivec2(corner.x + k, corner.y), shown);
         if (StoreDepth != 0) depths[pixel] = covered[k] > LeastSolid ? depth[k] / covered[k] : 0.0;
         if (StoreLight != 0) {
             light[pixel * 6] = rgb.x;

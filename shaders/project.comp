@@ -13,7 +13,8 @@ layout(set = 1, binding = 1) uniform samplerBuffer harmonics;
 layout(set = 1, binding = 2) uniform samplerBuffer values;
 layout(push_constant) uniform Push { uint first_row, row_count, has_values; } push;
 
-const float LargestReach = 2.0 * (Log2Of255 * (1.0 + 1e-4) + 1e-4) / Log2E;   // of full opacity, in standard deviations squared
+// Of full opacity, in standard deviations squared.
+const float LargestReach = 2.0 * (Log2Of255 * (1.0 + 1e-4) + 1e-4) / Log2E;
 const float BallMargin = 1.01;                                               // far more than rounding
 
 void fill_basis(vec3 d, out float b[16]) {
@@ -88,10 +89,11 @@ void main() {
     const vec2 ratio = clamp(p.xy * inverse_z, frame.ratio.xz, frame.ratio.yw);
     const vec2 centre = frame.lens.xy * p.xy * inverse_z + frame.lens.zw;
     const vec2 size = vec2(frame.size.xy);
-    // Beside the picture whatever its direction and opacity: no axis of the footprint is longer than that of a ball of the
-    // largest scale. What is not a number stays.
+    // Beside the picture whatever its direction and opacity: no axis of the footprint is longer than that of
+    // a ball of the largest scale. What is not a number stays.
     const vec2 ball = frame.lens.xy * (inverse_z * max(scale.x, max(scale.y, scale.z)));
-    const vec2 bound = max(BallMargin * sqrt(LargestReach * (ball * ball * (1.0 + ratio * ratio) + frame.optics.x)), frame.optics.z);
+    const vec2 variance = ball * ball * (1.0 + ratio * ratio) + frame.optics.x;
+    const vec2 bound = max(BallMargin * sqrt(LargestReach * variance), frame.optics.z);
     if (any(lessThan(centre + bound, vec2(0.0))) || any(greaterThan(centre - bound, size))) return;
 
     const mat3 axes = axes_of(texelFetch(geometry, texel + 1));
@@ -115,7 +117,8 @@ void main() {
         l2 = 0.0;
         extent = vec2(frame.optics.z);
     }
-    drawn = drawn && all(greaterThanEqual(centre + extent, vec2(0.0))) && all(lessThanEqual(centre - extent, size));
+    drawn = drawn && all(greaterThanEqual(centre + extent, vec2(0.0))) &&
+            all(lessThanEqual(centre - extent, size));
     if (!drawn) return;
 
     vec3 colour = colour_of(local, normalize(offset));

@@ -1,5 +1,5 @@
-// Exclusive prefix sum of the matrix in three steps. STEP 0: sums of blocks; 1: prefix of those, by one group; 2: back
-// into the matrix.
+// Exclusive prefix sum of the matrix in three steps. STEP 0: sums of blocks; 1: prefix of those, by one
+// group; 2: back into the matrix.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"

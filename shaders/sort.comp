@@ -1,5 +1,6 @@
-// One pass of the stable radix sort by depth. Every invocation owns a stretch of the list and walks it alone, so the
-// order within it is kept whatever the size of subgroups. COUNT: digits of each stretch; else: items to their places.
+// One pass of the stable radix sort by depth. Every invocation owns a stretch of the list and walks it alone,
+// so the order within it is kept whatever the size of subgroups. COUNT: digits of each stretch; else: items
+// to their places.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "frame.glsl"

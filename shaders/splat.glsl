@@ -1,6 +1,7 @@
 // alpha of a splat at a pixel, for every way of showing it. power = log2 alpha, before the limits.
 
-/// 2^p for p in [-8, 0], relative error 3e-7; shorter than the general function on software devices. Other p: anything.
+/// 2^p for p in [-8, 0], relative error 3e-7; shorter than the general function on software devices. Other p:
+/// anything.
 float power_of_two(float p) {
     const float n = roundEven(p), f = p - n;
     float sum = 0.0013333558;

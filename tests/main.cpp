@@ -15,7 +15,6 @@ int main(int argc, char** argv) {
     const int result = context.run();
     const auto& missing = gse::test::skipped();
     if (context.shouldExit() || result != 0 || missing.empty()) return result;
-    std::printf("[skip] %zu checks were left out, the first for want of %s\n", missing.size(),
-                missing.front().c_str());
+    std::printf("[skip] %zu checks were left out; the first: %s\n", missing.size(), missing.front().c_str());
     return gse::test::SkipCode;
 }

@@ -42,20 +42,30 @@ inline bool runs_in_ci() {
     return !value.empty() && value != "false" && value != "0";
 }
 
-/// What was asked for and is not there. A program that skipped something returns SkipCode instead of success.
-inline std::vector<std::filesystem::path>& skipped() {
-    static std::vector<std::filesystem::path> paths;
-    return paths;
+/// Reasons of the checks that were left out. A program with any returns SkipCode instead of success.
+inline std::vector<std::string>& skipped() {
+    static std::vector<std::string> reasons;
+    return reasons;
 }
 constexpr int SkipCode = 77;  // as CTest is told in CMakeLists.txt
+
+/// Counts a check that this machine cannot make (a processor without bfloat16): the case is to return.
+inline void skip(const std::string& reason) {
+    std::printf("[skip] %s\n", reason.c_str());
+    skipped().push_back(reason);
+}
+
+/// Counts a check that lacks something every test machine has (data, a Vulkan device, a display, the
+/// plug-in). The case is to return. Throws where CI is set.
+inline void skip_missing(const std::string& reason) {
+    if (runs_in_ci()) throw std::runtime_error(reason + ", and CI is set: nothing may be skipped");
+    skip(reason);
+}
 
 /// True when `path` exists; otherwise the case is to return: it counts as skipped, in CI as failed.
 inline bool available(const std::filesystem::path& path) {
     if (std::filesystem::exists(path)) return true;
-    if (runs_in_ci())
-        throw std::runtime_error(path.string() + " is not there, and CI is set: nothing may be skipped");
-    std::printf("[skip] %s is not there\n", path.c_str());
-    skipped().push_back(path);
+    skip_missing(path.string() + " is not there");
     return false;
 }
 

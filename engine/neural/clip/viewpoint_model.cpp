@@ -23,7 +23,7 @@ void require(bool holds, const std::string& key, const std::filesystem::path& pa
                     path);
 }
 
-std::filesystem::path existing(const std::filesystem::path& path) {
+std::filesystem::path existing_file(const std::filesystem::path& path) {
     if (!std::filesystem::exists(path))
         throw Error(ErrorCode::NotFound, "the viewpoint classifier is incomplete",
                     "it has config.json and model.safetensors", path);
@@ -85,11 +85,11 @@ torch::Tensor ViewpointModelImpl::forward(const torch::Tensor& pictures) const {
 }
 
 ViewpointReader::ViewpointReader(const std::filesystem::path& folder, torch::Device device)
-    : config_(ViewpointConfig::from_json(read_json_file(existing(folder / "config.json")),
+    : config_(ViewpointConfig::from_json(read_json_file(existing_file(folder / "config.json")),
                                          folder / "config.json")),
-      device_(device),
-      model_(loaded_network<ViewpointModel>(config_, SafetensorsFile(existing(folder / "model.safetensors")),
-                                            LoadPlan{{}, {}, "viewpoint classifier"})) {
+      device_(device), model_(loaded_network<ViewpointModel>(
+                           config_, SafetensorsFile(existing_file(folder / "model.safetensors")),
+                           LoadPlan{{}, {}, "viewpoint classifier"})) {
     for (auto& parameter : model_->parameters()) parameter.set_requires_grad(false);
     model_->to(device_);
     model_->eval();

@@ -14,12 +14,12 @@
 namespace gse::neural {
 namespace {
 
-constexpr std::size_t MostPictures = 64;  // 4 MB each with SAM's weights
+constexpr std::size_t MostEncodedPictures = 64;  // 4 MB each with SAM's weights
 
 class SamSegmenter final : public edit::Segmenter {
 public:
     SamSegmenter(SamModel model, const torch::Device& device)
-        : model_(std::move(model)), device_(device), pictures_(MostPictures) {}
+        : model_(std::move(model)), device_(device), pictures_(MostEncodedPictures) {}
 
     Mask segment(const Image& image, const std::vector<edit::PointPrompt>& points,
                  const std::optional<edit::BoxPrompt>& box, const Image&) override {

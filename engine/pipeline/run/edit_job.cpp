@@ -17,6 +17,7 @@
 #include "engine/pipeline/models/neural_loader.h"
 #include "engine/pipeline/models/probe.h"
 #include "engine/pipeline/run/scene_loading.h"
+#include "engine/pipeline/select/cut_out.h"
 
 namespace gse::pipeline {
 namespace {

@@ -23,8 +23,7 @@ constexpr double DeviceTolerance = 2;
 DOCTEST_TEST_CASE("a CUDA device agrees with the plain version and with the emulation") {
     std::string why;
     if (!cuda_usable(&why)) {
-        std::printf("[skip] %s\n", why.c_str());
-        test::skipped().push_back("a CUDA device");
+        test::skip(why);
         return;
     }
     const auto device = make_cuda_rasterizer();

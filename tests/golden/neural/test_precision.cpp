@@ -5,6 +5,7 @@
 #include "engine/neural/weights/key_map.h"
 #include "engine/neural/weights/weights.h"
 #include "tests/golden/neural/golden_case.h"
+#include "tests/test_paths.h"
 
 using namespace gse;
 using namespace gse::neural;
@@ -31,7 +32,7 @@ DOCTEST_TEST_CASE("bf16: the UNet's error is that of rounding (precision)") {
     const GoldenCase precision("precision");
     if (!precision.present) return;
     if (!multiplies_bfloat16(torch::kCPU)) {
-        DOCTEST_MESSAGE("[skip] this processor does not compute in bfloat16");
+        test::skip("this processor does not compute in bfloat16");
         return;
     }
     const auto all_bounds = precision.json("precision.json");

@@ -96,7 +96,7 @@ inline bool networks() {
 #else
     const bool there = false;
 #endif
-    if (!there) DOCTEST_MESSAGE("[skip] this build has no networks");
+    if (!there) skip_missing("libgse_neural.so is not there");
     return there;
 }
 

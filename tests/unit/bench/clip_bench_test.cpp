@@ -37,7 +37,7 @@ std::unique_ptr<edit::ImageTextEncoder> starter_score() {
         neural_api().set_threads(1);
     } catch (const Error& error) {
         if (error.code() != ErrorCode::NotFound) throw;
-        std::printf("[skip] %s\n", error.what());
+        test::skip_missing(error.what());
         return nullptr;
     }
     JobParameters job;

@@ -4,6 +4,7 @@
 
 #include "engine/io/image/image_file.h"
 #include "engine/io/image/video.h"
+#include "tests/test_paths.h"
 #include "tests/unit/io/io_helpers.h"
 
 namespace image_test {
@@ -26,7 +27,7 @@ bool reads_images() {
 #ifdef GSE_HAVE_OPENCV
     return true;
 #else
-    std::printf("[skip] built without OpenCV\n");
+    test::skip("built without OpenCV");
     return false;
 #endif
 }

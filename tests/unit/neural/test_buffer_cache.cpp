@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/neural/layers/buffer_cache.h"
+#include "tests/test_paths.h"
 
 using namespace gse::neural;
 
@@ -26,7 +27,7 @@ bool keeps() {
     tensor_of(2 * LeastKeptBuffer);
     release_buffers();
     if (buffer_use().fresh > before) return true;
-    DOCTEST_MESSAGE("[skip] a sanitizer allocates here");
+    test::skip("a sanitizer allocates here");
     return false;
 }
 
@@ -59,7 +60,7 @@ DOCTEST_TEST_CASE("a large tensor asks for huge pages") {
     const auto tensor = tensor_of(2 * LeastKeptBuffer);
     const auto flags = mapping_flags(static_cast<const char*>(tensor.data_ptr()) + LeastKeptBuffer);
     if (flags.empty() || !has_huge_pages()) {
-        DOCTEST_MESSAGE("[skip] the system has no huge pages, or does not show them");
+        test::skip("the system has no huge pages, or does not show them");
         return;
     }
     DOCTEST_CHECK_MESSAGE(flags.find(" hg ") != std::string::npos, flags);

@@ -77,18 +77,16 @@ DOCTEST_TEST_CASE("a lost device has its own error, and work can be recorded aga
 }
 
 DOCTEST_TEST_CASE("the validation layers are listened to") {
+    if (test::test_device() == nullptr) return;
     vulkan::InstanceOptions options;
     options.validation = true;
-    try {
-        vulkan::Instance instance(options);
-        if (!instance.validates()) return;
-        vulkan::Device device(instance);
-        log::set_level(log::Level::Off);
-        const vulkan::Buffer useless(device, {.size = 16, .usage = {}});  // a buffer without any usage
-        log::set_level(log::Level::Info);
-        DOCTEST_CHECK(instance.message_count() > 0);
-        DOCTEST_CHECK(!instance.first_message().empty());
-    } catch (const Error& error) { std::printf("[skip] %s\n", error.what()); }
+    vulkan::Instance instance(options);  // its own: the shared one's messages are counted elsewhere
+    vulkan::Device device(instance);
+    log::set_level(log::Level::Off);
+    const vulkan::Buffer useless(device, {.size = 16, .usage = {}});  // a buffer without any usage
+    log::set_level(log::Level::Info);
+    DOCTEST_CHECK(instance.message_count() > 0);
+    DOCTEST_CHECK(!instance.first_message().empty());
 }
 
 }  // namespace device_test

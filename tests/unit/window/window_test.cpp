@@ -17,6 +17,7 @@
 #include "engine/preview/splat_renderer.h"
 #include "engine/vulkan/device.h"
 #include "engine/window/window.h"
+#include "tests/test_paths.h"
 
 using namespace gse;
 
@@ -24,7 +25,7 @@ namespace {
 
 bool display_present() {
     if (std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr) return true;
-    std::printf("[skip] no display: set DISPLAY (for example with xvfb-run)\n");
+    test::skip_missing("no display: DISPLAY is not set");
     return false;
 }
 

@@ -16,7 +16,8 @@ namespace {
 constexpr double PlainReach =
     3;  // figures' heights: as wide as in the pictures that the bundled model learned from
 constexpr double LeastUpright = 0.1;  // of its width: what is lower is a ground itself
-constexpr double LeastGroundCover = 0.5;    // of the ground around it: less is no ground that a picture would show
+constexpr double LeastGroundCover =
+    0.5;  // of the ground around it: less is no ground that a picture would show
 constexpr double LeastShown =
     0.05;  // of the pictures: where a scene shows less of a ground, its surroundings are there
 constexpr std::size_t LookedAt = 4;  // views that tell
@@ -83,8 +84,9 @@ std::optional<StudioBackground> ground_below(const std::string& sentence, const 
     if (!plain) return std::nullopt;
     const double cover = ground_of_scene(set, whole, up, rasterizer);
     log::debug("{:.0f} % of the ground around what rises out of the scene are there", 100 * cover);
-    return cover < LeastGroundCover && shown_share(*plain, set, views, rasterizer) >= LeastShown ? plain
-                                                                                           : std::nullopt;
+    return cover < LeastGroundCover && shown_share(*plain, set, views, rasterizer) >= LeastShown
+               ? plain
+               : std::nullopt;
 }
 
 Image shown_of(const StudioBackground& plain, const Camera& camera) {
