@@ -52,23 +52,15 @@ JobControl CommandContext::job() const {
     return control;
 }
 
-int run_command_line(int argc, char** argv) {
-    CLI::App app{"GSEditPro: text-driven editing of 3D Gaussian Splatting scenes"};
-    app.set_version_flag("--version", std::string("gseditpro ") + GSE_VERSION);
+int run_command_line(const Program& program, int argc, char** argv) {
+    CLI::App app{program.about};
+    app.set_version_flag("--version", fmt::format("{} {}", program.name, GSE_VERSION));
     app.require_subcommand(0, 1);
     CommandContext context;
     app.add_flag("-q,--quiet", context.quiet, "No progress bar, only warnings");
-#ifdef GSE_WINDOW
-    add_window_command(app, context);
-#endif
-    add_scene_commands(app, context);
-    add_edit_commands(app, context);
-    add_project_command(app, context);
-    add_training_command(app, context);
-    add_bench_command(app, context);
-    add_eval_command(app, context);
+    for (const AddCommands add : program.commands) add(app, context);
     for (auto* command : app.get_subcommands({})) {
-        command->fallthrough();
+        if (!command->get_prefix_command()) command->fallthrough();
         require_finite_numbers(*command);
     }
     app.parse_complete_callback([&] {
@@ -80,15 +72,13 @@ int run_command_line(int argc, char** argv) {
         const int code = app.exit(error);
         return code == 0 ? 0 : 2;
     }
-    if (app.get_subcommands().empty()) {
-#ifdef GSE_WINDOW
-        run_default_window();
-#else
-        fmt::print("{}", app.help());
-        return 2;
-#endif
+    if (!app.get_subcommands().empty()) return 0;
+    if (program.without_command != nullptr) {
+        program.without_command();
+        return 0;
     }
-    return 0;
+    fmt::print("{}", app.help());
+    return 2;
 }
 
 }  // namespace gse::app

@@ -2,18 +2,36 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <functional>
 #include <set>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "engine/base/fields.h"
 #include "engine/base/progress.h"
 
 namespace gse::app {
 
+/// What the commands share: quiet output, and the progress bar with its stop token.
+struct CommandContext {
+    bool quiet = false;
+    JobControl job() const;
+};
+
+/// Adds commands to a program's command line.
+using AddCommands = void (*)(CLI::App& app, CommandContext& context);
+
+/// A program as its command line sees it.
+struct Program {
+    const char* name;
+    const char* about;
+    std::vector<AddCommands> commands;
+    /// Runs where no command is given; null = the help is printed.
+    void (*without_command)() = nullptr;
+};
+
 /// Parses and runs; returns the exit code. Throws gse::Error for failures of the command itself.
-int run_command_line(int argc, char** argv);
+int run_command_line(const Program& program, int argc, char** argv);
 
 /// "guidance_scale" -> "--guidance-scale".
 std::string option_name(const std::string& field);
@@ -54,22 +72,11 @@ void note_given(const CLI::App& command, const P& parameters, const std::string&
     });
 }
 
-/// What the commands share: quiet output, JSON, and the progress bar with its stop token.
-struct CommandContext {
-    bool json = false;
-    bool quiet = false;
-    JobControl job() const;
-};
-
-using Command = std::function<void()>;
-
-void add_window_command(CLI::App& app, CommandContext& context);    // open (builds with a window)
-void run_default_window();                                          // the program without a command
-void add_scene_commands(CLI::App& app, CommandContext& context);    // info, convert, render, turntable, synth
-void add_edit_commands(CLI::App& app, CommandContext& context);     // locate, edit
-void add_project_command(CLI::App& app, CommandContext& context);   // project
-void add_training_command(CLI::App& app, CommandContext& context);  // train-starter
-void add_bench_command(CLI::App& app, CommandContext& context);     // bench
-void add_eval_command(CLI::App& app, CommandContext& context);      // eval
+void add_window_command(CLI::App& app, CommandContext& context);       // open (builds with a window)
+void run_default_window();                                             // the program without a command
+void add_scene_commands(CLI::App& app, CommandContext& context);       // info, convert, render, turntable
+void add_edit_commands(CLI::App& app, CommandContext& context);        // locate, edit
+void add_project_command(CLI::App& app, CommandContext& context);      // project
+void add_laboratory_pointers(CLI::App& app, CommandContext& context);  // commands that gseditpro-lab has
 
 }  // namespace gse::app

@@ -7,10 +7,9 @@
 #ifdef GSE_WINDOW
 #include "app/laboratory/bench_moving.h"
 #endif
-#include "app/cli/cli.h"
-#include "app/cli/engine_names.h"
 #include "app/cli/model_options.h"
 #include "app/laboratory/eval_settings.h"
+#include "app/laboratory/laboratory.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/path_text.h"

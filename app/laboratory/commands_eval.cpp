@@ -3,10 +3,9 @@
 
 #include <memory>
 
-#include "app/cli/cli.h"
 #include "app/cli/dreambooth_options.h"
-#include "app/cli/engine_names.h"
 #include "app/laboratory/eval_settings.h"
+#include "app/laboratory/laboratory.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/path_text.h"

@@ -2,8 +2,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "app/cli/cli.h"
-#include "app/cli/engine_names.h"
+#include "app/laboratory/laboratory.h"
 #include "engine/laboratory/training/picture_shards.h"
 #include "engine/laboratory/training/starter_source.h"
 #include "engine/laboratory/training/training_record.h"
