@@ -1,4 +1,4 @@
-// gseditpro bench: run time against error, as JSON.
+// gseditpro-lab bench: run time against error, as JSON.
 #include <fmt/format.h>
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// gseditpro eval: edits with ground truth and real scenes, measured.
+// gseditpro-lab eval: edits with ground truth and real scenes, measured.
 #include <fmt/format.h>
 
 #include <memory>

@@ -11,8 +11,8 @@
 #include "engine/base/error.h"
 #include "engine/base/path_text.h"
 #include "engine/base/print.h"
-#include "engine/io/cameras.h"
-#include "engine/io/scene_io.h"
+#include "engine/io/cameras/cameras.h"
+#include "engine/io/scene/scene_file.h"
 #include "engine/laboratory/synth/synth.h"
 
 namespace gse::app {

@@ -1,4 +1,4 @@
-// gseditpro train-starter: trains the embedded text-to-image model on the synthetic world.
+// gseditpro-lab train-starter: trains the embedded text-to-image model on the synthetic world.
 #include <filesystem>
 #include <memory>
 

@@ -63,7 +63,7 @@ class ViewSession;
 
 /// A rasterizer keeps its scratch memory between calls: one object per thread of use, no allocation once
 /// warm. Results are bit-identical for every number of threads and from call to call; those of two
-/// instruction sets differ in the last digits (`gseditpro bench stability` says by how much,
+/// instruction sets differ in the last digits (`gseditpro-lab bench stability` says by how much,
 /// tests/stress/stability holds it).
 class Rasterizer {
 public:

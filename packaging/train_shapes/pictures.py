@@ -19,7 +19,7 @@ LARGEST_MARGIN = 5
 
 
 def read_shard(path):
-    """The arrays of a file of `gseditpro train-starter --pictures-only` (engine/laboratory/training/picture_shards.h)."""
+    """The arrays of a file of `gseditpro-lab train-starter --pictures-only` (engine/laboratory/training/picture_shards.h)."""
     raw = np.fromfile(path, np.uint8)
     magic, n, side, cells, wordings, words = (int(value) for value in raw[:24].view(np.int32))
     if magic != 0x32485347 or (side, cells, wordings, words) != (SIDE, CELLS, WORDINGS, TOKENS - 2):

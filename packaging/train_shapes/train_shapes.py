@@ -1,4 +1,4 @@
-"""Trains what draws new things on a GPU, in minutes (assets/models/starter/TRAINING.md). `gseditpro train-starter --pictures-only` draws the pictures,
+"""Trains what draws new things on a GPU, in minutes (assets/models/starter/TRAINING.md). `gseditpro-lab train-starter --pictures-only` draws the pictures,
 also while this runs. Needs PyTorch; without a GPU it is slow, and good for --check only."""
 import argparse
 import json
@@ -29,7 +29,7 @@ def arguments():
     parser = argparse.ArgumentParser(description=__doc__)
     add = parser.add_argument
     add("--model", default="assets/models/starter", help="starter folder to begin from")
-    add("--pictures", default=".training/pictures", help="folder of gseditpro train-starter --pictures-only")
+    add("--pictures", default=".training/pictures", help="folder of gseditpro-lab train-starter --pictures-only")
     add("--out", required=True, help="starter folder to write")
     add("--seconds", type=float, default=430, help="of training")
     add("--decoder-seconds", type=float, default=0, help="of training the VAE's decoder first")

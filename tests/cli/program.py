@@ -1,4 +1,4 @@
-"""Runs gseditpro for the tests and makes the small files they feed it."""
+"""Runs gseditpro and gseditpro-lab for the tests and makes the small files they feed it."""
 import json
 import os
 import pathlib
@@ -9,6 +9,7 @@ import tempfile
 import unittest
 
 PROGRAM = os.environ["GSE_PROGRAM"]
+LABORATORY = os.environ["GSE_LABORATORY"]
 os.environ["GSE_CACHE_DIR"] = os.devnull   # what is tested is computed; a test of the cache names a folder
 SHARED = pathlib.Path(os.environ.get("GSE_SHARED") or os.environ.get("GSE_SHARED_DEFAULT", "../shared"))
 
@@ -16,6 +17,12 @@ SHARED = pathlib.Path(os.environ.get("GSE_SHARED") or os.environ.get("GSE_SHARED
 def run(*arguments, timeout=600):
     """Runs the program; returns the finished process with text output."""
     return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, errors="surrogateescape",
+                          timeout=timeout)
+
+
+def run_laboratory(*arguments, timeout=600):
+    """Runs gseditpro-lab; returns the finished process with text output."""
+    return subprocess.run([LABORATORY, *map(str, arguments)], capture_output=True, text=True, errors="surrogateescape",
                           timeout=timeout)
 
 
@@ -71,7 +78,7 @@ class ProgramTest(unittest.TestCase):
         """Exit code not 0, one line on stderr that begins with the program's name, and the given words in it."""
         self.assertNotEqual(process.returncode, 0, process.stdout)
         self.assertGreater(process.returncode, 0, "ended by a signal")
-        lines = [line for line in process.stderr.splitlines() if line.startswith("gseditpro: ")]
+        lines = [line for line in process.stderr.splitlines() if line.startswith(("gseditpro: ", "gseditpro-lab: "))]
         self.assertEqual(len(lines), 1, process.stderr)
         for word in words:
             self.assertIn(word.lower(), lines[0].lower())

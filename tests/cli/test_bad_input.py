@@ -7,7 +7,7 @@ import resource
 import subprocess
 import unittest
 
-from program import PROGRAM, SHARED, ProgramTest, grid_rows, ply_bytes, run
+from program import PROGRAM, SHARED, ProgramTest, grid_rows, ply_bytes, run, run_laboratory
 
 ASSETS = pathlib.Path(__file__).resolve().parents[2] / "assets"
 
@@ -144,22 +144,23 @@ class BadOptions(ProgramTest):
         for arguments in [["render", self.scene, self.folder / "p.png", "--background", "pinkish"],
                           ["render", self.scene, self.folder / "p.png", "--up", "w"],
                           ["render", self.scene, self.folder / "p.png", "--view", 5],
-                          ["convert", self.scene, self.folder / "p.xyz"],
-                          ["synth", self.folder / "p.ply", "--object", "dragonfly"]]:
+                          ["convert", self.scene, self.folder / "p.xyz"]]:
             self.assert_one_sentence(run(*arguments))
+        self.assert_one_sentence(run_laboratory("synth", self.folder / "p.ply", "--object", "dragonfly"))
         self.assertEqual(self.folder_listing(), ["scene.ply"])
 
     def test_every_number_is_finite_and_in_its_range(self):
         """NaN lies in no range, whichever option it is given to."""
-        for command, first in [("edit", [self.scene]), ("locate", [self.scene]), ("render", [self.scene, "p.png"]),
-                               ("turntable", [self.scene, "p.mp4"]), ("eval", []), ("bench", ["starter"]), ("train-starter", [])]:
-            text = run(command, *(["starter"] if command == "bench" else []), "--help").stdout
+        for start, command, first in [(run, "edit", [self.scene]), (run, "locate", [self.scene]), (run, "render", [self.scene, "p.png"]),
+                                      (run, "turntable", [self.scene, "p.mp4"]), (run_laboratory, "eval", []),
+                                      (run_laboratory, "train-starter", [])]:
+            text = start(command, "--help").stdout
             names = re.findall(r"^ +(--[a-z0-9-]+) FLOAT", text, re.MULTILINE)
             if command in ("edit", "render", "turntable"):
                 self.assertTrue(names, command)
             for name in names[::5]:   # the check is the same for all
                 for value in ["nan", "inf", "-inf", "1e999"] if name == names[0] else ["nan"]:
-                    process = run(command, *first, f"{name}={value}")
+                    process = start(command, *first, f"{name}={value}")
                     self.assertEqual(process.returncode, 2, f"{command} {name}={value}: {process.stderr}")
                     self.assertIn(name, process.stderr)
                 if command != "edit":

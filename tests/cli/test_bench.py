@@ -3,13 +3,13 @@ import json
 import re
 import unittest
 
-from program import ProgramTest, run
+from program import ProgramTest, run_laboratory
 
 
 class Benches(ProgramTest):
     def subject(self, name, *arguments):
         out = self.folder / name
-        process = run("-q", "bench", name, "--out", out, *arguments)
+        process = run_laboratory("-q", "bench", name, "--out", out, *arguments)
         self.assertEqual(process.returncode, 0, process.stderr)
         self.assertTrue((out / f"{name}.png").read_bytes().startswith(b"\x89PNG"))
         report = json.loads((out / f"{name}.json").read_text())
@@ -29,7 +29,7 @@ class Benches(ProgramTest):
         self.assertEqual([cause["cause"] for cause in report["causes"]], ["needles", "few pixels"])
         self.assertIn("0 with a value that is not finite; 0 in which", process.stdout)
         out = self.folder / "none"
-        self.assert_one_sentence(run("-q", "bench", "stability", "--causes", "weather", "--out", out), "weather")
+        self.assert_one_sentence(run_laboratory("-q", "bench", "stability", "--causes", "weather", "--out", out), "weather")
         self.assertFalse(out.exists())
 
     def test_preview_measures_qualities(self):
@@ -61,7 +61,7 @@ class Benches(ProgramTest):
 
     def test_all_leaves_a_page_that_needs_nothing_else(self):
         out = self.folder / "all"
-        process = run("-q", "bench", "all", "--subjects", "raster", "--raster-splats", 300, "--out", out)
+        process = run_laboratory("-q", "bench", "all", "--subjects", "raster", "--raster-splats", 300, "--out", out)
         self.assertEqual(process.returncode, 0, process.stderr)
         page = (out / "index.html").read_text()
         self.assertEqual(len(re.findall(r'<img [^>]*src="data:image/png;base64,[A-Za-z0-9+/]+=*">', page)), 1)
@@ -73,9 +73,9 @@ class Benches(ProgramTest):
 
     def test_wrong_settings_leave_nothing(self):
         out = self.folder / "none"
-        self.assert_one_sentence(run("-q", "bench", "raster", "--kernels", "sse", "--splats", 10, "--out", out), "sse")
-        self.assert_one_sentence(run("-q", "bench", "scale", "--sizes", "big", "--out", out), "sizes", "big")
-        self.assert_one_sentence(run("-q", "bench", "all", "--subjects", "weather", "--out", out), "weather")
+        self.assert_one_sentence(run_laboratory("-q", "bench", "raster", "--kernels", "sse", "--splats", 10, "--out", out), "sse")
+        self.assert_one_sentence(run_laboratory("-q", "bench", "scale", "--sizes", "big", "--out", out), "sizes", "big")
+        self.assert_one_sentence(run_laboratory("-q", "bench", "all", "--subjects", "weather", "--out", out), "weather")
         self.assertFalse(out.exists())
 
 

@@ -6,14 +6,18 @@ import re
 import subprocess
 import unittest
 
-from program import PROGRAM, SHARED, ProgramTest, grid_rows, ply_bytes, run
+from program import PROGRAM, SHARED, ProgramTest, grid_rows, ply_bytes, run, run_laboratory
+
+LABORATORY_COMMANDS = ["bench", "eval", "synth", "train-starter"]
 
 
 class Commands(ProgramTest):
     def test_version_and_help(self):
         self.assertRegex(run("--version").stdout, r"gseditpro \d+\.\d+")
-        for command in ["info", "convert", "adjust", "cameras", "render", "turntable", "locate", "edit", "synth", "train-starter", "bench"]:
-            process = run(command, "--help")
+        self.assertRegex(run_laboratory("--version").stdout, r"gseditpro-lab \d+\.\d+")
+        artist = ["info", "convert", "adjust", "cameras", "render", "turntable", "locate", "edit", "project"]
+        for start, command in [(run, name) for name in artist] + [(run_laboratory, name) for name in LABORATORY_COMMANDS]:
+            process = start(command, "--help")
             self.assertEqual(process.returncode, 0)
             lines = process.stdout.splitlines()
             for line, following in zip(lines, lines[1:] + [""]):
@@ -22,6 +26,16 @@ class Commands(ProgramTest):
                 # Every option says what it does, beside a short name or under a long one.
                 text = line.split() if len(line.split()) > 2 else following.split()
                 self.assertGreater(len(text), 2, f"{command}: {line}")
+
+    def test_the_laboratory_is_another_program(self):
+        listed = run("--help").stdout
+        for command in LABORATORY_COMMANDS:
+            self.assertNotRegex(listed, rf"(?m)^ +{command} ")
+            self.assertRegex(run_laboratory("--help").stdout, rf"(?m)^ +{command} ")
+            for arguments in [], ["--help"], ["raster", "--seed", "1", "-q"]:
+                process = run(command, *arguments)
+                self.assert_one_sentence(process, f"gseditpro-lab {command}")
+                self.assertEqual((process.returncode, process.stdout), (2, ""))
 
     def test_starting_loads_neither_networks_nor_codecs(self):
         linked = subprocess.run([PROGRAM], env={**os.environ, "LD_TRACE_LOADED_OBJECTS": "1"}, capture_output=True, text=True).stdout
@@ -111,11 +125,11 @@ class Commands(ProgramTest):
 
     def test_synth_is_reproducible_and_labelled(self):
         for name in ["one.ply", "two.ply"]:
-            process = run("synth", self.folder / name, "--object", "bear", "--accessory", "hat", "--seed", 7)
+            process = run_laboratory("synth", self.folder / name, "--object", "bear", "--accessory", "hat", "--seed", 7)
             self.assertEqual(process.returncode, 0, process.stderr)
         self.assertEqual((self.folder / "one.ply").read_bytes(), (self.folder / "two.ply").read_bytes())
         self.assertTrue(self.info(self.folder / "one.ply")["labels"])
-        process = run("synth", self.folder / "edited.ply", "--object", "bear", "--seed", 7, "--edit", "a blue bear")
+        process = run_laboratory("synth", self.folder / "edited.ply", "--object", "bear", "--seed", 7, "--edit", "a blue bear")
         self.assertIn("blue bear", process.stdout)
 
     def test_render_and_turntable(self):
@@ -132,7 +146,7 @@ class Commands(ProgramTest):
 
     def test_bench_raster_prints_json(self):
         scene = self.write("scene.ply", ply_bytes(grid_rows()))
-        process = run("bench", "raster", scene, "--width", 64, "--height", 64, "--repetitions", 2)
+        process = run_laboratory("bench", "raster", scene, "--width", 64, "--height", 64, "--repetitions", 2)
         self.assertEqual(process.returncode, 0, process.stderr)
         figures = json.loads(process.stdout)
         for key in ["forward_ms", "backward_ms", "ns_per_pair", "peak_rss_mb"]:
@@ -143,7 +157,7 @@ class Commands(ProgramTest):
             self.assertEqual((share["picture_difference"], share["gradient_difference"]), (0, 0))
 
     def test_bench_speed_prints_the_readme_table(self):
-        process = run("bench", "speed", "--splats", 300, 500, "--views", 2, "--repetitions", 1, "--size", "64x48",
+        process = run_laboratory("bench", "speed", "--splats", 300, 500, "--views", 2, "--repetitions", 1, "--size", "64x48",
                       "--preview-size", "96x64", "--scenes-out", self.folder / "scenes", "--out", self.folder / "table.md")
         self.assertEqual(process.returncode, 0, process.stderr)
         self.assertEqual((self.folder / "table.md").read_text(), process.stdout)
@@ -162,7 +176,7 @@ class Commands(ProgramTest):
         self.assertEqual(len(json.loads((self.folder / "scenes/speed_300/cameras.json").read_text())), 2)
 
     def test_bench_speed_refuses_a_size_it_does_not_understand(self):
-        self.assert_one_sentence(run("bench", "speed", "--size", "64"), "size", "1280x720")
+        self.assert_one_sentence(run_laboratory("bench", "speed", "--size", "64"), "size", "1280x720")
 
     @unittest.skipUnless((SHARED / "data/scenes").is_dir(), "[skip] the shared scenes are not there")
     def test_every_shared_scene_opens(self):

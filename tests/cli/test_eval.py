@@ -3,7 +3,7 @@ import json
 import pathlib
 import unittest
 
-from program import ProgramTest, run
+from program import ProgramTest, run_laboratory
 
 ASSETS = pathlib.Path(__file__).resolve().parents[2] / "assets"
 MODEL = ASSETS / "models/starter"
@@ -27,7 +27,7 @@ def without_measured_cost(value):
 @unittest.skipUnless((MODEL / "model_index.json").exists(), "[skip] the starter model is not there")
 class Evaluations(ProgramTest):
     def evaluate(self, out, *arguments):
-        process = run("-q", "eval", "--out", out, "--edits", 2, "--kinds", "recolour add", *QUICK, *arguments)
+        process = run_laboratory("-q", "eval", "--out", out, "--edits", 2, "--kinds", "recolour add", *QUICK, *arguments)
         self.assertEqual(process.returncode, 0, process.stderr)
         return process, json.loads((out / "eval.json").read_text())
 
@@ -64,7 +64,7 @@ class Evaluations(ProgramTest):
         self.assertNotEqual([edit["prompt"] for edit in first["edits"]], [edit["prompt"] for edit in other["edits"]])
 
     def test_a_real_scene_without_truth(self):
-        process = run("-q", "eval", "--out", self.folder / "out", "--edits", 0, *QUICK, "--json", "--scenes",
+        process = run_laboratory("-q", "eval", "--out", self.folder / "out", "--edits", 0, *QUICK, "--json", "--scenes",
                       f"{ASSETS / 'scenes/bear/scene.ply'}:bear:a blue bear on the grass:blue")
         self.assertEqual(process.returncode, 0, process.stderr)
         report = json.loads(process.stdout)
@@ -78,7 +78,7 @@ class Evaluations(ProgramTest):
 
     def test_bench_edit_draws_a_curve_per_method(self):
         out = self.folder / "bench"
-        process = run("-q", "bench", "edit", "--out", out, "--edits", 2, "--kinds", "recolour material", "--seed", 55, *QUICK,
+        process = run_laboratory("-q", "bench", "edit", "--out", out, "--edits", 2, "--kinds", "recolour material", "--seed", 55, *QUICK,
                       "--edited-views", 2, "--view-steps", 2, "--fit-steps", 10, "--sds", "6 12 rest", "--restyle-steps", 2, "--redraws", "2x2x1 3x1x2 draft")
         self.assertEqual(process.returncode, 0, process.stderr)
         report = json.loads((out / "edit.json").read_text())
@@ -102,15 +102,15 @@ class Evaluations(ProgramTest):
         self.assertTrue((out / "pareto.png").read_bytes().startswith(b"\x89PNG"))
         self.assertIn("pareto.png", report["files"])
         for points in ["8x6", "8x6x1x", "eight"]:
-            self.assert_one_sentence(run("-q", "bench", "edit", "--out", self.folder / "none", "--redraws", points), "8x4x1")
-        self.assert_one_sentence(run("-q", "bench", "edit", "--out", self.folder / "none", "--redraws", "8000x6x1"), "edited_views")
+            self.assert_one_sentence(run_laboratory("-q", "bench", "edit", "--out", self.folder / "none", "--redraws", points), "8x4x1")
+        self.assert_one_sentence(run_laboratory("-q", "bench", "edit", "--out", self.folder / "none", "--redraws", "8000x6x1"), "edited_views")
         self.assertFalse((self.folder / "none").exists())
 
     def test_wrong_settings_leave_nothing(self):
         out = self.folder / "out"
-        self.assert_one_sentence(run("-q", "eval", "--out", out, "--kinds", "melt"), "melt")
-        self.assert_one_sentence(run("-q", "eval", "--out", out, "--mode", "sometimes"), "sometimes")
-        self.assert_one_sentence(run("-q", "eval", "--out", out, "--edits", 0, "--scenes", "/no/scene.ply"), "no such scene")
+        self.assert_one_sentence(run_laboratory("-q", "eval", "--out", out, "--kinds", "melt"), "melt")
+        self.assert_one_sentence(run_laboratory("-q", "eval", "--out", out, "--mode", "sometimes"), "sometimes")
+        self.assert_one_sentence(run_laboratory("-q", "eval", "--out", out, "--edits", 0, "--scenes", "/no/scene.ply"), "no such scene")
         self.assertEqual(self.folder_listing(), [])
 
 

@@ -3,7 +3,7 @@ import json
 import pathlib
 import unittest
 
-from program import ProgramTest, run
+from program import ProgramTest, run_laboratory
 
 MODEL = pathlib.Path(__file__).resolve().parents[2] / "assets/models/starter"
 
@@ -12,7 +12,7 @@ MODEL = pathlib.Path(__file__).resolve().parents[2] / "assets/models/starter"
 class Figures(ProgramTest):
     def figures(self, *arguments):
         out = self.folder / "out"
-        process = run("-q", "eval", "--out", out, *arguments, timeout=3600)
+        process = run_laboratory("-q", "eval", "--out", out, *arguments, timeout=3600)
         self.assertEqual(process.returncode, 0, process.stderr)
         report = json.loads((out / "eval.json").read_text())
         summary = report["summary"]

@@ -43,7 +43,6 @@ class FilesTest(ProgramTest):
         yield "new.png", ["render", self.scene, self.folder / "out/new.png", *small]
         for name in ["new.mp4", "new.webm"]:
             yield name, ["turntable", self.scene, self.folder / "out" / name, *small, "--frames", 3]
-        yield "synth.ply", ["synth", self.folder / "out/synth.ply", "--splats", 500]
         yield "project.ply", ["project", CORPUS / "whole.gsep", "--export", self.folder / "out/project.ply"]
 
     def frames(self, count, *more):

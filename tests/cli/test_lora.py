@@ -5,7 +5,7 @@ import random
 import struct
 import unittest
 
-from program import ProgramTest, run
+from program import ProgramTest, run, run_laboratory
 
 ASSETS = pathlib.Path(__file__).resolve().parents[2] / "assets"
 MODEL = ASSETS / "models/starter"
@@ -108,8 +108,8 @@ class Loras(ProgramTest):
                 process = run("-q", command, SCENE, "--source", "bear", "--prompt", "a blue bear", "--lora", path, "--out",
                               self.folder / "out", *(QUICK if command == "edit" else []))
                 self.assert_one_sentence(process, *words)
-            self.assert_one_sentence(run("-q", "eval", "--edits", 1, "--lora", path, "--out", self.folder / "out"), *words)
-            self.assert_one_sentence(run("-q", "bench", "search", "--scenes", 1, "--lora", path), *words)
+            self.assert_one_sentence(run_laboratory("-q", "eval", "--edits", 1, "--lora", path, "--out", self.folder / "out"), *words)
+            self.assert_one_sentence(run_laboratory("-q", "bench", "search", "--scenes", 1, "--lora", path), *words)
             self.assertEqual(self.folder_listing(), before)
         good = self.write("good.safetensors", lora_bytes())
         self.assert_one_sentence(self.edit(self.folder / "out", "--lora", f"{good}:50"), "strength", "50")

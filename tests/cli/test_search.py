@@ -5,7 +5,7 @@ import pathlib
 import struct
 import unittest
 
-from program import ProgramTest, run
+from program import ProgramTest, run, run_laboratory
 
 ASSETS = pathlib.Path(__file__).resolve().parents[2] / "assets"
 MODEL = ASSETS / "models/starter"
@@ -60,7 +60,7 @@ class Searches(ProgramTest):
 
     def test_the_pictures_say_which_word_is_new(self):
         scene = self.folder / "hat.ply"
-        process = run("-q", "synth", scene, "--object", "bear", "--material", "red", "--accessory", "hat", "--ground", "snow")
+        process = run_laboratory("-q", "synth", scene, "--object", "bear", "--material", "red", "--accessory", "hat", "--ground", "snow")
         self.assertEqual(process.returncode, 0, process.stderr)
         # By the words alone the hat would be it; the scene shows one.
         process = run("locate", scene, "--out", self.folder / "out", *LOOK, "--source", "bear", "--prompt",
@@ -149,7 +149,7 @@ class Searches(ProgramTest):
 
     def test_bench_locate_measures_a_point_per_setting(self):
         out = self.folder / "locate"
-        process = run("-q", "bench", "locate", "--scenes", 1, "--kinds", "recolour", "--views", 6, "--repeats", "", "--levels", "0.3 0.6",
+        process = run_laboratory("-q", "bench", "locate", "--scenes", 1, "--kinds", "recolour", "--views", 6, "--repeats", "", "--levels", "0.3 0.6",
                       "--img2img", "", "--no-parts", "--out", out)
         self.assertEqual(process.returncode, 0, process.stderr)
         points = {point["name"]: point for point in json.loads((out / "locate.json").read_text())["points"]}
@@ -160,8 +160,8 @@ class Searches(ProgramTest):
         self.assertLess(points["6"]["unet"], points["as set"]["unet"])
         self.assertLess(points["as set"]["unet"], points["0.3 0.6"]["unet"])
         self.assertTrue((out / "locate.png").read_bytes().startswith(b"\x89PNG"))
-        self.assert_one_sentence(run("-q", "bench", "locate", "--scenes", 1, "--kinds", "add", "--out", self.folder / "none"), "added")
-        self.assert_one_sentence(run("-q", "bench", "locate", "--scenes", 1, "--levels", "2", "--out", self.folder / "none"), "levels")
+        self.assert_one_sentence(run_laboratory("-q", "bench", "locate", "--scenes", 1, "--kinds", "add", "--out", self.folder / "none"), "added")
+        self.assert_one_sentence(run_laboratory("-q", "bench", "locate", "--scenes", 1, "--levels", "2", "--out", self.folder / "none"), "levels")
         self.assertFalse((self.folder / "none").exists())
 
 

@@ -16,7 +16,7 @@ constexpr double AttentionLevel = 0.85;     // of the threshold: attention that 
 constexpr double AttentionSoftness = 0.05;  // how far from there it counts a quarter more or less
 constexpr double LeastEvidenceShare = 0.2;  // of the mean evidence of the rows that are seen at all
 // Of the attention that the word draws at most in most of the views that show it. Sunglasses from behind had
-// 0.2 to 0.65, hats and scarves from any side 0.8 and more. Of ten things worn (`gseditpro synth --object
+// 0.2 to 0.65, hats and scarves from any side 0.8 and more. Of ten things worn (`gseditpro-lab synth --object
 // bear --material red`, and `dog`, `white`, with every accessory in blue on seeds 81 to 90; a splat's colour
 // tells whose it is) two pairs of sunglasses were labelled with an IoU of 0.88 and 0.83 at 0.6, where ears
 // were taken for them before, the other eight as before; at 0.5 only one of the two, at 0.7 none.

@@ -55,7 +55,7 @@ struct SearchSettings {
     double fallback_mass = 0.5;
     double label_smoothness = 1.5;
     double coverage_px = 0.5;
-    double least_confidence = 0.2;  // measured: `gseditpro bench search`
+    double least_confidence = 0.2;  // measured: `gseditpro-lab bench search`
     // Adding
     int place_views = 12;
     int place_steps = 4;

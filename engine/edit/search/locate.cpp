@@ -46,7 +46,7 @@ constexpr std::uint64_t FirstAsking = 5000;
 constexpr std::uint64_t Drawing = 8000;
 constexpr std::uint64_t SecondAsking = 9000;  // other noise than the first time
 // Of the threshold (at most half-way from it to the most there is): attention of what is not there yet
-// reaches wider than what will be. Of 8 added things each on seeds 55 | 56 | 57 | 58 (`gseditpro eval --kinds
+// reaches wider than what will be. Of 8 added things each on seeds 55 | 56 | 57 | 58 (`gseditpro-lab eval --kinds
 // add --edits 8`) 1 changed 2.5 | 2.5 | 1.9 | 1.0 % of the pixels outside the true part, 1.2 changed 1.8
 // | 1.4 | 1.8 | 0.7 %; outlines (mean IoU .40) and error removed (13 %) were the same.
 constexpr double AbsentLevel = 1.2;

@@ -25,7 +25,7 @@ namespace {
 // from it to the most there is), or PossibleShare of it where the picture differs from what is behind the
 // thing. Attention alone either reaches beyond the thing or leaves out parts of it (a mushroom's stem); the
 // difference alone takes shadows along. Of 8 added things each on seeds 55 | 56
-// (`gseditpro eval --kinds add --edits 8`) a PossibleShare of .5 removed 14 | 7 % of the error with outlines
+// (`gseditpro-lab eval --kinds add --edits 8`) a PossibleShare of .5 removed 14 | 7 % of the error with outlines
 // of an IoU of .46 | .39, .85 removes 16 | 10 % with .46 | .41; the attention and the segmenter alone removed
 // 15 | 8 % with .41 | .36.
 constexpr double CertainShare = 1.2, PossibleShare = 0.85;

@@ -1,4 +1,4 @@
-// gseditpro bench all: every subject on one page, with the machine.
+// gseditpro-lab bench all: every subject on one page, with the machine.
 #pragma once
 
 #include <cstdint>

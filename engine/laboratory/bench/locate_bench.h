@@ -1,4 +1,4 @@
-// gseditpro bench locate: how well searches find the true splats, against what they ask of the networks and
+// gseditpro-lab bench locate: how well searches find the true splats, against what they ask of the networks and
 // how long they take.
 #pragma once
 

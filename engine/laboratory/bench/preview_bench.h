@@ -1,4 +1,4 @@
-// gseditpro bench preview: time of a full frame, per renderer, beside its error.
+// gseditpro-lab bench preview: time of a full frame, per renderer, beside its error.
 #pragma once
 
 #include <nlohmann/json.hpp>

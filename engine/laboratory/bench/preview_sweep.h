@@ -1,4 +1,4 @@
-// gseditpro bench preview: error against time of a viewport picture, per renderer and setting.
+// gseditpro-lab bench preview: error against time of a viewport picture, per renderer and setting.
 #pragma once
 
 #include <cstdint>

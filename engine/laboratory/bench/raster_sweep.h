@@ -1,4 +1,4 @@
-// gseditpro bench raster: error against time of the rasterizer, per instruction set and number of threads.
+// gseditpro-lab bench raster: error against time of the rasterizer, per instruction set and number of threads.
 #pragma once
 
 #include <cstdint>

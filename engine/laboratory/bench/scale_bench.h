@@ -1,4 +1,4 @@
-// gseditpro bench scale: how time and memory grow with splats, pixels, views and the labelled share.
+// gseditpro-lab bench scale: how time and memory grow with splats, pixels, views and the labelled share.
 #pragma once
 
 #include <cstdint>

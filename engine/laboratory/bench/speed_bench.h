@@ -1,4 +1,4 @@
-// gseditpro bench speed: what rasterizer and preview cost on generated scenes, as a Markdown table.
+// gseditpro-lab bench speed: what rasterizer and preview cost on generated scenes, as a Markdown table.
 #pragma once
 
 #include <cstdint>

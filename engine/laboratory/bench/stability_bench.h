@@ -1,4 +1,4 @@
-// gseditpro bench stability: error of the rasterizer's kernels on scenes that are hard on them, by cause.
+// gseditpro-lab bench stability: error of the rasterizer's kernels on scenes that are hard on them, by cause.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// A subject of `gseditpro bench`: figures, a picture, tables; the same for the terminal, for files and for
+// A subject of `gseditpro-lab bench`: figures, a picture, tables; the same for the terminal, for files and for
 // the page of all.
 #pragma once
 

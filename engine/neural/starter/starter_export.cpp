@@ -78,7 +78,7 @@ Json facts_of(const UNetTraining& training) {
                {"image_size", training.parameters.image_size},
                {"attention_threshold", DefaultAttentionThreshold},
                {"attention_layers", "up_blocks"},
-               // Measured: `gseditpro bench locate`, points "noise levels", and on scans, of which it labels
+               // Measured: `gseditpro-lab bench locate`, points "noise levels", and on scans, of which it labels
                // the ground, too, at less noise.
                {"attention_timesteps", {0.3}},
                // Where absent things go was learned at every noise level, and is told more exactly where the

@@ -1,5 +1,6 @@
 """Three million splats of SH degree 3 in the window: open, orbit, locate, 20 steps of an edit, save, in less than 8 GB. Prints
 what each took."""
+import os
 import pathlib
 import random
 import re
@@ -20,7 +21,7 @@ PROPERTIES = (["x", "y", "z", "nx", "ny", "nz"] + [f"f_dc_{i}" for i in range(3)
 def write_large(path):
     """The bear of the synthetic world: a tenth of the splats are the thing, those of the ground come several times; 708 MB."""
     small = path.with_name("small.ply")
-    subprocess.run([PROGRAM, "-q", "synth", str(small), "--splats", "5000000", "--seed", "5"], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([os.environ["GSE_LABORATORY"], "-q", "synth", str(small), "--splats", "5000000", "--seed", "5"], check=True, stdout=subprocess.DEVNULL)
     data = small.read_bytes()
     begin = data.index(b"end_header\n") + len(b"end_header\n")
     names = re.findall(r"property float (\w+)", data[:begin].decode())
