@@ -4,15 +4,15 @@
 
 #include "app/laboratory/laboratory.h"
 #include "engine/laboratory/training/picture_shards.h"
+#include "engine/laboratory/training/starter_plugin.h"
 #include "engine/laboratory/training/starter_source.h"
 #include "engine/laboratory/training/training_record.h"
-#include "engine/pipeline/models/neural_loader.h"
 
 namespace gse::app {
 namespace {
 
 struct TrainingOptions {
-    neural::StarterTrainParameters parameters;
+    StarterTrainParameters parameters;
     std::filesystem::path work = ".training/starter", output = "assets/models/starter";
     bool record = false, pictures_only = false;
 };
@@ -37,10 +37,8 @@ void add_training_command(CLI::App& app, CommandContext& context) {
         if (options->record) return write_training_record(options->work, options->output, context.job());
         if (options->pictures_only)
             return write_picture_shards(options->parameters, options->work, context.job());
-        const auto source = options->parameters.shapes ? make_shape_source(options->parameters.seed)
-                                                       : make_starter_source(options->parameters.seed);
-        neural_api().train_starter(options->parameters, *source, options->work, options->output,
-                                   context.job());
+        const auto source = make_starter_source(options->parameters.seed);
+        train_starter_in_plugin(options->parameters, *source, options->work, options->output, context.job());
         write_training_record(options->work, options->output, context.job());
     });
 }

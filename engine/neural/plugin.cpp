@@ -32,13 +32,6 @@ public:
         prefer_one_blas_thread();
         return neural::load_text_segmenter(folder, device);
     }
-    void train_starter(const StarterTrainParameters& parameters, const StarterSource& source,
-                       const std::filesystem::path& work, const std::filesystem::path& output,
-                       const JobControl& job) override {
-        set_blas_threads(torch::get_num_threads());  // batches, unlike edits, are worth it
-        guard_torch("training the starter model",
-                    [&] { neural::train_starter(parameters, source, work, output, job); });
-    }
     void set_threads(int count) override { neural::set_threads(count); }
     NetworkUse use() const override { return thread_use(); }
 };

@@ -1,4 +1,5 @@
-"""Pictures in the GPU's memory, and batches of them as engine/neural/starter/starter_shape_stage.cpp and starter_inpainting.cpp make them."""
+"""Pictures in the GPU's memory, and batches of them. Views of one scene are denoised together (MVDream, Shi et al. 2023), some of them clean;
+most groups are shown the scene as it was before the edit, as inpainting models are (Rombach et al. 2022)."""
 import math
 import os
 import queue

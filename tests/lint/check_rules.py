@@ -20,7 +20,9 @@ ARROWS = {
     "evaluate": {"base", "math", "scene"},
     "pipeline": {"base", "math", "scene", "io", "raster", "localize", "edit", "neural", "evaluate"},
     "laboratory/synth": {"base", "math", "scene"},
-    "laboratory/training": {"base", "math", "scene", "io", "raster", "localize", "neural", "evaluate", "pipeline", "laboratory/synth"},
+    "laboratory/starter": {"base", "neural"},
+    "laboratory/training": {"base", "math", "scene", "io", "raster", "localize", "neural", "evaluate", "pipeline", "laboratory/synth",
+                            "laboratory/starter"},
     "laboratory/eval": {"base", "math", "scene", "io", "raster", "localize", "edit", "neural", "evaluate", "pipeline", "laboratory/synth"},
     "laboratory/bench": {"base", "math", "scene", "io", "raster", "localize", "edit", "neural", "evaluate", "pipeline", "vulkan", "preview",
                          "laboratory/synth", "laboratory/eval"},
@@ -51,7 +53,8 @@ JSON_PARSER = "engine/base/json.h"   # the one place that bounds the depth of JS
 JSON_PARSE = re.compile(r"[Jj]son(::|\.)parse\s*\(")
 GLM_DOOR = "engine/math/vec.h"   # the one place that includes glm: its settings change its types
 SKIP_DOORS = {"tests/test_paths.h", "tests/main.cpp"}   # skip() and skip_missing() count what was left out
-FOREIGN_OWNERS = {"torch/": {"neural"}, "ATen/": {"neural"}, "c10/": {"neural"}, "vulkan/": {"vulkan", "preview", "window"}}
+TORCH_OWNERS = {"neural", "laboratory/starter"}
+FOREIGN_OWNERS = {"torch/": TORCH_OWNERS, "ATen/": TORCH_OWNERS, "c10/": TORCH_OWNERS, "vulkan/": {"vulkan", "preview", "window"}}
 
 
 def folder_of(path):

@@ -13,8 +13,8 @@
 #include "engine/base/file.h"
 #include "engine/base/json.h"
 #include "engine/base/random.h"
+#include "engine/laboratory/starter/split_caption.h"
 #include "engine/laboratory/training/starter_source.h"
-#include "engine/neural/api/starter_words.h"
 
 namespace gse::training {
 namespace {
@@ -43,7 +43,7 @@ public:
     void store(const std::string& sentence, std::uint8_t* to) const {
         std::fill_n(to, ShardWords, NoWord);
         int count = 0;
-        for (const auto& word : neural::split_caption(sentence)) {
+        for (const auto& word : split_caption(sentence)) {
             const auto found = places_.find(word);
             if (found == places_.end() || count == ShardWords)
                 throw Error(ErrorCode::InvalidArgument,
@@ -65,7 +65,7 @@ Shard empty_shard(const ShardRange& range) {
     Shard shard;
     shard.after.resize(count * pixels * 3);
     shard.before.resize(count * pixels * 3);
-    shard.coverage.resize(count * neural::StarterPartCount * cells);
+    shard.coverage.resize(count * StarterPartCount * cells);
     shard.room.resize(count * cells);
     shard.outline.resize(count * pixels);
     shard.words.resize(count * wordings * 2 * ShardWords);
@@ -81,8 +81,8 @@ void copy_into(Bytes& all, std::size_t index, std::size_t count, const std::uint
     std::memcpy(&all[index * size], values, size);
 }
 
-void draw(const neural::StarterSource& source, const ShardRange& range, const WordPlaces& places,
-          std::size_t i, Shard& shard) {
+void draw(const StarterSource& source, const ShardRange& range, const WordPlaces& places, std::size_t i,
+          Shard& shard) {
     const std::uint64_t index = range.first + i;
     const auto count = static_cast<std::size_t>(range.count),
                wordings = static_cast<std::size_t>(range.wordings);
@@ -107,12 +107,11 @@ void draw(const neural::StarterSource& source, const ShardRange& range, const Wo
     }
 }
 
-void draw_before(const neural::StarterSource& before, const ShardRange& range, std::size_t i, Shard& shard) {
+void draw_before(const StarterSource& before, const ShardRange& range, std::size_t i, Shard& shard) {
     const auto count = static_cast<std::size_t>(range.count), cells = shard.room.size() / count;
     const auto picture = before.picture(range.first + i, range.size);
     copy_into(shard.before, i, count, picture.rgb.data());
-    copy_into(shard.room, i, count,
-              &picture.coverage[static_cast<std::size_t>(neural::StarterPart::Object) * cells]);
+    copy_into(shard.room, i, count, &picture.coverage[static_cast<std::size_t>(StarterPart::Object) * cells]);
 }
 
 void write(const Shard& shard, const ShardRange& range, const std::filesystem::path& path) {
@@ -134,7 +133,7 @@ void write(const Shard& shard, const ShardRange& range, const std::filesystem::p
 
 }  // namespace
 
-void write_picture_shard(const neural::StarterSource& source, const ShardRange& range,
+void write_picture_shard(const StarterSource& source, const ShardRange& range,
                          const std::filesystem::path& path, ThreadPool& pool) {
     if (source.before() == nullptr || !source.has_outlines())
         throw Error(ErrorCode::InvalidArgument,
@@ -151,9 +150,8 @@ void write_picture_shard(const neural::StarterSource& source, const ShardRange& 
     write_atomically(path, [&](const std::filesystem::path& temporary) { write(shard, range, temporary); });
 }
 
-void write_picture_shards(const neural::StarterTrainParameters& parameters,
-                          const std::filesystem::path& folder, const JobControl& job,
-                          std::uint64_t per_file) {
+void write_picture_shards(const StarterTrainParameters& parameters, const std::filesystem::path& folder,
+                          const JobControl& job, std::uint64_t per_file) {
     const auto source = make_shape_source(
         parameters.seed, {parameters.restyled_share, parameters.more_share, parameters.more_looks});
     const auto views = static_cast<std::uint64_t>(source->views_of_scene()),

@@ -6,7 +6,7 @@
 
 #include "engine/base/progress.h"
 #include "engine/base/thread_pool.h"
-#include "engine/neural/starter/starter_trainer.h"
+#include "engine/laboratory/starter/starter_trainer.h"
 
 namespace gse::training {
 
@@ -24,15 +24,14 @@ inline constexpr int ShardWords = 30;  // W words of a caption; 255 = none
 /// the part that is restyled [N] (255 = something new comes); float32 azimuth and elevation [N,2], shares of
 /// the next side's sentence [N,K], and the azimuths at which the things show their fronts [N]. Throws Error
 /// when it cannot be written or a caption is too long.
-void write_picture_shard(const neural::StarterSource& source, const ShardRange& range,
+void write_picture_shard(const StarterSource& source, const ShardRange& range,
                          const std::filesystem::path& path, ThreadPool& pool);
 
 /// All pictures of new shapes that a run of these parameters trains on (its seed, size, restyled_share,
 /// more_share, number rounded up to whole files, threads): FOLDER/vocabulary.json (the words, a comma last)
 /// and FOLDER/shard-0.bin, shard-1.bin, ... of `per_file` pictures each. Files that are there already stay.
 /// Throws Error as above, and (Cancelled).
-void write_picture_shards(const neural::StarterTrainParameters& parameters,
-                          const std::filesystem::path& folder, const JobControl& job,
-                          std::uint64_t per_file = 4096);
+void write_picture_shards(const StarterTrainParameters& parameters, const std::filesystem::path& folder,
+                          const JobControl& job, std::uint64_t per_file = 4096);
 
 }  // namespace gse::training

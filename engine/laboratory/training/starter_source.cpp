@@ -82,12 +82,12 @@ struct ShotPainter {
     std::vector<float> indicator;
 
     /// `outlined`: the part whose outline is wanted, too; -1 = none.
-    void paint_parts(const synth::SynthScene& scene, const Camera& camera, neural::StarterPicture& picture,
+    void paint_parts(const synth::SynthScene& scene, const Camera& camera, StarterPicture& picture,
                      int outlined = -1) {
         const std::size_t cells =
             static_cast<std::size_t>(camera.width / LatentCell) * (camera.width / LatentCell);
-        picture.coverage.resize(neural::StarterPartCount * cells);
-        for (int part = 0; part < neural::StarterPartCount; ++part) {
+        picture.coverage.resize(StarterPartCount * cells);
+        for (int part = 0; part < StarterPartCount; ++part) {
             indicator.resize(scene.parts.size());
             std::transform(scene.parts.begin(), scene.parts.end(), indicator.begin(),
                            [part](synth::Part p) { return static_cast<int>(p) == part ? 1.0f : 0.0f; });
@@ -99,10 +99,10 @@ struct ShotPainter {
 };
 
 /// A picture of `scene`; its parts' coverage, too.
-neural::StarterPicture painted(ShotPainter& painter, const synth::SynthScene& scene, const Camera& camera,
-                               const std::array<float, 3>& background,
-                               std::span<const float> opacity_logit = {}, int outlined = -1) {
-    neural::StarterPicture picture;
+StarterPicture painted(ShotPainter& painter, const synth::SynthScene& scene, const Camera& camera,
+                       const std::array<float, 3>& background, std::span<const float> opacity_logit = {},
+                       int outlined = -1) {
+    StarterPicture picture;
     raster::Settings settings;
     settings.background = background;
     auto spans = scene.scene.gaussians.spans();
@@ -259,7 +259,7 @@ void spell_grey(std::string& text) {
 
 /// Some views of every scene, with the accessory that it has, from any side; half of the accessories from
 /// close by.
-class ShapeSource : public neural::StarterSource {
+class ShapeSource : public StarterSource {
 public:
     /// `edited`: with what is new in it; else as it was before.
     ShapeSource(std::uint64_t seed, const ShapeMix& mix, bool edited = true)
@@ -267,7 +267,7 @@ public:
         if (edited) before_ = std::make_unique<ShapeSource>(seed, mix, false);
     }
 
-    neural::StarterPicture picture(std::uint64_t index, int size) const override {
+    StarterPicture picture(std::uint64_t index, int size) const override {
         thread_local ShotPainter painter;
         thread_local std::pair<std::string, std::uint64_t>
             known;  // views of a scene are asked for one after the other
@@ -288,12 +288,12 @@ public:
                                                                                : synth::Part::Accessory);
         if (edited_) return painted(painter, scene, camera, shot.background, {}, static_cast<int>(is_new));
         auto picture = painted(painter, before->scene, camera, shot.background, before->opacity_logit);
-        const std::size_t cells = picture.coverage.size() / neural::StarterPartCount;
+        const std::size_t cells = picture.coverage.size() / StarterPartCount;
         std::fill_n(picture.coverage.begin() + static_cast<std::ptrdiff_t>(cells), cells, std::uint8_t{0});
         if (!shot.restyled) before->room.store(camera, before->share, &picture.coverage[cells]);
         return picture;
     }
-    neural::StarterCaption caption(std::uint64_t index, std::uint64_t seed, bool) const override {
+    StarterCaption caption(std::uint64_t index, std::uint64_t seed, bool) const override {
         constexpr double
             Plain = 0.6,
             AnySide = 0.05;  // shares: the sentence in its plainest form; one that does not say from where
@@ -313,14 +313,14 @@ public:
         return mix_.more > 0 ? synth::drawn_vocabulary() : synth::vocabulary();
     }
     int views_of_scene() const override { return Views; }
-    neural::StarterCamera camera(std::uint64_t index) const override {
+    StarterCamera camera(std::uint64_t index) const override {
         const Shot shot = shot_of(index);
         return {shot.azimuth, shot.elevation, synth::turn_of(shot.spec)};
     }
     const StarterSource* before() const override { return before_.get(); }
-    std::optional<neural::StarterPart> restyled(std::uint64_t index) const override {
+    std::optional<StarterPart> restyled(std::uint64_t index) const override {
         const auto part = shot_of(index).restyled;
-        return part ? std::optional(static_cast<neural::StarterPart>(*part)) : std::nullopt;
+        return part ? std::optional(static_cast<StarterPart>(*part)) : std::nullopt;
     }
     bool has_outlines() const override { return edited_; }
     std::string identity() const override {
@@ -372,36 +372,36 @@ private:
     std::unique_ptr<ShapeSource> before_;
 };
 
-class SyntheticSource : public neural::StarterSource {
+class SyntheticSource : public StarterSource {
 public:
     explicit SyntheticSource(std::uint64_t seed) : seed_(seed), twins_(make_starter_twins(seed)) {}
 
-    neural::StarterPicture picture(std::uint64_t index, int size) const override {
+    StarterPicture picture(std::uint64_t index, int size) const override {
         thread_local ShotPainter painter;
         const Shot shot = make_shot(seed_, index);
         const synth::SynthScene scene = synth::generate(shot.spec);
         const Camera camera = synth::scene_camera(scene, shot.azimuth, shot.elevation, shot.zoom, size, size);
-        neural::StarterPicture picture = painted(painter, scene, camera, shot.background);
+        StarterPicture picture = painted(painter, scene, camera, shot.background);
         if (shot.bare_twin) add_twin_accessory(painter, shot, camera, picture);
         return picture;
     }
 
-    neural::StarterCaption caption(std::uint64_t index, std::uint64_t seed, bool insertion) const override {
+    StarterCaption caption(std::uint64_t index, std::uint64_t seed, bool insertion) const override {
         const Shot shot = make_shot(seed_, index);
         Random random(seed);
         const auto caption = insertion ? accessory_caption(shot, random)
                                        : synth::random_caption(shot.spec, shot.azimuth, random);
-        neural::StarterCaption result;
+        StarterCaption result;
         result.text = caption.text;
         for (const auto& grounding : caption.groundings)
             result.groundings.push_back(
-                {grounding.word, grounding.occurrence, static_cast<neural::StarterPart>(grounding.part)});
+                {grounding.word, grounding.occurrence, static_cast<StarterPart>(grounding.part)});
         return result;
     }
 
     std::vector<std::string> vocabulary() const override { return synth::vocabulary(); }
     std::string identity() const override { return "synthetic-3 " + std::to_string(seed_); }
-    const neural::StarterTwins* twins() const override { return twins_.get(); }
+    const StarterTwins* twins() const override { return twins_.get(); }
 
 private:
     /// Insertion captions must name the accessory.
@@ -415,18 +415,18 @@ private:
     }
 
     static void add_twin_accessory(ShotPainter& painter, const Shot& shot, const Camera& camera,
-                                   neural::StarterPicture& picture) {
+                                   StarterPicture& picture) {
         const synth::SynthScene twin = synth::generate(shot.twin);
-        neural::StarterPicture twin_picture;
+        StarterPicture twin_picture;
         painter.paint_parts(twin, camera, twin_picture);
-        const auto cells = static_cast<std::ptrdiff_t>(picture.coverage.size() / neural::StarterPartCount);
+        const auto cells = static_cast<std::ptrdiff_t>(picture.coverage.size() / StarterPartCount);
         std::copy(twin_picture.coverage.begin() + 2 * cells, twin_picture.coverage.end(),
                   picture.coverage.begin() + 2 * cells);
         picture.bare_twin = true;
     }
 
     std::uint64_t seed_;
-    std::unique_ptr<neural::StarterTwins> twins_;
+    std::unique_ptr<StarterTwins> twins_;
 };
 
 }  // namespace
@@ -450,11 +450,11 @@ std::vector<std::uint8_t> to_bytes(const Image& image) {
     return bytes;
 }
 
-std::unique_ptr<neural::StarterSource> make_shape_source(std::uint64_t seed, const ShapeMix& mix) {
+std::unique_ptr<StarterSource> make_shape_source(std::uint64_t seed, const ShapeMix& mix) {
     return std::make_unique<ShapeSource>(seed, mix);
 }
 
-std::unique_ptr<neural::StarterSource> make_starter_source(std::uint64_t seed) {
+std::unique_ptr<StarterSource> make_starter_source(std::uint64_t seed) {
     return std::make_unique<SyntheticSource>(seed);
 }
 

@@ -7,14 +7,14 @@
 
 #include "engine/base/image.h"
 #include "engine/base/random.h"
-#include "engine/neural/starter/starter_trainer.h"
+#include "engine/laboratory/starter/starter_trainer.h"
 
 namespace gse::training {
 
 inline constexpr int LatentCell = 4;  // pixels per latent cell
 
 /// Pictures 2k and 2k+1 share a scene: where it has an accessory, 2k+1 is the same view without it.
-std::unique_ptr<neural::StarterSource> make_starter_source(std::uint64_t seed);
+std::unique_ptr<StarterSource> make_starter_source(std::uint64_t seed);
 /// What the scenes of make_shape_source() are.
 struct ShapeMix {
     double restyled = 0;      // share of them with StarterSource::restyled()
@@ -23,7 +23,7 @@ struct ShapeMix {
 };
 
 /// Pictures to learn drawing from: accessories are always shown, and every caption says exactly from where.
-std::unique_ptr<neural::StarterSource> make_shape_source(std::uint64_t seed, const ShapeMix& mix = {});
+std::unique_ptr<StarterSource> make_shape_source(std::uint64_t seed, const ShapeMix& mix = {});
 
 /// Black, grey or a pale tint.
 std::array<float, 3> random_background(Random& random);

@@ -155,7 +155,7 @@ TwinShot make_twin_shot(std::uint64_t seed, std::uint64_t index) {
     return shot;
 }
 
-neural::StarterClaim claim_of(const SceneSpec& spec, double azimuth, std::uint64_t seed, bool full) {
+StarterClaim claim_of(const SceneSpec& spec, double azimuth, std::uint64_t seed, bool full) {
     Random random(seed);
     if (!full) {
         const auto caption = synth::random_caption(spec, azimuth, random);
@@ -170,11 +170,11 @@ neural::StarterClaim claim_of(const SceneSpec& spec, double azimuth, std::uint64
     return {caption.text, claimed_by(caption) | none};
 }
 
-class SyntheticTwins : public neural::StarterTwins {
+class SyntheticTwins : public StarterTwins {
 public:
     explicit SyntheticTwins(std::uint64_t seed) : seed_(seed) {}
 
-    neural::StarterPicture picture(std::uint64_t index, int size) const override {
+    StarterPicture picture(std::uint64_t index, int size) const override {
         thread_local ThreadPool pool{1};
         thread_local const auto rasterizer = raster::make_fast_rasterizer(pool);
         thread_local raster::ForwardOutput output;
@@ -185,14 +185,14 @@ public:
         raster::Settings settings;
         settings.background = shot.background;
         rasterizer->forward(scene.scene.gaussians.spans(), camera, settings, output);
-        neural::StarterPicture picture;
+        StarterPicture picture;
         picture.rgb = to_bytes(output.colour);
         const auto cells =
             static_cast<std::size_t>(size / LatentCell) * static_cast<std::size_t>(size / LatentCell);
-        picture.coverage.assign(neural::StarterPartCount * cells, 0);
+        picture.coverage.assign(StarterPartCount * cells, 0);
         return picture;
     }
-    neural::StarterCaption caption(std::uint64_t index, std::uint64_t seed, bool) const override {
+    StarterCaption caption(std::uint64_t index, std::uint64_t seed, bool) const override {
         return {claim(index, seed, false).text, {}};
     }
     std::vector<std::string> vocabulary() const override { return synth::vocabulary(); }
@@ -203,7 +203,7 @@ public:
         const TwinShot shot = make_twin_shot(seed_, index);
         return facts_of(shot.spec, shot.azimuth);
     }
-    neural::StarterClaim claim(std::uint64_t index, std::uint64_t seed, bool full) const override {
+    StarterClaim claim(std::uint64_t index, std::uint64_t seed, bool full) const override {
         const TwinShot shot = make_twin_shot(seed_, index);
         return claim_of(shot.spec, shot.azimuth, seed, full);
     }
@@ -235,7 +235,7 @@ private:
 
 }  // namespace
 
-std::unique_ptr<neural::StarterTwins> make_starter_twins(std::uint64_t seed) {
+std::unique_ptr<StarterTwins> make_starter_twins(std::uint64_t seed) {
     return std::make_unique<SyntheticTwins>(seed);
 }
 

@@ -4,11 +4,11 @@
 
 #include <memory>
 
-#include "engine/neural/starter/starter_trainer.h"
+#include "engine/laboratory/starter/starter_trainer.h"
 
 namespace gse::training {
 
 /// Group g is pictures 4g .. 4g+3; no combination of object, material and accessory is a held-out one.
-std::unique_ptr<neural::StarterTwins> make_starter_twins(std::uint64_t seed);
+std::unique_ptr<StarterTwins> make_starter_twins(std::uint64_t seed);
 
 }  // namespace gse::training

@@ -19,7 +19,6 @@
 #include "engine/neural/api/lora_spec.h"
 #include "engine/neural/api/network_use.h"
 #include "engine/neural/api/sds_parameters.h"
-#include "engine/neural/starter/starter_trainer.h"
 
 namespace gse::neural {
 
@@ -135,9 +134,6 @@ public:
     /// Finds nouns in pictures: CLIPSeg, from a folder. The same of threads and errors.
     virtual std::unique_ptr<edit::TextSegmenter> load_text_segmenter(const std::filesystem::path& folder,
                                                                      const std::string& device) = 0;
-    virtual void train_starter(const StarterTrainParameters& parameters, const StarterSource& source,
-                               const std::filesystem::path& work, const std::filesystem::path& output,
-                               const JobControl& job) = 0;
     /// Threads inside one network operation; 0 = one per core.
     virtual void set_threads(int count) = 0;
     /// What the calling thread has asked of the networks since it began.

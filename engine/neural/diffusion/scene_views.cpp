@@ -77,14 +77,12 @@ UNet with_scene_inputs(const UNet& plain, bool outlines) { return with_inputs(pl
 
 bool shows_scene(const SafetensorsFile& file) { return file.contains(std::string(Inpaint).append("weight")); }
 
-UNet with_scene_inputs(const UNet& plain, const SafetensorsFile& file, bool complete) {
+UNet with_scene_inputs(const UNet& plain, const SafetensorsFile& file) {
     const bool inpaints = shows_scene(file),
                outlines = file.contains(std::string(Outline).append("conv_1.weight"));
-    auto unet = with_inputs(plain, inpaints || complete, outlines || complete);
+    auto unet = with_inputs(plain, inpaints, outlines);
     constexpr const char* Hint = "take it and the LoRA for shapes from one training run";
     for (auto& [name, weight] : scene_input_weights(unet)) {
-        if ((name.starts_with(Inpaint) && !inpaints) || (is_outline(name) && !outlines))
-            continue;  // says nothing yet
         if (!file.contains(name))
             throw Error(ErrorCode::Model, "the embedding of cameras has no \"" + name + "\"", Hint,
                         file.path());
@@ -119,24 +117,9 @@ bool shape_unet_shows_scene(const std::filesystem::path& folder) {
     return shows_scene(SafetensorsFile(folder / ShapeWeights));
 }
 
-void write_shape_unet(const UNet& unet, const std::filesystem::path& folder) {
-    NamedTensors weights;
-    for (const auto& item : unet->named_parameters()) weights.emplace_back(item.key(), item.value());
-    write_safetensors(folder / ShapeWeights, quantized(weights));
-    write_file(folder / ShapeConfig, unet->config().to_json().dump(2) + "\n");
-}
-
-UNet without_scene_inputs(const UNet& unet) {
-    auto config = unet->config();
-    config.camera_dim = config.inpaint_channels = config.outline_scale = 0;
-    return sharing(unet, config);
-}
-
 bool is_scene_input(const std::string& name) {
-    return name.starts_with(CameraEmbedding) || name.starts_with(Inpaint) || is_outline(name);
+    return name.starts_with(CameraEmbedding) || name.starts_with(Inpaint) || name.starts_with(Outline);
 }
-
-bool is_outline(const std::string& name) { return name.starts_with(Outline); }
 
 std::vector<std::pair<std::string, torch::Tensor>> scene_input_weights(const UNet& unet) {
     std::vector<std::pair<std::string, torch::Tensor>> weights;

@@ -31,20 +31,14 @@ UNet with_scene_inputs(const UNet& plain, bool outlines = true);
 /// Whether the weights of a file include that of inpainting().
 bool shows_scene(const SafetensorsFile& file);
 
-/// The same with the weights that a file holds; one of before there was inpainting(), or outlines, has none
-/// for that, and the network then no such part, but where all are wanted (`complete`, to go on training).
+/// The network with the scene inputs that a file holds; it has no part for which the file has no weights.
 /// Throws Error (Model) where they do not fit.
-UNet with_scene_inputs(const UNet& plain, const SafetensorsFile& file, bool complete = false);
+UNet with_scene_inputs(const UNet& plain, const SafetensorsFile& file);
 /// A network of its own for new things with all of these inputs: config.json as diffusers writes it, and
-/// weights that may be quantized(). Throws Error (NotFound, Malformed, Model).
+/// weights that may be quantized (QuantizationScale). Throws Error (NotFound, Malformed, Model).
 UNet load_shape_unet(const std::filesystem::path& folder);
 /// Whether the folder's network is shown the scene.
 bool shape_unet_shows_scene(const std::filesystem::path& folder);
-/// Writes such a folder.
-void write_shape_unet(const UNet& unet, const std::filesystem::path& folder);
-
-/// The same network without those inputs; shares all weights.
-UNet without_scene_inputs(const UNet& unet);
 
 /// Which views are denoised together in one step, each list at most `together` long: with `around`, those far
 /// from each other on the way around the thing, else neighbours. `azimuths` in radians; where one is not
@@ -54,8 +48,6 @@ std::vector<std::vector<std::int64_t>> view_groups(const std::vector<std::option
 
 /// Whether a weight of that name belongs to these inputs, or to the outlines.
 bool is_scene_input(const std::string& name);
-/// Whether it is one of the outlines' layers.
-bool is_outline(const std::string& name);
 /// The weights of both by name, "camera_embedding.linear_1.weight", "conv_inpaint.weight" and so on.
 std::vector<std::pair<std::string, torch::Tensor>> scene_input_weights(const UNet& unet);
 

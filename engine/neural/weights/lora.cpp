@@ -192,38 +192,13 @@ void merge_lora(torch::nn::Module& network, const std::vector<LoraFactor>& facto
     });
 }
 
-std::vector<LoraFactor> lora_between(const torch::nn::Module& before, const torch::nn::Module& after,
-                                     std::int64_t rank) {
-    const torch::NoGradGuard no_grad;
-    const auto from = weights_by_layer(before);
-    std::vector<LoraFactor> factors;
-    for (const auto& [layer, to] : weights_by_layer(after)) {
-        const auto change = (to - from.at(layer)).to(torch::kCPU, torch::kFloat32).contiguous();
-        if (!(change.abs().max().item<float>() > 0)) continue;
-        const auto [u, s, v] = torch::linalg_svd(change.flatten(1), false);
-        const auto kept = std::min(rank, s.size(0));
-        const auto root = s.narrow(0, 0, kept).sqrt();
-        LoraFactor factor;
-        factor.layer = layer;
-        factor.up = (u.narrow(1, 0, kept) * root).contiguous();
-        factor.down = (root.unsqueeze(1) * v.narrow(0, 0, kept)).contiguous();
-        if (change.dim() == 4) {
-            factor.down = factor.down.view({kept, change.size(1), change.size(2), change.size(3)});
-            factor.up = factor.up.view({change.size(0), kept, 1, 1});
-        }
-        factor.alpha = static_cast<double>(kept);
-        factors.push_back(std::move(factor));
-    }
-    return factors;
-}
-
-void write_lora(const std::filesystem::path& path, const LoraWeights& weights, torch::ScalarType type) {
+void write_lora(const std::filesystem::path& path, const LoraWeights& weights) {
     NamedTensors tensors;
     const auto add = [&](std::string_view prefix, const std::vector<LoraFactor>& factors) {
         for (const auto& factor : factors) {
             const auto stem = std::string(prefix) + factor.layer;
-            const auto plain = [type](const torch::Tensor& t) {
-                return t.detach().to(torch::kCPU, type).contiguous();
+            const auto plain = [](const torch::Tensor& t) {
+                return t.detach().to(torch::kCPU, torch::kFloat32).contiguous();
             };
             tensors.emplace_back(stem + std::string(LoraAlpha),
                                  torch::tensor(static_cast<float>(factor.alpha)));

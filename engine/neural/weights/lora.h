@@ -46,12 +46,6 @@ std::vector<LoraTarget> lora_targets(const torch::nn::Module& network);
 std::vector<LoraFactor> new_lora(const std::vector<LoraTarget>& targets, std::int64_t rank,
                                  std::uint64_t seed);
 
-/// The change from one network's weights to those of another of the same structure, as far as `rank` holds
-/// it: per weight matrix or convolution the leading part of the singular value decomposition (Eckart and
-/// Young 1936). Layers that are the same are left out.
-std::vector<LoraFactor> lora_between(const torch::nn::Module& before, const torch::nn::Module& after,
-                                     std::int64_t rank);
-
 /// Throws Error (Model) when a layer that is to change is not in the network (which may be on torch::kMeta),
 /// or has another shape; `path` is the file that the changes come from.
 void check_lora(const torch::nn::Module& network, const std::vector<LoraFactor>& factors,
@@ -62,8 +56,7 @@ void check_lora(const torch::nn::Module& network, const std::vector<LoraFactor>&
 void merge_lora(torch::nn::Module& network, const std::vector<LoraFactor>& factors, double strength);
 
 /// lora_unet_<layer>.lora_down.weight, .lora_up.weight, .alpha; lora_te_<layer> for the text encoder.
-void write_lora(const std::filesystem::path& path, const LoraWeights& weights,
-                torch::ScalarType type = torch::kFloat32);
+void write_lora(const std::filesystem::path& path, const LoraWeights& weights);
 
 /// Reads kohya's and LyCORIS' names (lora_unet_*, with a middle too), PEFT's (unet.*.lora_A) and those of
 /// diffusers before it (unet.*.processor.to_q_lora.down, unet.*.to_q.lora.down), also mixed. A missing alpha

@@ -179,27 +179,6 @@ void SafetensorsFile::copy_to(const std::string& name, torch::Tensor target) con
                      .view(target.sizes()));
 }
 
-NamedTensors quantized(const NamedTensors& tensors) {
-    constexpr double Largest = 127;
-    NamedTensors result;
-    for (const auto& [name, tensor] : tensors) {
-        const auto values = tensor.detach().to(torch::kCPU, torch::kFloat32);
-        if (values.dim() < 2) {
-            result.emplace_back(name, values.to(torch::kHalf));
-            continue;
-        }
-        const auto rows = values.flatten(1);
-        const auto scale = (rows.abs().amax(1) / Largest).clamp_min(std::numeric_limits<float>::min());
-        result.emplace_back(name, (rows / scale.unsqueeze(1))
-                                      .round()
-                                      .clamp(-Largest, Largest)
-                                      .to(torch::kInt8)
-                                      .view(values.sizes()));
-        result.emplace_back(name + QuantizationScale, scale);
-    }
-    return result;
-}
-
 void write_safetensors(const std::filesystem::path& path, const NamedTensors& tensors,
                        const std::map<std::string, std::string>& metadata) {
     const std::string header = make_header(tensors, metadata);

@@ -35,8 +35,8 @@ public:
     std::uint64_t data_bytes() const { return file_.size() - data_begin_; }
 
     torch::Tensor tensor(const std::string& name) const override;
-    /// One of quantized() as the numbers that it stands for. Throws Error as the others, and (Malformed) when
-    /// its scales do not fit.
+    /// A quantized tensor (QuantizationScale) becomes the numbers that it stands for. Throws Error as the
+    /// others, and (Malformed) when its scales do not fit.
     void copy_to(const std::string& name, torch::Tensor target) const override;
 
 private:
@@ -51,12 +51,9 @@ private:
 
 using NamedTensors = std::vector<std::pair<std::string, torch::Tensor>>;
 
-/// What follows the name of a quantized tensor in that of its scales.
+/// Ending of the name of a quantized tensor's scales. Such a matrix or kernel holds whole numbers of -127 to
+/// 127 and has one factor per row (its first dimension), by which they are multiplied.
 inline constexpr const char* QuantizationScale = "_scale";
-/// Matrices and kernels in eight bits: whole numbers of -127 to 127 and, behind each tensor, one factor per
-/// row (its first dimension), by which they are multiplied; each number is off by half a factor at most.
-/// Everything else in fp16.
-NamedTensors quantized(const NamedTensors& tensors);
 
 /// Writes the tensors in the given order, atomically. Throws Error (Unwritable).
 void write_safetensors(const std::filesystem::path& path, const NamedTensors& tensors,

@@ -8,15 +8,17 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/laboratory/starter/starter_stages.h"
 #include "engine/neural/api/known_sentence.h"
 #include "engine/neural/clip/clip_score.h"
-#include "engine/neural/starter/starter_stages.h"
 #include "engine/neural/weights/safetensors.h"
 #include "tests/test_paths.h"
 
 namespace {
 
 using namespace gse::neural;
+using gse::training::build_vocabulary;
+using gse::training::export_clip;
 
 constexpr double UnitTolerance = 1e-5;  // of a length in fp32
 constexpr double HalfTolerance = 2e-3;  // fp16 weights of a two-layer model

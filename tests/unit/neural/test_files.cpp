@@ -1,36 +1,12 @@
 // Weights files, model folders and the tokenizer: round trips and what is refused with which words.
 #include "engine/neural/diffusion/model.h"
 #include "engine/neural/weights/key_map.h"
+#include "tests/unit/neural/quantized.h"
 #include "tests/unit/neural/tiny_model.h"
 
 using namespace gse;
 using namespace gse::neural;
 using namespace gse::test;
-
-DOCTEST_TEST_CASE(
-    "the change between two networks is what is merged to get from one to the other, as far as the rank "
-    "holds it") {
-    const TinyModel model;
-    const auto bundle = load_bundle(model.path());
-    const auto other =
-        [&](std::int64_t rank) {  // the network with the change of that rank, against the changed one
-            torch::manual_seed(3);
-            const torch::NoGradGuard no_grad;
-            auto changed = load_bundle(model.path()), merged = load_bundle(model.path());
-            for (auto& parameter : changed.unet->parameters())
-                if (parameter.dim() >= 2) parameter.add_(0.1 * torch::randn_like(parameter));
-            merge_lora(*merged.unet, lora_between(*bundle.unet, *changed.unet, rank), 1);
-            double most = 0;
-            const auto a = merged.unet->parameters(), b = changed.unet->parameters();
-            for (std::size_t i = 0; i < a.size(); ++i)
-                most = std::max(most, (a[i] - b[i]).abs().max().item<double>());
-            return most;
-        };
-    constexpr double rounding = 1e-5;  // of a decomposition in fp32
-    DOCTEST_CHECK(other(1024) < rounding);
-    DOCTEST_CHECK(other(2) > 100 * rounding);
-    DOCTEST_CHECK(lora_between(*bundle.unet, *bundle.unet, 4).empty());
-}
 
 DOCTEST_TEST_CASE("safetensors: what is written is read back bit for bit") {
     const ScratchFolder scratch;

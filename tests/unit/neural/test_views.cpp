@@ -8,6 +8,7 @@
 #include "engine/neural/diffusion/scene_views.h"
 #include "engine/neural/guidance/dreambooth.h"
 #include "engine/neural/guidance/multi_view_editor.h"
+#include "tests/unit/neural/quantized.h"
 #include "tests/unit/neural/tiny_model.h"
 #include "tests/unit/neural/wall_views.h"
 

@@ -101,7 +101,7 @@ DOCTEST_TEST_CASE(
     const gse::test::ScratchFolder scratch;
     const auto source = gse::training::make_shape_source(7);
     gse::write_file(scratch.path() / "shard-0.bin", "kept");
-    gse::neural::StarterTrainParameters parameters;
+    gse::training::StarterTrainParameters parameters;
     parameters.seed = 7;
     parameters.pictures = 9;
     parameters.image_size = Size;

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "engine/laboratory/starter/split_caption.h"
 #include "engine/laboratory/synth/synth.h"
 #include "engine/laboratory/training/starter_source.h"
-#include "engine/neural/api/starter_words.h"
 
 namespace shape_source_test {
 
@@ -110,7 +110,7 @@ DOCTEST_TEST_CASE(
     const auto views = static_cast<std::uint64_t>(source->views_of_scene());
     DOCTEST_CHECK_FALSE(plain->restyled(0).has_value());
     DOCTEST_CHECK(source->identity() != plain->identity());
-    std::set<gse::neural::StarterPart> parts;
+    std::set<gse::training::StarterPart> parts;
     for (std::uint64_t scene = 0; scene < 24; ++scene) {
         const std::uint64_t index = scene * views + scene % views;
         const auto part = source->restyled(index);
@@ -146,9 +146,9 @@ DOCTEST_TEST_CASE(
         for (std::uint64_t wording = 0; wording < 8; ++wording) {
             const auto text = source->caption(index, wording, false).text;
             DOCTEST_CAPTURE(text);
-            if (*part == gse::neural::StarterPart::Object)
+            if (*part == gse::training::StarterPart::Object)
                 DOCTEST_CHECK(says_one(text, gse::synth::material_words(), {"wood", "gold"}));
-            if (*part == gse::neural::StarterPart::Ground)
+            if (*part == gse::training::StarterPart::Ground)
                 DOCTEST_CHECK(says_one(text, gse::synth::ground_words(), {"tiled", "lake"}));
         }
         // There is no room: nothing of another shape was there.
@@ -180,7 +180,7 @@ DOCTEST_TEST_CASE("further words are in as many scenes as asked for, and in the 
             bool is_further = false;
             for (std::uint64_t wording = 0; wording < 4; ++wording)
                 for (const auto& word :
-                     gse::neural::split_caption(from->caption(scene * views, wording, false).text)) {
+                     gse::training::split_caption(from->caption(scene * views, wording, false).text)) {
                     if (word == ",") continue;
                     DOCTEST_CHECK(has(vocabulary, word));
                     is_further = is_further || !has(known, word);

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/neural/starter/starter_clip_batch.h"
+#include "engine/laboratory/starter/starter_clip_batch.h"
 
-namespace gse::neural {
+namespace gse::training {
 namespace {
 
 constexpr double LargestScale = 100;   // of cosines, as in CLIP
@@ -115,4 +115,4 @@ void train_clip(ClipModel& clip, const ClipTraining& training, const std::filesy
     run_stage(stage, StageClock(parameters.clip_steps, parameters.clip_minutes), work, job);
 }
 
-}  // namespace gse::neural
+}  // namespace gse::training

@@ -10,9 +10,13 @@
 #include <string>
 #include <vector>
 
-#include "engine/neural/starter/starter_data.h"
+#include "engine/laboratory/starter/starter_data.h"
 
-namespace gse::neural {
+namespace gse::neural {}
+
+namespace gse::training {
+
+using namespace neural;
 
 /// How far a stage is, in [0,1], by steps when their number is given and by training time otherwise.
 class StageClock {
@@ -69,4 +73,4 @@ struct Stage {
 /// Runs the stage to its end, resuming from work/<name>.ckpt; leaves the EMA weights in replica 0.
 void run_stage(Stage& stage, StageClock clock, const std::filesystem::path& work, const JobControl& job);
 
-}  // namespace gse::neural
+}  // namespace gse::training

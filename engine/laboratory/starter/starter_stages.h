@@ -1,13 +1,13 @@
 // The stages of the starter model: the VAE, text encoder and UNet on its latents, the image-text encoder.
 #pragma once
 
+#include "engine/laboratory/starter/starter_training.h"
 #include "engine/neural/clip/clip_model.h"
 #include "engine/neural/diffusion/text_encoder.h"
 #include "engine/neural/diffusion/unet.h"
 #include "engine/neural/diffusion/vae.h"
-#include "engine/neural/starter/starter_training.h"
 
-namespace gse::neural {
+namespace gse::training {
 
 /// Structure of the starter model.
 struct StarterConfigs {
@@ -48,15 +48,6 @@ StarterParts fresh_parts(const StarterConfigs& configs, std::uint64_t seed);
 StarterParts initial_parts(const std::filesystem::path& folder, const StarterConfigs& configs,
                            const StarterVocabulary& vocabulary);
 
-/// The folder's network for new things, or its UNet with its LoRA for them and the inputs that go with it,
-/// where it has them; else with inputs that say nothing.
-UNet initial_shapes(const std::filesystem::path& folder, UNet unet);
-
-/// Ids of the tokens of `vocabulary` that are new to the folder's model. Throws Error as initial_parts()
-/// does.
-std::vector<std::int64_t> fresh_tokens(const std::filesystem::path& folder,
-                                       const StarterVocabulary& vocabulary);
-
 /// The image-text encoder of a starter folder, or fresh weights where it has none. Throws Error as
 /// initial_parts() does.
 ClipModel initial_clip(const std::filesystem::path& folder, const ClipConfig& config,
@@ -76,21 +67,12 @@ struct UNetTraining {
     const StarterSource& source;
     const StarterVocabulary& vocabulary;
     std::function<void(StarterNetworks& networks)> preview;
-    StarterPictures before = {};  // those of source.before(), where there are any
-    StarterLatents before_latents = {};
 };
 
 /// Trains text encoder and UNet (v-prediction) with the attention losses and leaves the averaged weights in
 /// them.
 void train_unet(StarterNetworks& networks, const UNetTraining& training, const std::filesystem::path& work,
                 const JobControl& job);
-
-/// Trains the UNet's weights (not its biases and norms) and the embeddings of the tokens `fresh` for pictures
-/// that are asked for from an exact side, and leaves the averaged ones in `networks`. The text encoder's
-/// other weights stay as they are.
-void train_shapes(StarterNetworks& networks, const UNetTraining& training,
-                  const std::vector<std::int64_t>& fresh, const std::filesystem::path& work,
-                  const JobControl& job);
 
 /// What the contrastive stage works on; `pictures` are those of `twins`.
 struct ClipTraining {
@@ -106,19 +88,9 @@ void train_clip(ClipModel& clip, const ClipTraining& training, const std::filesy
 /// Writes config.json and model.safetensors (fp16) as transformers does; the tokenizer is the bundle's.
 void export_clip(const ClipModel& clip, const std::filesystem::path& folder);
 
-/// What a starter's gseditpro.json names and its folder holds where there is one: a LoRA for drawing new
-/// things.
-inline constexpr const char* ShapeLoraFile = "shapes.safetensors";
-/// The embedding of cameras beside it, and how many views are denoised together.
-inline constexpr const char* ShapeCamerasFile = "shape_cameras.safetensors";
-inline constexpr std::int64_t ShapeViews = 4;
-
-/// Where a starter that draws new things with a network of its own keeps it.
-inline constexpr const char* ShapeUnetFolder = "shapes";
-
-/// Writes the diffusers folder in fp16; with `parameters.shapes`, `networks.unet` as the difference to the
-/// initial model's, or in eight bits where that has a network of its own for new things.
+/// Writes the diffusers folder in fp16. What the initial model's gseditpro.json names goes along while it
+/// fits.
 void export_starter(const UNetTraining& training, AutoencoderKl& vae, StarterNetworks& networks,
                     const std::filesystem::path& output);
 
-}  // namespace gse::neural
+}  // namespace gse::training

@@ -1,11 +1,13 @@
 // Drawing of twin groups, their augmentation, and which sentence holds for which picture.
-#include "engine/neural/starter/starter_clip_batch.h"
+#include "engine/laboratory/starter/starter_clip_batch.h"
 
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
 
-namespace gse::neural {
+#include "engine/laboratory/starter/split_caption.h"
+
+namespace gse::training {
 namespace {
 
 constexpr double FullShare = 0.6;    // groups with full sentences; the others leave words out
@@ -179,4 +181,4 @@ void TwinBatchMaker::add_relations(const std::vector<Row>& rows, TwinBatch& batc
     compare_changes(from, to, facts, batch);
 }
 
-}  // namespace gse::neural
+}  // namespace gse::training

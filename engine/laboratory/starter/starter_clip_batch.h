@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "engine/base/random.h"
-#include "engine/neural/api/starter_words.h"
-#include "engine/neural/starter/starter_stages.h"
+#include "engine/laboratory/starter/starter_stages.h"
+#include "engine/laboratory/starter/starter_words.h"
 
-namespace gse::neural {
+namespace gse::training {
 
 /// N = groups * members pictures, each with one sentence; all members of a group stand together, the first
 /// first.
@@ -48,4 +48,4 @@ private:
     std::uint64_t members_;
 };
 
-}  // namespace gse::neural
+}  // namespace gse::training

@@ -3,9 +3,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "engine/neural/starter/starter_data.h"
+#include "engine/laboratory/starter/starter_data.h"
 
-namespace gse::neural {
+namespace gse::training {
 namespace {
 
 /// UTF-8 of a code point below 0x800.
@@ -88,4 +88,4 @@ StarterVocabulary build_vocabulary(const std::vector<std::string>& words) {
     return result;
 }
 
-}  // namespace gse::neural
+}  // namespace gse::training

@@ -6,13 +6,11 @@
 
 #include "engine/base/file.h"
 #include "engine/base/log.h"
-#include "engine/neural/diffusion/scene_views.h"
-#include "engine/neural/starter/starter_stages.h"
+#include "engine/laboratory/starter/starter_stages.h"
 #include "engine/neural/weights/key_map.h"
-#include "engine/neural/weights/lora.h"
 #include "engine/neural/weights/safetensors.h"
 
-namespace gse::neural {
+namespace gse::training {
 namespace {
 
 /// Measured on held-out synthetic scenes by `gseditpro locate`-style sweeps; the bundle may state another
@@ -47,8 +45,8 @@ Json tokenizer_config() {
 
 /// Whether the initial model's UNet and text encoder are exported as they were.
 bool keeps_networks(const StarterTrainParameters& parameters) {
-    return !parameters.shapes && !parameters.initial.empty() && parameters.average.empty() &&
-           parameters.unet_steps == 0 && parameters.unet_minutes == 0;
+    return !parameters.initial.empty() && parameters.average.empty() && parameters.unet_steps == 0 &&
+           parameters.unet_minutes == 0;
 }
 
 /// What the initial model says about itself; empty where there is none, or it says nothing.
@@ -78,31 +76,18 @@ Json facts_of(const UNetTraining& training) {
                {"image_size", training.parameters.image_size},
                {"attention_threshold", DefaultAttentionThreshold},
                {"attention_layers", "up_blocks"},
-               // Measured: `gseditpro-lab bench locate`, points "noise levels", and on scans, of which it labels
-               // the ground, too, at less noise.
+               // Measured: `gseditpro-lab bench locate`, points "noise levels", and on scans, of which it
+               // labels the ground, too, at less noise.
                {"attention_timesteps", {0.3}},
                // Where absent things go was learned at every noise level, and is told more exactly where the
                // picture shows.
                {"attention_absent_timesteps", {0.3, 0.5, 0.7}}};
     facts.update(initial_facts(training.parameters));
-    if (training.parameters.shapes) {  // what it knows of words is what it knew
-        if (facts.contains("shape_unet")) {
-            facts["shape_unet"] = ShapeUnetFolder;
-        } else {
-            facts["shape_lora"] = ShapeLoraFile;
-            facts["shape_cameras"] = ShapeCamerasFile;
-        }
-        facts["shape_views"] = facts.contains("shape_unet")
-                                   ? facts.value("shape_views", ShapeViews)
-                                   : std::min<std::int64_t>(ShapeViews, training.source.views_of_scene());
-        facts["shape_training"] = fields_to_json(training.parameters);
-        return facts;
-    }
     if (!keeps_networks(training.parameters) &&
         (facts.contains("shape_unet") || facts.contains("shape_lora"))) {
         log::warning(
             "what the initial model draws new things with is left out: it was learned beside another UNet; "
-            "train it anew with --shapes");
+            "train it anew with packaging/train_shapes");
         for (const char* key : {"shape_unet", "shape_lora", "shape_cameras", "shape_views", "shape_training"})
             facts.erase(key);
     }
@@ -112,30 +97,6 @@ Json facts_of(const UNetTraining& training) {
         facts["profile"]["request"]["sided_view_words"] = true;
     facts["training"] = fields_to_json(training.parameters);
     return facts;
-}
-
-/// The initial model's weights as they are, and the way from there to the trained ones.
-void write_shapes(const UNetTraining& training, StarterNetworks& networks,
-                  const std::filesystem::path& output) {
-    UNet before(training.configs.unet);
-    const auto file =
-        std::filesystem::path(training.parameters.initial) / "unet/diffusion_pytorch_model.safetensors";
-    load_weights(*before, SafetensorsFile(file), unet_plan());
-    write_weights(output / "unet/diffusion_pytorch_model.safetensors", before);
-    if (initial_facts(training.parameters).contains("shape_unet"))
-        return write_shape_unet(networks.unet, output / ShapeUnetFolder);
-    UNet trained(networks.unet->config());  // on the CPU
-    auto values = trained->parameters();
-    copy_parameters(networks.unet->parameters(), values);
-    auto cameras = scene_input_weights(trained);
-    // Outlines that were never shown are none: an edit would take it that nothing is new.
-    if (training.pictures.outline.empty())
-        std::erase_if(cameras, [](const auto& weight) { return is_outline(weight.first); });
-    for (auto& [name, weight] : cameras) weight = weight.detach().to(torch::kHalf).contiguous();
-    write_safetensors(output / ShapeCamerasFile, cameras);
-    trained = without_scene_inputs(trained);
-    write_lora(output / ShapeLoraFile, {lora_between(*before, *trained, training.parameters.shape_rank), {}},
-               torch::kHalf);
 }
 
 }  // namespace
@@ -150,8 +111,7 @@ void export_starter(const UNetTraining& training, AutoencoderKl& vae, StarterNet
     const auto& configs = training.configs;
     const auto& vocabulary = training.vocabulary;
     write_weights(output / "vae/diffusion_pytorch_model.safetensors", vae);
-    if (training.parameters.shapes) write_shapes(training, networks, output);
-    else write_weights(output / "unet/diffusion_pytorch_model.safetensors", networks.unet);
+    write_weights(output / "unet/diffusion_pytorch_model.safetensors", networks.unet);
     write_weights(output / "text_encoder/model.safetensors", networks.text);
     write_json(output / "vae/config.json", configs.vae.to_json());
     write_json(output / "unet/config.json", configs.unet.to_json());
@@ -178,4 +138,4 @@ void export_starter(const UNetTraining& training, AutoencoderKl& vae, StarterNet
     write_json(output / "gseditpro.json", facts_of(training));
 }
 
-}  // namespace gse::neural
+}  // namespace gse::training

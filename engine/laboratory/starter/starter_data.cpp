@@ -1,5 +1,5 @@
 // Renders or reloads the training pictures.
-#include "engine/neural/starter/starter_data.h"
+#include "engine/laboratory/starter/starter_data.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include "engine/base/log.h"
 #include "engine/base/thread_pool.h"
 
-namespace gse::neural {
+namespace gse::training {
 namespace {
 
 constexpr std::uint64_t CacheMagic = 0x3153434950455347ULL;  // "GSEPICS1"
@@ -33,7 +33,7 @@ std::filesystem::path cache_path(const StarterTrainParameters& parameters, const
     return work / fmt::format("pictures-{:016x}.bin", hash);
 }
 
-void allocate(StarterPictures& pictures, int size, std::size_t count, bool outlines) {
+void allocate(StarterPictures& pictures, int size, std::size_t count) {
     const std::size_t side = static_cast<std::size_t>(size);
     pictures.size = size;
     pictures.cells = size / 4;
@@ -41,10 +41,9 @@ void allocate(StarterPictures& pictures, int size, std::size_t count, bool outli
     pictures.rgb.resize(count * side * side * 3);
     pictures.coverage.resize(count * StarterPartCount * (side / 4) * (side / 4));
     pictures.bare_twin.resize(count);
-    pictures.outline.resize(outlines ? count * side * side : 0);
 }
 
-bool read_cache(const std::filesystem::path& path, const StarterTrainParameters& parameters, bool outlines,
+bool read_cache(const std::filesystem::path& path, const StarterTrainParameters& parameters,
                 StarterPictures& pictures) {
     std::ifstream stream(path, std::ios::binary);
     CacheHeader header;
@@ -53,8 +52,8 @@ bool read_cache(const std::filesystem::path& path, const StarterTrainParameters&
     if (header.magic != CacheMagic || header.count != count ||
         header.size != static_cast<std::uint32_t>(parameters.image_size))
         return false;
-    allocate(pictures, parameters.image_size, count, outlines);
-    for (auto* part : {&pictures.rgb, &pictures.coverage, &pictures.bare_twin, &pictures.outline})
+    allocate(pictures, parameters.image_size, count);
+    for (auto* part : {&pictures.rgb, &pictures.coverage, &pictures.bare_twin})
         if (!stream.read(reinterpret_cast<char*>(part->data()), static_cast<std::streamsize>(part->size())))
             return false;
     return true;
@@ -66,7 +65,7 @@ void write_cache(const std::filesystem::path& path, const StarterPictures& pictu
         const CacheHeader header{CacheMagic, pictures.count, static_cast<std::uint32_t>(pictures.size),
                                  static_cast<std::uint32_t>(pictures.cells)};
         stream.write(reinterpret_cast<const char*>(&header), sizeof(header));
-        for (const auto* part : {&pictures.rgb, &pictures.coverage, &pictures.bare_twin, &pictures.outline})
+        for (const auto* part : {&pictures.rgb, &pictures.coverage, &pictures.bare_twin})
             stream.write(reinterpret_cast<const char*>(part->data()),
                          static_cast<std::streamsize>(part->size()));
         if (!stream.flush())
@@ -77,15 +76,11 @@ void write_cache(const std::filesystem::path& path, const StarterPictures& pictu
 void store(StarterPictures& pictures, std::size_t index, const StarterPicture& picture) {
     const std::size_t rgb_size = pictures.rgb.size() / pictures.count;
     const std::size_t coverage_size = pictures.coverage.size() / pictures.count;
-    const std::size_t outline_size = pictures.outline.size() / pictures.count;
-    if (picture.rgb.size() != rgb_size || picture.coverage.size() != coverage_size ||
-        (outline_size > 0 && picture.outline.size() != outline_size))
+    if (picture.rgb.size() != rgb_size || picture.coverage.size() != coverage_size)
         throw Error(ErrorCode::InvalidArgument, "the picture source returned a picture of another size");
     std::memcpy(&pictures.rgb[index * rgb_size], picture.rgb.data(), rgb_size);
     std::memcpy(&pictures.coverage[index * coverage_size], picture.coverage.data(), coverage_size);
     pictures.bare_twin[index] = picture.bare_twin ? 1 : 0;
-    if (outline_size > 0)
-        std::memcpy(&pictures.outline[index * outline_size], picture.outline.data(), outline_size);
 }
 
 }  // namespace
@@ -94,12 +89,11 @@ StarterPictures load_or_render_pictures(const StarterTrainParameters& parameters
                                         const std::filesystem::path& work, const JobControl& job) {
     StarterPictures pictures;
     const auto path = cache_path(parameters, source, work);
-    if (read_cache(path, parameters, source.has_outlines(), pictures)) {
+    if (read_cache(path, parameters, pictures)) {
         log::info("{} training pictures read from the cache", pictures.count);
         return pictures;
     }
-    allocate(pictures, parameters.image_size, static_cast<std::size_t>(parameters.pictures),
-             source.has_outlines());
+    allocate(pictures, parameters.image_size, static_cast<std::size_t>(parameters.pictures));
     ThreadPool pool(static_cast<unsigned>(parameters.threads));
     std::atomic<int> done{0};
     pool.parallel_for(pictures.count, static_cast<std::size_t>(source.views_of_scene()),
@@ -118,4 +112,4 @@ StarterPictures load_or_render_pictures(const StarterTrainParameters& parameters
     return pictures;
 }
 
-}  // namespace gse::neural
+}  // namespace gse::training

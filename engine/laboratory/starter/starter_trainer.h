@@ -1,5 +1,5 @@
-// Trains the embedded starter model (VAE, text encoder, UNet in the Stable Diffusion structure) on captioned
-// pictures. No torch type appears here: the program hands over a picture source and gets a diffusers folder.
+// Trains the starter model (VAE, text encoder, UNet in the structure of Stable Diffusion) on captioned
+// pictures. No torch type appears here: a picture source goes in, a diffusers folder comes out.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 #include "engine/base/fields.h"
 #include "engine/base/progress.h"
 
-namespace gse::neural {
+namespace gse::training {
 
 /// What a caption's word may name; the order of the coverage maps of a StarterPicture.
 enum class StarterPart : int { Ground = 0, Object = 1, Accessory = 2 };
@@ -136,8 +136,6 @@ struct StarterTrainParameters {
     double spread_weight = 0.03;
     double insertion_share = 0.3;
     double caption_dropout = 0.1;
-    bool shapes = false;
-    int shape_rank = 32;
     double restyled_share = 0;
     double more_share = 0;
     bool more_looks = false;
@@ -195,11 +193,6 @@ struct StarterTrainParameters {
           Range{0, 1});
         f("caption_dropout", self.caption_dropout, "Share of empty captions (classifier-free guidance).",
           Range{0, 1});
-        f("shapes", self.shapes,
-          "Leave the initial model as it is and train a LoRA beside it for views in which a new thing is "
-          "drawn, told exactly from where, on from "
-          "the one that it has, if any; neither VAE nor image-text encoder are trained then.");
-        f("shape_rank", self.shape_rank, "Rank of that LoRA.", Range{1, 1024});
         f("restyled_share", self.restyled_share,
           "Share of the scenes drawn with --pictures-only in which nothing new comes: the thing, its ground "
           "or what it wears gets another look.",
@@ -224,4 +217,10 @@ void train_starter(const StarterTrainParameters& parameters, const StarterSource
                    const std::filesystem::path& work, const std::filesystem::path& output,
                    const JobControl& job);
 
-}  // namespace gse::neural
+}  // namespace gse::training
+
+/// The one symbol of the laboratory's plug-in (libgse_starter.so): train_starter().
+extern "C" void gse_train_starter(const gse::training::StarterTrainParameters& parameters,
+                                  const gse::training::StarterSource& source,
+                                  const std::filesystem::path& work, const std::filesystem::path& output,
+                                  const gse::JobControl& job);

@@ -16,12 +16,13 @@
 
 #include "engine/base/error.h"
 #include "engine/base/random.h"
-#include "engine/neural/api/starter_words.h"
+#include "engine/laboratory/starter/mixed_precision.h"
+#include "engine/laboratory/starter/split_caption.h"
+#include "engine/laboratory/starter/starter_stages.h"
+#include "engine/laboratory/starter/starter_words.h"
 #include "engine/neural/diffusion/schedulers.h"
-#include "engine/neural/layers/mixed_precision.h"
-#include "engine/neural/starter/starter_stages.h"
 
-namespace gse::neural {
+namespace gse::training {
 namespace {
 
 constexpr int TrainTimesteps = 1000;
@@ -238,4 +239,4 @@ void train_unet(StarterNetworks& networks, const UNetTraining& training, const s
     run_stage(stage, StageClock(parameters.unet_steps, parameters.unet_minutes), work, job);
 }
 
-}  // namespace gse::neural
+}  // namespace gse::training

@@ -3,7 +3,7 @@
 
 #include <ATen/autocast_mode.h>
 
-namespace gse::neural {
+namespace gse::training {
 
 /// While it lives, convolutions and matrix products of this thread compute in bfloat16 (mixed precision,
 /// Micikevicius et al. 2018; bfloat16 has the range of float, so losses need no scaling). Weights and their
@@ -32,4 +32,4 @@ private:
     bool on_, cuda_;
 };
 
-}  // namespace gse::neural
+}  // namespace gse::training

@@ -3,14 +3,10 @@
 
 #include <string>
 #include <unordered_map>
-#include <vector>
 
-#include "engine/neural/starter/starter_data.h"
+#include "engine/laboratory/starter/starter_data.h"
 
-namespace gse::neural {
-
-/// Splits a caption as the tokenizer does: words and commas.
-std::vector<std::string> split_caption(const std::string& text);
+namespace gse::training {
 
 /// Token ids of one-token words.
 class WordTable {
@@ -26,4 +22,4 @@ private:
     std::unordered_map<std::string, int> ids_;
 };
 
-}  // namespace gse::neural
+}  // namespace gse::training

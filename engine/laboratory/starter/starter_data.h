@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <vector>
 
-#include "engine/neural/starter/starter_trainer.h"
+#include "engine/laboratory/starter/starter_trainer.h"
 
-namespace gse::neural {
+namespace gse::training {
 
 /// All pictures of a run, kept as bytes.
 struct StarterPictures {
@@ -17,7 +17,6 @@ struct StarterPictures {
     std::vector<std::uint8_t> rgb;        // [N,S,S,3]
     std::vector<std::uint8_t> coverage;   // [N,3,G,G]
     std::vector<std::uint8_t> bare_twin;  // [N]
-    std::vector<std::uint8_t> outline;    // [N,S,S], or empty
 };
 
 /// Reads the pictures from the cache in `work`, or renders them on all cores and writes the cache.
@@ -35,4 +34,4 @@ struct StarterVocabulary {
 };
 StarterVocabulary build_vocabulary(const std::vector<std::string>& words);
 
-}  // namespace gse::neural
+}  // namespace gse::training

@@ -1,5 +1,5 @@
 // The training loop: single-threaded replicas on their own threads, gradients averaged in a fixed order.
-#include "engine/neural/starter/starter_training.h"
+#include "engine/laboratory/starter/starter_training.h"
 
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -17,7 +17,7 @@
 #include "engine/base/file.h"
 #include "engine/base/log.h"
 
-namespace gse::neural {
+namespace gse::training {
 namespace {
 
 constexpr double CheckpointSeconds = 180;
@@ -285,4 +285,4 @@ void run_stage(Stage& stage, StageClock clock, const std::filesystem::path& work
     copy_parameters(team.ema.values(), stage.replicas[0]);
 }
 
-}  // namespace gse::neural
+}  // namespace gse::training

@@ -1,5 +1,5 @@
 // Words of captions to token ids.
-#include "engine/neural/api/starter_words.h"
+#include "engine/laboratory/starter/starter_words.h"
 
 #include <nlohmann/json.hpp>
 #include <string_view>
@@ -7,22 +7,7 @@
 #include "engine/base/error.h"
 #include "engine/base/json.h"
 
-namespace gse::neural {
-
-std::vector<std::string> split_caption(const std::string& text) {
-    std::vector<std::string> words;
-    std::string word;
-    for (const char letter : text + " ") {
-        if (letter != ' ' && letter != ',') {
-            word += letter;
-            continue;
-        }
-        if (!word.empty()) words.push_back(std::move(word));
-        word.clear();
-        if (letter == ',') words.emplace_back(",");
-    }
-    return words;
-}
+namespace gse::training {
 
 WordTable::WordTable(const StarterVocabulary& vocabulary) : bos_(vocabulary.bos), eos_(vocabulary.eos) {
     const auto json = parse_json(vocabulary.vocab_json, "the vocabulary");
@@ -40,4 +25,4 @@ int WordTable::id(const std::string& word) const {
     return found->second;
 }
 
-}  // namespace gse::neural
+}  // namespace gse::training

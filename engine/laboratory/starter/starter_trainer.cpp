@@ -1,15 +1,14 @@
 // Runs the stages of the starter model in order.
-#include "engine/neural/starter/starter_trainer.h"
+#include "engine/laboratory/starter/starter_trainer.h"
 
 #include <thread>
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/log.h"
-#include "engine/neural/diffusion/scene_views.h"
-#include "engine/neural/starter/starter_stages.h"
+#include "engine/laboratory/starter/starter_stages.h"
 
-namespace gse::neural {
+namespace gse::training {
 
 namespace {
 
@@ -68,17 +67,10 @@ namespace {
 bool trains(int steps, double minutes) { return steps > 0 || minutes > 0; }
 
 StarterTrainParameters checked(StarterTrainParameters parameters, const StarterSource& source) {
-    if (parameters.initial.empty() && parameters.shapes)
-        throw Error(ErrorCode::InvalidArgument, "a LoRA for shapes needs a model beside which it works",
-                    "name it with --initial");
     if (parameters.threads == 0)
         parameters.threads = parameters.device == "cpu"
                                  ? static_cast<int>(std::max(1u, std::thread::hardware_concurrency()))
                                  : 1;
-    if (parameters.shapes) {  // the model beside the LoRA stays as it is
-        parameters.vae_minutes = parameters.clip_minutes = 0;
-        parameters.vae_steps = parameters.clip_steps = 0;
-    }
     const bool all = trains(parameters.vae_steps, parameters.vae_minutes) &&
                      trains(parameters.unet_steps, parameters.unet_minutes);
     if (trains(parameters.clip_steps, parameters.clip_minutes) && source.twins() == nullptr)
@@ -129,7 +121,6 @@ void train_starter(const StarterTrainParameters& requested, const StarterSource&
         auto other = initial_parts(parameters.average, configs, vocabulary);
         average_networks(parts, other, parameters.average);
     }
-    if (parameters.shapes) parts.networks.unet = initial_shapes(parameters.initial, parts.networks.unet);
     std::filesystem::create_directories(work);
     StarterPictures pictures;
     if (new_vae || new_unet) pictures = load_or_render_pictures(parameters, source, work, job);
@@ -141,22 +132,16 @@ void train_starter(const StarterTrainParameters& requested, const StarterSource&
     log::info("latents have a standard deviation of {:.3f}", latents.deviation);
 
     configs.vae.scaling_factor = new_vae ? 1.0 / latents.deviation : parts.scaling_factor;
-    UNetTraining training{configs, parameters, pictures, latents, source, vocabulary, {}, {}, {}};
-    if (new_unet && parameters.shapes && source.before() != nullptr) {
-        training.before = load_or_render_pictures(parameters, *source.before(), work, job);
-        training.before_latents = encode_pictures(parts.vae, parameters, training.before);
-    }
+    UNetTraining training{configs, parameters, pictures, latents, source, vocabulary, {}};
     // The unfinished model can be tried while the training goes on.
     training.preview = [&](StarterNetworks& averaged) {
         export_starter(training, parts.vae, averaged, work / "preview");
     };
-    if (new_unet && parameters.shapes)
-        train_shapes(parts.networks, training, fresh_tokens(parameters.initial, vocabulary), work, job);
-    else if (new_unet) train_unet(parts.networks, training, work, job);
+    if (new_unet) train_unet(parts.networks, training, work, job);
     export_starter(training, parts.vae, parts.networks, output);
     pictures = {};
     add_clip(parameters, source, work, output / "clip", job);
     log::info("the model is in {}", output.string());
 }
 
-}  // namespace gse::neural
+}  // namespace gse::training

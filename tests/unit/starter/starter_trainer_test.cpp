@@ -11,17 +11,16 @@
 #include "engine/base/file.h"
 #include "engine/base/json.h"
 #include "engine/base/random.h"
-#include "engine/neural/diffusion/scene_views.h"
-#include "engine/neural/starter/starter_data.h"
-#include "engine/neural/starter/starter_trainer.h"
+#include "engine/laboratory/starter/starter_data.h"
+#include "engine/laboratory/starter/starter_trainer.h"
 #include "engine/neural/weights/config.h"
-#include "engine/neural/weights/lora.h"
 #include "engine/neural/weights/safetensors.h"
 #include "tests/test_paths.h"
 
 namespace {
 
 using namespace gse::neural;
+using namespace gse::training;
 
 const char* const ToyColours[] = {"red", "green", "blue"};
 
@@ -72,20 +71,15 @@ public:
         picture.rgb.assign(static_cast<std::size_t>(size * size * 3), 40);
         const int cells = size / 4;
         picture.coverage.assign(static_cast<std::size_t>(3 * cells * cells), 0);
-        if (has_outlines()) picture.outline.assign(static_cast<std::size_t>(size * size), 0);
         for (int y = layout.y; y < layout.y + size / 2; ++y)
             for (int x = layout.x; x < layout.x + size / 2; ++x) {
                 picture.rgb[static_cast<std::size_t>((y * size + x) * 3 + layout.colour)] = 230;
                 picture.coverage[static_cast<std::size_t>(cells * cells + (y / 4) * cells + x / 4)] = 255;
-                if (has_outlines()) picture.outline[static_cast<std::size_t>(y * size + x)] = 255;
             }
         return picture;
     }
-    /// `more`: words beside those of its captions. `blank`: what there is to see before its squares.
-    explicit ToySource(std::vector<std::string> more = {}, const StarterSource* blank = nullptr)
-        : more_(std::move(more)), blank_(blank) {}
-    const StarterSource* before() const override { return blank_; }
-    bool has_outlines() const override { return blank_ != nullptr; }
+    /// `more`: words beside those of its captions.
+    explicit ToySource(std::vector<std::string> more = {}) : more_(std::move(more)) {}
     StarterCaption caption(std::uint64_t index, std::uint64_t, bool) const override {
         const std::string colour = ToyColours[Layout(index, 32).colour];
         return {"a " + colour + " square, front view",
@@ -110,7 +104,6 @@ private:
     };
     ToyTwins twins_;
     std::vector<std::string> more_;
-    const StarterSource* blank_;
 };
 
 StarterTrainParameters toy_parameters() {
@@ -252,135 +245,32 @@ DOCTEST_TEST_CASE("a run that knows more words keeps what the model before it ma
     DOCTEST_CHECK_THROWS_WITH_AS(forget(), doctest::Contains("\"right\""), gse::Error);
 }
 
-DOCTEST_TEST_CASE("a LoRA for shapes leaves the model beside it as it is") {
-    const gse::test::ScratchFolder scratch;
-    const auto first = scratch.path() / "first", second = scratch.path() / "second";
-    auto parameters = toy_parameters();
-    parameters.vae_steps = parameters.unet_steps = parameters.clip_steps = 2;
-    train_starter(parameters, ToySource(), scratch.path() / "work1", first, {});
-    parameters.shapes = true;
-    DOCTEST_CHECK_THROWS_WITH_AS(train_starter(parameters, ToySource(), scratch.path() / "none", second, {}),
-                                 doctest::Contains("beside"), gse::Error);
-    parameters.initial = first.string();
-    parameters.unet_steps = 4;  // what is asked of the other stages does not count
-    train_starter(parameters, ToySource({"left", "right"}), scratch.path() / "work2", second, {});
-
-    for (const char* file :
-         {"vae/diffusion_pytorch_model.safetensors", "unet/diffusion_pytorch_model.safetensors"})
-        DOCTEST_CHECK_MESSAGE(gse::read_file(first / file) == gse::read_file(second / file), file);
-    const auto before = read_json_file(first / "tokenizer/vocab.json"),
-               now = read_json_file(second / "tokenizer/vocab.json");
-    const SafetensorsFile a(first / "text_encoder/model.safetensors"),
-        b(second / "text_encoder/model.safetensors");
-    for (const auto& [name, entry] : a.entries()) {
-        if (!name.ends_with("token_embedding.weight")) {
-            DOCTEST_CHECK_MESSAGE(torch::equal(a.tensor(name), b.tensor(name)), name);
-            continue;
-        }
-        for (const auto& [token, id] : before.items())
-            DOCTEST_CHECK_MESSAGE(torch::equal(a.tensor(name)[id.get<std::int64_t>()],
-                                               b.tensor(name)[now.at(token).get<std::int64_t>()]),
-                                  token);
-    }
-    auto facts = read_json_file(second / "gseditpro.json");
-    const auto lora = read_lora(second / facts.at("shape_lora").get<std::string>());
-    DOCTEST_CHECK(lora.text.empty());
-    DOCTEST_CHECK(!SafetensorsFile(second / "shape_cameras.safetensors")
-                       .contains("outline.conv_2.weight"));  // none was shown
-    DOCTEST_CHECK(lora.unet.size() > 10);
-    for (const auto& factor : lora.unet) DOCTEST_CHECK(factor.rank() <= parameters.shape_rank);
-    // Words that only tell it a side are none that it knows things by.
-    DOCTEST_CHECK(facts.at("vocabulary") == read_json_file(first / "gseditpro.json").at("vocabulary"));
-    DOCTEST_CHECK(!facts.contains("profile"));
-}
-
-DOCTEST_TEST_CASE(
-    "training of new shapes goes on from those that the model has, and shows it what was there") {
+DOCTEST_TEST_CASE("what draws new things goes along while the UNet beside it stays") {
     const gse::test::ScratchFolder scratch;
     const auto folder = [&](const char* name) { return scratch.path() / name; };
     auto parameters = toy_parameters();
     parameters.vae_steps = parameters.unet_steps = parameters.clip_steps = 2;
     train_starter(parameters, ToySource(), folder("work1"), folder("first"), {});
-    const ToyTwins blank;
-    parameters.shapes = true;
-    parameters.shape_rank = 1024;  // holds all of the change
-    parameters.unet_steps = 4;
-    parameters.initial = folder("first").string();
-    train_starter(parameters, ToySource({}, &blank), folder("work2"), folder("second"), {});
-    const SafetensorsFile inputs(folder("second") / "shape_cameras.safetensors");
-    DOCTEST_CHECK(inputs.tensor("conv_inpaint.weight").abs().sum().item<double>() > 0);
-    DOCTEST_CHECK(inputs.tensor("outline.conv_2.weight").abs().sum().item<double>() > 0);
-    // So small a step goes nowhere: what comes out is what went in.
-    parameters.unet_lr = 1e-12;
-    parameters.unet_steps = 1;
-    parameters.initial = folder("second").string();
-    train_starter(parameters, ToySource({}, &blank), folder("work3"), folder("third"), {});
-    const auto second = read_lora(folder("second") / "shapes.safetensors"),
-               third = read_lora(folder("third") / "shapes.safetensors");
-    DOCTEST_REQUIRE(second.unet.size() == third.unet.size());
-    constexpr double Half = 2e-3;  // both factors are written with 11 bits
-    for (std::size_t i = 0; i < second.unet.size(); ++i) {
-        const auto change = [](const LoraFactor& f) {
-            return f.scale() *
-                   torch::matmul(f.up.flatten(1).to(torch::kFloat), f.down.flatten(1).to(torch::kFloat));
-        };
-        const auto a = change(second.unet[i]), b = change(third.unet[i]);
-        DOCTEST_CHECK_MESSAGE((a - b).norm().item<double>() <= Half * a.norm().item<double>() + 1e-6,
-                              second.unet[i].layer);
-    }
-    const SafetensorsFile kept(folder("third") / "shape_cameras.safetensors");
-    for (const auto& [name, entry] : inputs.entries())
-        DOCTEST_CHECK_MESSAGE(torch::allclose(inputs.tensor(name).to(torch::kFloat),
-                                              kept.tensor(name).to(torch::kFloat), Half, 1e-6),
-                              name);
-}
-
-DOCTEST_TEST_CASE(
-    "training of new shapes goes on from a network of their own, and what trains another part takes it "
-    "along") {
-    const gse::test::ScratchFolder scratch;
-    const auto folder = [&](const char* name) { return scratch.path() / name; };
-    auto parameters = toy_parameters();
-    parameters.vae_steps = parameters.unet_steps = parameters.clip_steps = 2;
-    train_starter(parameters, ToySource(), folder("work1"), folder("first"), {});
-    const auto config = UNetConfig::from_json(read_json_file(folder("first") / "unet/config.json"), "config");
-    torch::manual_seed(4);
-    write_shape_unet(with_scene_inputs(UNet(config)), folder("first") / "own");
     auto facts = read_json_file(folder("first") / "gseditpro.json");
     facts["shape_unet"] = "own";
     facts["shape_views"] = 6;
     facts["viewpoint"] = "seen";
-    const std::string classifier = "what tells viewpoints";  // no run looks into it
+    const std::string weights = "what draws new things", classifier = "what tells viewpoints";  // never read
+    gse::write_file(folder("first") / "own/model.safetensors", weights);
     gse::write_file(folder("first") / "seen/model.safetensors", classifier);
     gse::write_file(folder("first") / "gseditpro.json", facts.dump());
 
-    const ToyTwins blank;
     parameters.initial = folder("first").string();
-    parameters.shapes = true;
-    parameters.unet_lr = 1e-12;  // so small a step goes nowhere
-    parameters.unet_steps = 1;
-    train_starter(parameters, ToySource({}, &blank), folder("work2"), folder("second"), {});
-    facts = read_json_file(folder("second") / "gseditpro.json");
-    DOCTEST_CHECK((facts.at("shape_unet") == "shapes" && facts.at("shape_views") == 6 &&
-                   !facts.contains("shape_lora")));
-    const auto before = load_shape_unet(folder("first") / "own")->named_parameters(),
-               after = load_shape_unet(folder("second") / "shapes")->named_parameters();
-    DOCTEST_REQUIRE(before.size() == after.size());
-    for (const auto& item : before)
-        DOCTEST_CHECK_MESSAGE(torch::allclose(item.value(), after[item.key()], 1e-3, 1e-6), item.key());
-
-    parameters.initial = folder("second").string();
-    parameters.shapes = false;
     parameters.vae_steps = parameters.unet_steps = 0;  // the image-text encoder alone
     parameters.vae_minutes = parameters.unet_minutes = 0;
-    train_starter(parameters, ToySource({}, &blank), folder("work3"), folder("third"), {});
-    DOCTEST_CHECK(read_json_file(folder("third") / "gseditpro.json").at("shape_unet") == "shapes");
-    const char* const file = "shapes/diffusion_pytorch_model.safetensors";
-    DOCTEST_CHECK(gse::read_file(folder("second") / file) == gse::read_file(folder("third") / file));
+    train_starter(parameters, ToySource(), folder("work2"), folder("second"), {});
+    facts = read_json_file(folder("second") / "gseditpro.json");
+    DOCTEST_CHECK((facts.at("shape_unet") == "own" && facts.at("shape_views") == 6));
+    DOCTEST_CHECK(gse::read_file(folder("second") / "own/model.safetensors") == weights);
     parameters.unet_steps = 1;  // another UNet beside it
-    train_starter(parameters, ToySource({}, &blank), folder("work4"), folder("fourth"), {});
-    DOCTEST_CHECK(!read_json_file(folder("fourth") / "gseditpro.json").contains("shape_unet"));
-    for (const char* name : {"second", "third", "fourth"}) {
+    train_starter(parameters, ToySource(), folder("work3"), folder("third"), {});
+    DOCTEST_CHECK(!read_json_file(folder("third") / "gseditpro.json").contains("shape_unet"));
+    for (const char* name : {"second", "third"}) {
         DOCTEST_CHECK(read_json_file(folder(name) / "gseditpro.json").at("viewpoint") == "seen");
         DOCTEST_CHECK(gse::read_file(folder(name) / "seen/model.safetensors") == classifier);
     }

@@ -2,10 +2,10 @@
 #include <cstring>
 
 #include "engine/base/random.h"
+#include "engine/laboratory/starter/starter_stages.h"
 #include "engine/neural/layers/parallel_for_batches.h"
-#include "engine/neural/starter/starter_stages.h"
 
-namespace gse::neural {
+namespace gse::training {
 namespace {
 
 constexpr double KlWeight = 5e-4;
@@ -102,4 +102,4 @@ StarterLatents encode_pictures(AutoencoderKl& vae, const StarterTrainParameters&
     return latents;
 }
 
-}  // namespace gse::neural
+}  // namespace gse::training

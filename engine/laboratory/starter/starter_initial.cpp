@@ -4,12 +4,10 @@
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/json.h"
-#include "engine/neural/diffusion/scene_views.h"
-#include "engine/neural/starter/starter_stages.h"
+#include "engine/laboratory/starter/starter_stages.h"
 #include "engine/neural/weights/key_map.h"
-#include "engine/neural/weights/lora.h"
 
-namespace gse::neural {
+namespace gse::training {
 namespace {
 
 constexpr const char* StructureHint = "train with the parameters of that model, or without --initial";
@@ -134,27 +132,6 @@ StarterParts initial_parts(const std::filesystem::path& folder, const StarterCon
     return parts;
 }
 
-UNet initial_shapes(const std::filesystem::path& folder, UNet unet) {
-    const auto path = folder / "gseditpro.json";
-    const Json facts = std::filesystem::exists(path) ? read_json_file(path) : Json::object();
-    if (facts.contains("shape_unet"))
-        return load_shape_unet(folder / facts.at("shape_unet").get<std::string>());
-    if (!facts.contains("shape_lora")) return with_scene_inputs(unet);
-    merge_lora(*unet, read_lora(folder / facts.at("shape_lora").get<std::string>()).unet, 1);
-    const auto inputs = facts.value("shape_cameras", std::string());
-    return inputs.empty() ? with_scene_inputs(unet)
-                          : with_scene_inputs(unet, SafetensorsFile(folder / inputs), true);
-}
-
-std::vector<std::int64_t> fresh_tokens(const std::filesystem::path& folder,
-                                       const StarterVocabulary& vocabulary) {
-    const auto rows = rows_before(folder, vocabulary);
-    std::vector<std::int64_t> fresh;
-    for (std::size_t row = 0; row < rows.size(); ++row)
-        if (rows[row] < 0) fresh.push_back(static_cast<std::int64_t>(row));
-    return fresh;
-}
-
 void average_networks(StarterParts& parts, StarterParts& other, const std::filesystem::path& folder) {
     const torch::NoGradGuard no_grad;
     if (!same_weights(*parts.vae, *other.vae) || parts.scaling_factor != other.scaling_factor)
@@ -164,4 +141,4 @@ void average_networks(StarterParts& parts, StarterParts& other, const std::files
     add_half(*parts.networks.unet, *other.networks.unet);
 }
 
-}  // namespace gse::neural
+}  // namespace gse::training
