@@ -208,43 +208,54 @@ SamModelImpl::SamModelImpl(const SamShape& shape, const WeightOptions& options) 
     mask_decoder_ = register_module("mask_decoder", SamMaskDecoder(shape.decoder, options));
 }
 
-double SamModelImpl::scale(std::int64_t height, std::int64_t width) const {
-    return static_cast<double>(shape_.image_size()) / static_cast<double>(std::max(height, width));
-}
-
 namespace {
 
-std::int64_t scaled(std::int64_t length, double scale) {
-    return std::max<std::int64_t>(1, static_cast<std::int64_t>(static_cast<double>(length) * scale + 0.5));
+struct Sides {
+    std::int64_t height, width;
+};
+
+/// Sides in whole pixels of the picture whose longer one becomes `image_size`
+/// (ResizeLongestSide.get_preprocess_shape).
+Sides resized(std::int64_t image_size, std::int64_t height, std::int64_t width) {
+    const double ratio = static_cast<double>(image_size) / static_cast<double>(std::max(height, width));
+    const auto side = [&](std::int64_t length) {
+        return std::max<std::int64_t>(1,
+                                      static_cast<std::int64_t>(static_cast<double>(length) * ratio + 0.5));
+    };
+    return {side(height), side(width)};
 }
 
 }  // namespace
 
+SamScale sam_scale(std::int64_t image_size, std::int64_t height, std::int64_t width) {
+    const auto to = resized(image_size, height, width);
+    return {static_cast<double>(to.width) / static_cast<double>(width),
+            static_cast<double>(to.height) / static_cast<double>(height)};
+}
+
 torch::Tensor SamModelImpl::pixels(const torch::Tensor& picture) const {
     const auto height = picture.size(2), width = picture.size(3), size = shape_.image_size();
-    const double factor = scale(height, width);
+    const auto to = resized(size, height, width);
     const auto channels = [&](std::initializer_list<double> values) {
         return torch::tensor(std::vector<double>(values), torch::kFloat32)
             .to(picture.device())
             .view({1, 3, 1, 1});
     };
-    auto resized = (picture.clamp(0, 1) * 255).round();
+    auto values = (picture.clamp(0, 1) * 255).round();
     // Rounded after each direction, as Pillow resizes.
-    resized =
-        at::_upsample_bilinear2d_aa(resized.contiguous(), {height, scaled(width, factor)}, false).round();
-    resized =
-        at::_upsample_bilinear2d_aa(resized, {scaled(height, factor), scaled(width, factor)}, false).round();
+    values = at::_upsample_bilinear2d_aa(values.contiguous(), {height, to.width}, false).round();
+    values = at::_upsample_bilinear2d_aa(values, {to.height, to.width}, false).round();
     const auto normalised =
-        (resized - channels({123.675, 116.28, 103.53})) / channels({58.395, 57.12, 57.375});
-    return torch::constant_pad_nd(normalised, {0, size - resized.size(3), 0, size - resized.size(2)});
+        (values - channels({123.675, 116.28, 103.53})) / channels({58.395, 57.12, 57.375});
+    return torch::constant_pad_nd(normalised, {0, size - to.width, 0, size - to.height});
 }
 
 torch::Tensor SamModelImpl::enlarge(const torch::Tensor& logits, std::int64_t height,
                                     std::int64_t width) const {
     const auto size = shape_.image_size();
-    const double factor = scale(height, width);
+    const auto from = resized(size, height, width);
     const auto whole = torch::upsample_bilinear2d(logits, {size, size}, false);
-    const auto seen = whole.narrow(2, 0, scaled(height, factor)).narrow(3, 0, scaled(width, factor));
+    const auto seen = whole.narrow(2, 0, from.height).narrow(3, 0, from.width);
     return torch::upsample_bilinear2d(seen.contiguous(), {height, width}, false);
 }
 

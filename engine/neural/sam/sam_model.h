@@ -29,6 +29,14 @@ LoadPlan sam_plan(const KeyShapes& shapes);
 SamShape infer_sam_shape(const KeyShapes& shapes, const LoadPlan& plan, const std::filesystem::path& path,
                          std::int64_t mobile_image_size = MobileSamImageSize);
 
+/// Pixels of the encoder's picture per pixel of a picture, along each side.
+struct SamScale {
+    double x = 1, y = 1;
+};
+/// The scale of a picture whose longer side becomes `image_size` pixels. Both sides are rounded to whole
+/// pixels, so the two ratios differ (segment-anything, ResizeLongestSide.apply_coords).
+SamScale sam_scale(std::int64_t image_size, std::int64_t height, std::int64_t width);
+
 class SamModelImpl : public torch::nn::Module {
 public:
     explicit SamModelImpl(const SamShape& shape, const WeightOptions& options = {});
@@ -48,8 +56,10 @@ public:
     }
     /// Logits [B,n,s,s] at the size of the picture [B,n,height,width].
     torch::Tensor enlarge(const torch::Tensor& logits, std::int64_t height, std::int64_t width) const;
-    /// Pixels of the encoder's picture per pixel of one of this size.
-    double scale(std::int64_t height, std::int64_t width) const;
+    /// sam_scale() of the encoder's picture.
+    SamScale scale(std::int64_t height, std::int64_t width) const {
+        return sam_scale(shape_.image_size(), height, width);
+    }
 
 private:
     SamShape shape_;

@@ -42,15 +42,14 @@ public:
     std::string name() const override { return model_->shape().name; }
 
 private:
-    /// A click at x (pixel centres at .5) is at x s in the encoder's picture, and its prompts have their
-    /// centres at 0.
+    /// Places in pixels of the encoder's picture. Here pixels have their centres at .5, in prompts at 0.
     SamPrompts prompts(const Image& image, const std::vector<edit::PointPrompt>& points,
                        const std::optional<edit::BoxPrompt>& box) const {
-        const double scale = model_->scale(image.height, image.width);
+        const SamScale scale = model_->scale(image.height, image.width);
         SamPrompts prompts;
         if (points.empty()) {
             prompts.boxes = torch::tensor({box->x0, box->y0, box->x1, box->y1}, torch::kFloat32)
-                                .mul_(scale)
+                                .mul_(torch::tensor({scale.x, scale.y, scale.x, scale.y}, torch::kFloat32))
                                 .sub_(0.5)
                                 .view({1, 4})
                                 .to(device_);
@@ -59,8 +58,8 @@ private:
         std::vector<float> places;
         std::vector<std::int64_t> labels;
         for (const auto& point : points) {
-            places.push_back(static_cast<float>(point.x * scale - 0.5));
-            places.push_back(static_cast<float>(point.y * scale - 0.5));
+            places.push_back(static_cast<float>(point.x * scale.x - 0.5));
+            places.push_back(static_cast<float>(point.y * scale.y - 0.5));
             labels.push_back(point.positive ? 1 : 0);
         }
         prompts.points = torch::tensor(places).view({1, -1, 2}).to(device_);

@@ -34,23 +34,26 @@ constexpr Prompt Prompts[] = {
     {"none", true},  {"point_mask_input", true},   {"batch_boxes", false}};
 
 /// The prompt of that name, in pixels of the encoder's picture as the reference scales them.
-SamPrompts prompts_of(const SafetensorsFile& io, const std::string& name, double scale) {
+SamPrompts prompts_of(const SafetensorsFile& io, const std::string& name, const SamScale& to) {
     SamPrompts prompts;
+    const auto scale = torch::tensor({to.x, to.y}, torch::kFloat32);
     const bool with_mask = name == "point_mask_input";
     const std::string clicks = with_mask && !io.contains(name + ".point_coords") ? "point" : name;
     if (io.contains(clicks + ".point_coords")) {
         prompts.points = (io.tensor(clicks + ".point_coords") * scale).unsqueeze(0);
         prompts.labels = io.tensor(clicks + ".point_labels").unsqueeze(0);
     }
-    if (io.contains(name + ".box")) prompts.boxes = (io.tensor(name + ".box") * scale).view({1, 4});
-    if (io.contains(name + ".boxes")) prompts.boxes = io.tensor(name + ".boxes") * scale;
+    if (io.contains(name + ".box"))
+        prompts.boxes = (io.tensor(name + ".box").view({2, 2}) * scale).view({1, 4});
+    if (io.contains(name + ".boxes"))
+        prompts.boxes = (io.tensor(name + ".boxes").view({-1, 2, 2}) * scale).view({-1, 4});
     if (with_mask) prompts.mask = io.tensor(name + ".mask_input");
     return prompts;
 }
 
 void check_prompts(const SafetensorsFile& io, const SamModel& model, Margins& margins, double tolerance) {
     const auto picture = io.tensor("image_u8_hwc");
-    const double scale = model->scale(picture.size(0), picture.size(1));
+    const auto scale = model->scale(picture.size(0), picture.size(1));
     for (const auto& [name, several] : Prompts) {
         const std::string prefix = std::string(name) + ".";
         const auto encoded = model->encode(prompts_of(io, name, scale));
