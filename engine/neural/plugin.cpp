@@ -6,9 +6,9 @@
 
 #include "engine/neural/api/api.h"
 #include "engine/neural/clip/text_segmenter.h"
-#include "engine/neural/diffusion/model.h"
 #include "engine/neural/layers/buffer_cache.h"
-#include "engine/neural/layers/torch_errors.h"
+#include "engine/neural/layers/devices.h"
+#include "engine/neural/model.h"
 #include "engine/neural/sam/sam_segmenter.h"
 
 namespace gse::neural {

@@ -219,7 +219,7 @@ def self_test():
         "engine/edit/b.cpp": ("// x\n#include <torch/torch.h>\n", "torch/torch.h may only"),
         "engine/edit/n.cpp": ("// x\n#include \"engine/neural/diffusion/unet.h\"\n", "must not include engine/neural"),
         "engine/io/c.h": ("// x\n#include <opencv2/core.hpp>\n", "OpenCV must not"),
-        "ui/d.cpp": ("// x\n#include \"engine/neural/diffusion/model.h\"\n", "ui must not include"),
+        "ui/d.cpp": ("// x\n#include \"engine/neural/model.h\"\n", "ui must not include"),
         "engine/base/e.cpp": ("int x;\n", "first line must say"),
         "engine/base/f.cpp": ("// x\n" + "int x;\n" * 700, "lines (at most 600)"),
         "engine/base/g.cpp": ("// x\nvoid f(int a) {\n" + "    a += 1;\n" * 70 + "}\n", "a function of 72 lines"),

@@ -2,7 +2,7 @@
 #include <torch/torch.h>
 
 #include "engine/laboratory/starter/starter_trainer.h"
-#include "engine/neural/diffusion/model.h"
+#include "engine/neural/layers/devices.h"
 #include "engine/neural/layers/torch_errors.h"
 
 extern "C" void gse_train_starter(const gse::training::StarterTrainParameters& parameters,

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "engine/neural/weights/config.h"
+#include "engine/neural/api/config.h"
 
 namespace gse::neural {
 

@@ -10,9 +10,9 @@
 #include "engine/base/safetensors_header.h"
 #include "engine/edit/request/request.h"
 #include "engine/neural/api/attention_parameters.h"
+#include "engine/neural/api/config.h"
 #include "engine/neural/api/dreambooth_parameters.h"
 #include "engine/neural/api/sds_parameters.h"
-#include "engine/neural/weights/config.h"
 
 namespace gse::neural {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "engine/neural/diffusion/tokenizer.h"
-#include "engine/neural/weights/config.h"
+#include "engine/neural/api/config.h"
+#include "engine/neural/api/tokenizer.h"
 
 namespace gse::neural {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "engine/base/error.h"
 #include "engine/neural/api/known_sentence.h"
+#include "engine/neural/api/tokenizer.h"
 #include "engine/neural/clip/viewpoint_model.h"
-#include "engine/neural/diffusion/tokenizer.h"
 #include "engine/neural/layers/images.h"
 #include "engine/neural/layers/torch_errors.h"
 #include "engine/neural/weights/safetensors.h"

@@ -9,12 +9,12 @@
 
 #include "engine/base/check.h"
 #include "engine/base/error.h"
+#include "engine/neural/api/tokenizer.h"
 #include "engine/neural/clip/clipseg_model.h"
-#include "engine/neural/diffusion/picture_cache.h"
-#include "engine/neural/diffusion/tokenizer.h"
+#include "engine/neural/layers/devices.h"
 #include "engine/neural/layers/images.h"
+#include "engine/neural/layers/picture_cache.h"
 #include "engine/neural/layers/torch_errors.h"
-#include "engine/neural/weights/model_bundle.h"
 #include "engine/neural/weights/tensor_file.h"
 
 namespace gse::neural {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "engine/base/image.h"
+#include "engine/neural/api/config.h"
 #include "engine/neural/layers/blocks.h"
-#include "engine/neural/weights/config.h"
 
 namespace gse::neural {
 

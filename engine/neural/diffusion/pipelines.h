@@ -6,7 +6,7 @@
 #include "engine/base/progress.h"
 #include "engine/base/random.h"
 #include "engine/neural/diffusion/conditioning.h"
-#include "engine/neural/weights/model_bundle.h"
+#include "engine/neural/diffusion/model_bundle.h"
 
 namespace gse::neural {
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "engine/neural/weights/config.h"
+#include "engine/neural/api/config.h"
 
 namespace gse::neural {
 

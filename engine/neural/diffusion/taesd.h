@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
+#include "engine/neural/api/config.h"
 #include "engine/neural/layers/layers.h"
-#include "engine/neural/weights/config.h"
 
 namespace gse::neural {
 

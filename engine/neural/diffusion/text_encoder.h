@@ -1,8 +1,8 @@
 // The CLIP text encoder of Stable Diffusion (CLIPTextModel, CLIPTextModelWithProjection).
 #pragma once
 
+#include "engine/neural/api/config.h"
 #include "engine/neural/layers/layers.h"
-#include "engine/neural/weights/config.h"
 
 namespace gse::neural {
 

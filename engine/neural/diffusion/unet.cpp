@@ -5,7 +5,7 @@
 
 #include "engine/base/check.h"
 #include "engine/neural/api/network_use.h"
-#include "engine/neural/layers/transformer.h"
+#include "engine/neural/diffusion/transformer.h"
 
 namespace gse::neural {
 

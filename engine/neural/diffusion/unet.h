@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/neural/api/config.h"
 #include "engine/neural/layers/blocks.h"
-#include "engine/neural/weights/config.h"
 
 namespace gse::neural {
 

@@ -1,8 +1,8 @@
 // The KL autoencoder of Stable Diffusion (AutoencoderKL).
 #pragma once
 
+#include "engine/neural/api/config.h"
 #include "engine/neural/layers/blocks.h"
-#include "engine/neural/weights/config.h"
 
 namespace gse::neural {
 

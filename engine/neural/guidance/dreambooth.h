@@ -11,8 +11,8 @@
 #include "engine/base/progress.h"
 #include "engine/base/thread_pool.h"
 #include "engine/neural/api/dreambooth_parameters.h"
+#include "engine/neural/diffusion/model_bundle.h"
 #include "engine/neural/weights/lora.h"
-#include "engine/neural/weights/model_bundle.h"
 #include "engine/neural/weights/safetensors.h"
 
 namespace gse::neural {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "engine/neural/weights/config.h"
+#include "engine/neural/api/config.h"
 
 namespace gse::neural {
 

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "engine/neural/weights/config.h"
+#include "engine/neural/api/config.h"
 
 namespace gse::neural {
 

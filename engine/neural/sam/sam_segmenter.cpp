@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "engine/base/check.h"
-#include "engine/neural/diffusion/picture_cache.h"
+#include "engine/neural/layers/devices.h"
 #include "engine/neural/layers/images.h"
+#include "engine/neural/layers/picture_cache.h"
 #include "engine/neural/layers/torch_errors.h"
 #include "engine/neural/sam/sam_model.h"
-#include "engine/neural/weights/model_bundle.h"
 
 namespace gse::neural {
 namespace {

@@ -1,7 +1,7 @@
 // Where the networks' parameters are found in each of the layouts that Stable Diffusion weights come in.
 #pragma once
 
-#include "engine/neural/weights/config.h"
+#include "engine/neural/api/config.h"
 #include "engine/neural/weights/safetensors.h"
 #include "engine/neural/weights/weights.h"
 

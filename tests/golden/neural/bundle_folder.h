@@ -2,7 +2,7 @@
 // encoder and tokenizer.
 #pragma once
 
-#include "engine/neural/weights/model_bundle.h"
+#include "engine/neural/diffusion/model_bundle.h"
 #include "tests/golden/neural/golden_case.h"
 
 namespace gse::test {

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <string>
 
-#include "engine/neural/weights/config.h"
+#include "engine/neural/api/config.h"
 #include "engine/neural/weights/safetensors.h"
 #include "engine/neural/weights/weights.h"
 #include "tests/test_paths.h"

@@ -4,8 +4,8 @@
 #include <numeric>
 
 #include "engine/base/error.h"
+#include "engine/neural/api/tokenizer.h"
 #include "engine/neural/diffusion/text_encoder.h"
-#include "engine/neural/diffusion/tokenizer.h"
 #include "engine/neural/diffusion/unet.h"
 #include "engine/neural/diffusion/vae.h"
 #include "engine/neural/weights/key_map.h"

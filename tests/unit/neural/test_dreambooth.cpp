@@ -3,9 +3,9 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/neural/diffusion/model.h"
 #include "engine/neural/diffusion/pipelines.h"
 #include "engine/neural/guidance/dreambooth.h"
+#include "engine/neural/model.h"
 #include "tests/unit/neural/tiny_model.h"
 
 using namespace gse;

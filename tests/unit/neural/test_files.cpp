@@ -1,5 +1,5 @@
 // Weights files, model folders and the tokenizer: round trips and what is refused with which words.
-#include "engine/neural/diffusion/model.h"
+#include "engine/neural/model.h"
 #include "engine/neural/weights/key_map.h"
 #include "tests/unit/neural/quantized.h"
 #include "tests/unit/neural/tiny_model.h"

@@ -4,10 +4,10 @@
 #include <limits>
 
 #include "engine/neural/api/network_use.h"
-#include "engine/neural/diffusion/model.h"
 #include "engine/neural/guidance/attention_source.h"
 #include "engine/neural/guidance/sds_guidance.h"
 #include "engine/neural/layers/images.h"
+#include "engine/neural/model.h"
 #include "tests/unit/neural/tiny_model.h"
 
 using namespace gse;

@@ -3,8 +3,8 @@
 #include "engine/neural/api/model_profile.h"
 #include "engine/neural/api/network_use.h"
 #include "engine/neural/diffusion/conditioning.h"
-#include "engine/neural/diffusion/model.h"
 #include "engine/neural/guidance/multi_view_editor.h"
+#include "engine/neural/model.h"
 #include "tests/unit/neural/tiny_model.h"
 #include "tests/unit/neural/wall_views.h"
 

@@ -4,10 +4,10 @@
 
 #include "engine/edit/request/method_fields.h"
 #include "engine/neural/api/network_use.h"
-#include "engine/neural/diffusion/model.h"
 #include "engine/neural/diffusion/scene_views.h"
 #include "engine/neural/guidance/dreambooth.h"
 #include "engine/neural/guidance/multi_view_editor.h"
+#include "engine/neural/model.h"
 #include "tests/unit/neural/quantized.h"
 #include "tests/unit/neural/tiny_model.h"
 #include "tests/unit/neural/wall_views.h"

@@ -7,7 +7,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
-#include "engine/neural/weights/model_bundle.h"
+#include "engine/neural/diffusion/model_bundle.h"
 #include "engine/neural/weights/safetensors.h"
 #include "tests/test_paths.h"
 

@@ -13,7 +13,7 @@
 #include "engine/base/random.h"
 #include "engine/laboratory/starter/starter_data.h"
 #include "engine/laboratory/starter/starter_trainer.h"
-#include "engine/neural/weights/config.h"
+#include "engine/neural/api/config.h"
 #include "engine/neural/weights/safetensors.h"
 #include "tests/test_paths.h"
 

@@ -1,5 +1,5 @@
 // Finding, checking and loading the parts of a text-to-image model.
-#include "engine/neural/weights/model_bundle.h"
+#include "engine/neural/diffusion/model_bundle.h"
 #include "engine/neural/diffusion/shared_tokenizer.h"
 
 #include <fmt/format.h>
@@ -393,20 +393,6 @@ void check_lora(const std::filesystem::path& model, const LoraWeights& weights) 
     const WeightOptions described{torch::kMeta, torch::kFloat32, false};
     check_lora(*UNet(parts.unet, described), weights.unet, weights.path);
     check_lora(*ClipTextEncoder(parts.text, described), weights.text, weights.path);
-}
-
-torch::Device parse_device(const std::string& name) {
-    if (name == "cpu") return torch::kCPU;
-    const bool numbered = name.starts_with("cuda:") && name.size() > 5 && name.size() < 8 &&
-                          name.find_first_not_of("0123456789", 5) == std::string::npos;
-    if (name != "cuda" && !numbered)
-        throw Error(ErrorCode::InvalidArgument, fmt::format("\"{}\" is not a device", name),
-                    "use cpu, cuda or cuda:1");
-    const int index = numbered ? std::stoi(name.substr(5)) : 0;
-    if (!torch::cuda::is_available() || index >= static_cast<int>(torch::cuda::device_count()))
-        throw Error(ErrorCode::InvalidArgument, fmt::format("there is no device \"{}\" here", name),
-                    "this libtorch sees no such GPU; use cpu");
-    return torch::Device(torch::kCUDA, static_cast<c10::DeviceIndex>(index));
 }
 
 }  // namespace gse::neural

@@ -1,5 +1,5 @@
 // Spatial transformer of the UNet.
-#include "engine/neural/layers/transformer.h"
+#include "engine/neural/diffusion/transformer.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // Reading and writing the networks' configurations; what the code does not implement is refused by name.
-#include "engine/neural/weights/config.h"
+#include "engine/neural/api/config.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

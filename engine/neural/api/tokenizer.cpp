@@ -1,5 +1,5 @@
 // CLIP tokenizer: normalisation with ICU, splitting, byte-pair merging.
-#include "engine/neural/diffusion/tokenizer.h"
+#include "engine/neural/api/tokenizer.h"
 
 #include <fmt/format.h>
 #include <unicode/locid.h>
@@ -14,7 +14,7 @@
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/json.h"
-#include "engine/neural/weights/config.h"
+#include "engine/neural/api/config.h"
 
 namespace gse::neural {
 namespace {

@@ -13,13 +13,4 @@ inline std::unique_ptr<TextToImage> load_model(const std::filesystem::path& path
     return load_model(path, ModelOptions{device});
 }
 
-/// Threads inside one network operation; 0 = one per hardware thread. More threads than free cores make small
-/// networks slower, not faster.
-void set_threads(int count);
-
-/// Threads of OpenBLAS, which has its own beside torch's; nothing happens with another library.
-void set_blas_threads(int count);
-/// One, unless a model that was loaded has set them: for work that callers share out themselves.
-void prefer_one_blas_thread();
-
 }  // namespace gse::neural

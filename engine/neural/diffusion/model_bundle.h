@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "engine/neural/api/bundle_kind.h"
+#include "engine/neural/api/tokenizer.h"
 #include "engine/neural/diffusion/schedulers.h"
 #include "engine/neural/diffusion/taesd.h"
 #include "engine/neural/diffusion/text_encoder.h"
-#include "engine/neural/diffusion/tokenizer.h"
 #include "engine/neural/diffusion/unet.h"
 #include "engine/neural/diffusion/vae.h"
 #include "engine/neural/weights/lora.h"
@@ -114,8 +114,5 @@ void check_lora(const std::filesystem::path& model, const LoraWeights& weights);
 
 /// Checks that every file is there and every tensor has the right name and shape, without reading any weight.
 ModelDescription describe_model(const std::filesystem::path& path);
-
-/// "cpu", "cuda", "cuda:1". Throws Error (InvalidArgument) for others, or when there is no such device.
-torch::Device parse_device(const std::string& name);
 
 }  // namespace gse::neural

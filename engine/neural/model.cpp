@@ -1,12 +1,8 @@
 // A loaded model behind the torch-free interface.
-#include "engine/neural/diffusion/model.h"
+#include "engine/neural/model.h"
 
 #include <algorithm>
-#include <atomic>
-#include <cstdlib>
 #include <mutex>
-#include <regex>
-#include <thread>
 
 #include "engine/base/error.h"
 #include "engine/base/log.h"
@@ -17,13 +13,11 @@
 #include "engine/neural/guidance/multi_view_editor.h"
 #include "engine/neural/guidance/sds_guidance.h"
 #include "engine/neural/layers/buffer_cache.h"
+#include "engine/neural/layers/devices.h"
 #include "engine/neural/layers/images.h"
 #include "engine/neural/layers/parallel_for_batches.h"
 #include "engine/neural/layers/torch_errors.h"
 #include "engine/neural/weights/safetensors.h"
-
-// OpenBLAS has this, other libraries behind torch do not.
-extern "C" void openblas_set_num_threads(int count) __attribute__((weak));
 
 namespace gse::neural {
 namespace {
@@ -221,39 +215,7 @@ private:
 
 }  // namespace
 
-namespace {
-
-std::atomic<bool> blas_threads_set = false;
-
-}  // namespace
-
-void set_blas_threads(int count) {
-    blas_threads_set = true;
-    if (openblas_set_num_threads != nullptr) openblas_set_num_threads(count);
-}
-
-void prefer_one_blas_thread() {
-    if (!blas_threads_set && openblas_set_num_threads != nullptr) openblas_set_num_threads(1);
-}
-
-std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
-
-std::uint64_t refused_bytes(const std::string& text) {
-    static const std::regex pattern("ried to allocate ([0-9.]+) ?([KMG]i)?[Bb]");
-    std::smatch found;
-    if (!std::regex_search(text, found, pattern)) return 0;
-    const std::string unit = found[2];
-    const double factor = unit == "Ki"   ? 1024.0
-                          : unit == "Mi" ? 1048576.0
-                          : unit == "Gi" ? 1073741824.0
-                                         : 1.0;
-    return static_cast<std::uint64_t>(std::strtod(found[1].str().c_str(), nullptr) * factor);
-}
-
-void set_threads(int count) {
-    const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-    torch::set_num_threads(count > 0 ? count : cores);
-}
+namespace {}  // namespace
 
 std::unique_ptr<TextToImage> load_model(const std::filesystem::path& path, const ModelOptions& options) {
     keep_buffers();
