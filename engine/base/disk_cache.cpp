@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/base/digest.h"
+#include "engine/base/content_hash.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/leftover.h"
@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view Magic = "GSECACH1";  // the last letter is the version of the layout
+constexpr std::string_view Magic = "GSECACH2";  // the last letter is the version of the layout
 constexpr std::string_view Ending = ".answer", PendingEnding = ".pending";
 constexpr auto PendingAge =
     std::chrono::hours(1);  // a file being written that is older was left by a killed writer
@@ -41,19 +41,19 @@ struct Entry {
 };
 
 fs::path entry_path(const fs::path& folder, std::string_view question) {
-    Digest digest;
-    digest.text(question);
-    return folder / (digest.hex() + std::string(Ending));
+    ContentHash hash;
+    hash.text(question);
+    return folder / (hash.key().hex() + std::string(Ending));
 }
 
 void seal(Header& header, std::string_view question, std::string_view answer) {
     std::copy(Magic.begin(), Magic.end(), header.magic);
     header.question_bytes = question.size();
-    Digest digest;
-    digest.text(question);
-    digest.text(answer);
-    const auto value = digest.value();
-    std::copy(value.begin(), value.end(), header.digest);
+    ContentHash hash;
+    hash.text(question);
+    hash.text(answer);
+    const auto key = hash.key();
+    header.digest[0] = key.low, header.digest[1] = key.high;
 }
 
 /// The answer in the bytes of an entry, where they are whole and answer this question.

@@ -105,9 +105,9 @@ public:
 
     TunedModel tune(const DreamBoothParameters& parameters, std::span<const Image> instance,
                     const std::string& instance_prompt, const std::string& class_prompt,
-                    const JobControl& job, AnswerCache* memory) const override {
+                    const JobControl& job, AnswerCache* cache) const override {
         auto result = guard_torch("tuning the model", [&] {
-            return run_dreambooth(*loaded_, parameters, {instance, instance_prompt, class_prompt, memory},
+            return run_dreambooth(*loaded_, parameters, {instance, instance_prompt, class_prompt, cache},
                                   job);
         });
         return {std::make_shared<Model>(loaded_, std::move(result.bundle), std::move(result.lora), fast_),

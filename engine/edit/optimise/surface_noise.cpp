@@ -3,30 +3,44 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "engine/base/check.h"
-#include "engine/base/hash.h"
 #include "engine/base/random.h"
 #include "engine/math/unproject.h"
 
 namespace gse::edit {
 namespace {
 
+/// Seeds a voxel's noise: FNV-1a over words with a mix. Edits of earlier versions come out bit by bit only
+/// with exactly this hash.
+std::uint64_t mixed(std::uint64_t value, std::uint64_t word) {
+    value = (value ^ word) * 0x100000001b3ULL;
+    return value ^ value >> 29;
+}
+constexpr std::uint64_t FirstValue = 0xcbf29ce484222325ULL;
+
 std::uint64_t voxel_of(const Vec3& point, double voxel) {
-    Hash key;
+    std::uint64_t value = FirstValue;
     for (int axis = 0; axis < 3; ++axis)
-        key.add(static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(point[axis] / voxel))));
-    return key.value();
+        value = mixed(value,
+                      static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(point[axis] / voxel))));
+    return value;
 }
 
 std::uint64_t private_voxel(std::uint64_t view, int cell_x, int cell_y) {
-    Hash key;
-    key.text("nothing there");
+    constexpr std::string_view nothing = "nothing there";
+    std::uint64_t first_word = 0;
+    std::memcpy(&first_word, nothing.data(), sizeof first_word);
+    std::uint64_t value = mixed(mixed(FirstValue, nothing.size()), first_word);
+    for (const char letter : nothing.substr(sizeof first_word))
+        value = mixed(value, static_cast<unsigned char>(letter));
     for (const auto part : {view, static_cast<std::uint64_t>(cell_x), static_cast<std::uint64_t>(cell_y)})
-        key.add(part);
-    return key.value();
+        value = mixed(value, part);
+    return value;
 }
 
 /// World point of a pixel's surface.

@@ -2,16 +2,16 @@
 // networks, so that a threshold can be moved freely.
 #pragma once
 
-#include <cstdint>
+#include <limits>
 #include <memory>
-#include <unordered_map>
 
+#include "engine/base/memory_cache.h"
 #include "engine/edit/interfaces/interfaces.h"
 
 namespace gse::edit {
 
-/// Of everything that a query asks, picture included.
-std::uint64_t question_hash(const AttentionQuery& query);
+/// Key of everything that a query asks, picture included.
+ContentKey key_of(const AttentionQuery& query);
 
 class CachedAttention : public AttentionSource {
 public:
@@ -25,7 +25,7 @@ public:
 
 private:
     std::unique_ptr<AttentionSource> source_;
-    std::unordered_map<std::uint64_t, std::vector<Image>> answers_;
+    MemoryCache<std::vector<Image>> answers_{std::numeric_limits<std::size_t>::max()};
     std::size_t asked_ = 0;
 };
 

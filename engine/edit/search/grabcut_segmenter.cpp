@@ -4,12 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <mutex>
-#include <unordered_map>
 
 #include "engine/base/check.h"
 #include "engine/base/error.h"
-#include "engine/base/hash.h"
+#include "engine/base/memory_cache.h"
 
 #ifdef GSE_HAVE_OPENCV
 #include <opencv2/core.hpp>
@@ -117,18 +115,14 @@ private:
 
     /// A threshold that is dragged leaves the marks of many views as they are: those are not cut again.
     void cut_once(const Image& image, cv::Mat& marks) {
-        Hash question;
+        ContentHash question;
         question.image(image);
         question.bytes(marks.data, marks.total());
-        {
-            const std::lock_guard lock(mutex_);
-            const auto known = answers_.find(question.value());
-            if (known != answers_.end()) return known->second.copyTo(marks);
-        }
-        cut(image, marks);
-        const std::lock_guard lock(mutex_);
-        if (answers_.size() >= MostAnswers) answers_.clear();
-        answers_.emplace(question.value(), marks.clone());
+        const cv::Mat answer = answers_.get(question.key(), [&] {
+            cut(image, marks);
+            return marks.clone();
+        });
+        answer.copyTo(marks);
     }
 
     void cut(const Image& image, cv::Mat& marks) const {
@@ -149,8 +143,7 @@ private:
     }
 
     GrabCutParameters parameters_;
-    std::mutex mutex_;
-    std::unordered_map<std::uint64_t, cv::Mat> answers_;  // marks before and after, [H,W] bytes each
+    MemoryCache<cv::Mat> answers_{MostAnswers};  // marks after the cut, [H,W] bytes
 };
 
 #endif

@@ -46,9 +46,9 @@ constexpr std::uint64_t FirstAsking = 5000;
 constexpr std::uint64_t Drawing = 8000;
 constexpr std::uint64_t SecondAsking = 9000;  // other noise than the first time
 // Of the threshold (at most half-way from it to the most there is): attention of what is not there yet
-// reaches wider than what will be. Of 8 added things each on seeds 55 | 56 | 57 | 58 (`gseditpro-lab eval --kinds
-// add --edits 8`) 1 changed 2.5 | 2.5 | 1.9 | 1.0 % of the pixels outside the true part, 1.2 changed 1.8
-// | 1.4 | 1.8 | 0.7 %; outlines (mean IoU .40) and error removed (13 %) were the same.
+// reaches wider than what will be. Of 8 added things each on seeds 55 | 56 | 57 | 58 (`gseditpro-lab eval
+// --kinds add --edits 8`) 1 changed 2.5 | 2.5 | 1.9 | 1.0 % of the pixels outside the true part, 1.2
+// changed 1.8 | 1.4 | 1.8 | 0.7 %; outlines (mean IoU .40) and error removed (13 %) were the same.
 constexpr double AbsentLevel = 1.2;
 
 /// One word to look for.
@@ -105,13 +105,13 @@ private:
     }
 
     void render_all() {
-        if (tools_.memory != nullptr && tools_.memory->renders.size() == input_.views.size()) {
-            seen_ = *tools_.memory;
+        if (tools_.cache != nullptr && tools_.cache->renders.size() == input_.views.size()) {
+            seen_ = *tools_.cache;
             return;
         }
         seen_ = render_views(input_.gaussians, input_.views, input_.settings, input_.ground,
                              tools_.rasterizer, tools_.job);
-        if (tools_.memory != nullptr) static_cast<ViewRenders&>(*tools_.memory) = seen_;
+        if (tools_.cache != nullptr) static_cast<ViewRenders&>(*tools_.cache) = seen_;
     }
 
     /// Share of the views in which the text segmenter sees the target word; nothing without one.
@@ -284,13 +284,13 @@ private:
     std::vector<std::size_t> to_ask_again(const Search& search, const Label& label,
                                           const std::vector<ViewEvidence>& views) {
         const std::string key = fmt::format("{}\n{}", search.prompt, search.word);
-        if (tools_.memory != nullptr)
-            if (const auto known = tools_.memory->asked_again.find(key);
-                known != tools_.memory->asked_again.end())
+        if (tools_.cache != nullptr)
+            if (const auto known = tools_.cache->asked_again.find(key);
+                known != tools_.cache->asked_again.end())
                 return known->second;
         auto odd = at_odds(label, views);
         if (odd.size() * 2 > views.size()) odd.clear();
-        if (tools_.memory != nullptr) tools_.memory->asked_again[key] = odd;
+        if (tools_.cache != nullptr) tools_.cache->asked_again[key] = odd;
         return odd;
     }
 
@@ -549,9 +549,8 @@ private:
                                    search.word,
                                    Random::stream(SearchSeed, Drawing).next()};
         DrawnViews drawn;
-        DrawnViews& kept = tools_.memory != nullptr
-                               ? tools_.memory->drawn[drawing_key(drawing, wearer.bits) +
-                                                      (tools_.plain_ground ? "" : " before the scene")]
+        DrawnViews& kept = tools_.cache != nullptr
+                               ? tools_.cache->drawn[drawing_key(drawing, wearer.bits, tools_.plain_ground)]
                                : drawn;
         if (kept.views.empty()) kept = drawn_into(drawing, source_bits);
         std::vector<ViewEvidence> views(input_.views.size());

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/content_hash.h"
 #include "engine/base/progress.h"
 #include "engine/base/thread_pool.h"
 #include "engine/edit/interfaces/interfaces.h"
@@ -43,13 +44,13 @@ struct LocateInput {
         {};  // what the networks are shown where the scene has nothing; none = its background
 };
 
-/// What the views look like, kept from one search to the next over the same scene and views; empty = to be
+/// Renders of the views, kept from one search to the next over one scene and one set of views; empty = to be
 /// filled.
-struct ViewMemory : ViewRenders {
+struct LocateCache : ViewRenders {
     /// Views that were asked a second time, by sentence and word: at another threshold the same, so that no
     /// network is asked.
     std::map<std::string, std::vector<std::size_t>> asked_again = {};
-    std::map<std::string, DrawnViews> drawn = {};  // by all that was drawn
+    std::map<ContentKey, DrawnViews> drawn = {};  // by drawing_key()
 };
 
 struct ViewEvidence;
@@ -63,7 +64,7 @@ struct LocateTools {
     JobControl job;
     VocabularyRanker* recognition =
         nullptr;                   // null: whether pictures show a word is judged by its attention alone
-    ViewMemory* memory = nullptr;  // may be null
+    LocateCache* cache = nullptr;  // may be null
     ThreadPool* threads =
         nullptr;  // views are segmented side by side: only for segmenters that allow it; may be null
     /// Told of every view as it is attended, and again once its mask is made; views of one search come in any

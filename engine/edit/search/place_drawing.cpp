@@ -8,8 +8,8 @@
 #include <span>
 
 #include "engine/base/check.h"
+#include "engine/base/content_hash.h"
 #include "engine/base/error.h"
-#include "engine/base/hash.h"
 #include "engine/base/random.h"
 #include "engine/edit/interfaces/broken_values.h"
 #include "engine/edit/masks/neighbours.h"
@@ -25,9 +25,9 @@ namespace {
 // from it to the most there is), or PossibleShare of it where the picture differs from what is behind the
 // thing. Attention alone either reaches beyond the thing or leaves out parts of it (a mushroom's stem); the
 // difference alone takes shadows along. Of 8 added things each on seeds 55 | 56
-// (`gseditpro-lab eval --kinds add --edits 8`) a PossibleShare of .5 removed 14 | 7 % of the error with outlines
-// of an IoU of .46 | .39, .85 removes 16 | 10 % with .46 | .41; the attention and the segmenter alone removed
-// 15 | 8 % with .41 | .36.
+// (`gseditpro-lab eval --kinds add --edits 8`) a PossibleShare of .5 removed 14 | 7 % of the error with
+// outlines of an IoU of .46 | .39, .85 removes 16 | 10 % with .46 | .41; the attention and the segmenter
+// alone removed 15 | 8 % with .41 | .36.
 constexpr double CertainShare = 1.2, PossibleShare = 0.85;
 constexpr float LeastDifference =
     0.1f;  // of the channel that differs most: what the autoencoder loses is mostly less
@@ -119,12 +119,15 @@ double guided_steps_of_place(const EditRequest& request) {
     return plan.guided_steps_of(0);
 }
 
-std::string drawing_key(const PlaceDrawing& drawing, const std::vector<std::uint8_t>& source_bits) {
+ContentKey drawing_key(const PlaceDrawing& drawing, const std::vector<std::uint8_t>& source_bits,
+                       bool plain_ground) {
     const auto& request = drawing.request;
-    Hash bits;
-    bits.bytes(source_bits.data(), source_bits.size());
-    return fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}", request.prompt, drawing.seed, request.add_room,
-                       request.add_noise, request.place_views, request.place_steps, bits.value());
+    ContentHash hash;
+    hash.text(request.prompt);
+    hash.numbers(drawing.seed, request.add_room, request.add_noise, request.place_views, request.place_steps,
+                 plain_ground);
+    hash.bytes(source_bits.data(), source_bits.size());
+    return hash.key();
 }
 
 DrawnViews draw_thing(const PlaceDrawing& drawing, MultiViewEditor& guidance, const JobControl& job) {

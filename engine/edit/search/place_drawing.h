@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/content_hash.h"
 #include "engine/edit/interfaces/interfaces.h"
 #include "engine/edit/placement/voxel_region.h"
 #include "engine/edit/request/request.h"
@@ -35,7 +36,8 @@ bool draws_place(const EditRequest& request, EditMode mode);
 double guided_steps_of_place(const EditRequest& request);
 
 /// Of everything that the drawn pictures follow from, but for the scene and the views.
-std::string drawing_key(const PlaceDrawing& drawing, const std::vector<std::uint8_t>& source_bits);
+ContentKey drawing_key(const PlaceDrawing& drawing, const std::vector<std::uint8_t>& source_bits,
+                       bool plain_ground);
 
 /// Views that were drawn into.
 struct DrawnViews {

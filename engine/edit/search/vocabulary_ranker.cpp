@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "engine/base/check.h"
-#include "engine/base/hash.h"
 #include "engine/edit/request/request.h"
 
 namespace gse::edit {
@@ -39,22 +38,13 @@ const std::vector<float>& VocabularyRanker::vector_of(const std::string& sentenc
     return found->second;
 }
 
-const std::vector<float>& VocabularyRanker::vector_of(const Image& picture) {
-    Hash hash;
-    hash.image(picture);
-    auto found = seen_.find(hash.value());
-    if (found == seen_.end()) found = seen_.emplace(hash.value(), score_->image(picture)).first;
-    return found->second;
+std::vector<float> VocabularyRanker::vector_of(const Image& picture) {
+    return seen_.get(key_of(picture), [&] { return score_->image(picture); });
 }
 
-const std::vector<float>& VocabularyRanker::viewpoint(const Image& picture) {
+std::vector<float> VocabularyRanker::viewpoint(const Image& picture) {
     GSE_CHECK(compares());
-    Hash hash;
-    hash.image(picture);
-    auto found = viewpoints_.find(hash.value());
-    if (found == viewpoints_.end())
-        found = viewpoints_.emplace(hash.value(), score_->viewpoint(picture)).first;
-    return found->second;
+    return viewpoints_.get(key_of(picture), [&] { return score_->viewpoint(picture); });
 }
 
 double VocabularyRanker::fit(const std::string& sentence, const std::vector<const Image*>& pictures) {
@@ -69,7 +59,7 @@ double VocabularyRanker::of(const std::string& sentence, const std::string& word
     if (!available() || pictures.empty()) return -1;
     double below = 0, all = 0;
     for (const Image* picture : pictures) {
-        const auto& seen = vector_of(*picture);
+        const auto seen = vector_of(*picture);
         const double own = cosine(seen, vector_of(as_told(sentence)));
         for (const auto& other : known_) {
             if (has_word(word, other)) continue;  // the word, or a part of the phrase

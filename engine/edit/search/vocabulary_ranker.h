@@ -1,13 +1,12 @@
 // Whether pictures show what a word means, by the model's own picture encoder.
 #pragma once
 
-#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
+#include "engine/base/memory_cache.h"
 #include "engine/edit/interfaces/image_text_encoder.h"
 
 namespace gse::edit {
@@ -22,7 +21,7 @@ public:
     /// Whether the model can compare pictures with sentences at all.
     bool compares() const { return score_ != nullptr; }
     /// ImageTextEncoder::viewpoint(); needs compares().
-    const std::vector<float>& viewpoint(const Image& picture);
+    std::vector<float> viewpoint(const Image& picture);
     /// Mean cosine of the sentence with the pictures, in [-1,1]; needs compares() and a picture.
     double fit(const std::string& sentence, const std::vector<const Image*>& pictures);
     /// Share of the other words that fit the pictures less in the place that the word (or phrase) has in the
@@ -31,13 +30,14 @@ public:
               const std::vector<const Image*>& pictures);
 
 private:
+    static constexpr std::size_t MostPictures = 4096;  // a few kilobytes each
     const std::vector<float>& vector_of(const std::string& sentence);
-    const std::vector<float>& vector_of(const Image& picture);
+    std::vector<float> vector_of(const Image& picture);
 
     std::unique_ptr<ImageTextEncoder> score_;
     std::vector<std::string> known_;
-    std::map<std::string, std::vector<float>> vectors_;                        // of sentences
-    std::unordered_map<std::uint64_t, std::vector<float>> seen_, viewpoints_;  // of pictures, by their hash
+    std::map<std::string, std::vector<float>> vectors_;  // of sentences
+    MemoryCache<std::vector<float>> seen_{MostPictures}, viewpoints_{MostPictures};
 };
 
 }  // namespace gse::edit

@@ -70,11 +70,11 @@ public:
 
     /// DreamBooth: a model of its own that has learned what the pictures show under `instance_prompt`, while
     /// pictures of `class_prompt`, drawn from the loaded weights first, keep what it knows. Begins at the
-    /// loaded weights, also where this model is a tuned one. The class's pictures are taken from `memory` (of
+    /// loaded weights, also where this model is a tuned one. The class's pictures are taken from `cache` (of
     /// the loaded weights; may be null) and kept there. Throws Error (Cancelled) on a stop request.
     virtual TunedModel tune(const DreamBoothParameters& parameters, std::span<const Image> instance,
                             const std::string& instance_prompt, const std::string& class_prompt,
-                            const JobControl& job, AnswerCache* memory) const = 0;
+                            const JobControl& job, AnswerCache* cache) const = 0;
     TunedModel tune(const DreamBoothParameters& parameters, std::span<const Image> instance,
                     const std::string& instance_prompt, const std::string& class_prompt,
                     const JobControl& job) const;

@@ -9,11 +9,11 @@
 
 #include "engine/base/check.h"
 #include "engine/base/error.h"
+#include "engine/base/memory_cache.h"
 #include "engine/neural/api/tokenizer.h"
 #include "engine/neural/clip/clipseg_model.h"
 #include "engine/neural/layers/devices.h"
 #include "engine/neural/layers/images.h"
-#include "engine/neural/layers/picture_cache.h"
 #include "engine/neural/layers/torch_errors.h"
 #include "engine/neural/weights/tensor_file.h"
 
@@ -22,8 +22,6 @@ namespace {
 
 constexpr std::int64_t PictureSize = 352;  // side of the pictures CLIPSeg was trained with
 constexpr double LeastOfLargest = 0.5;     // probability that counts as inside, of the largest; by judgement
-constexpr std::size_t MostPictures = 32;   // 4.5 MB each
-
 std::filesystem::path existing_part(const std::filesystem::path& path) {
     if (!std::filesystem::exists(path))
         throw Error(ErrorCode::NotFound, "the text segmenter is incomplete",
@@ -74,7 +72,8 @@ public:
         GSE_CHECK_EQ(image.channels, 3);
         return guard_torch("looking for a word", [&] {
             const torch::NoGradGuard no_grad;
-            const auto shown = pictures_.get(image, [&] { return model_->activations(pixels(image)); });
+            const auto shown =
+                pictures_.get(key_of(image), [&] { return model_->activations(pixels(image)); });
             const auto length = std::min(tokenizer_.max_length(), config_.clip.text.max_position_embeddings);
             const auto ids =
                 torch::tensor(tokenizer_.encode(noun, length).ids, torch::kInt64).unsqueeze(0).to(device_);
@@ -103,7 +102,8 @@ private:
     Tokenizer tokenizer_;
     ClipSegModel model_{nullptr};
     torch::Device device_;
-    PictureCache<std::vector<torch::Tensor>> pictures_;
+    static constexpr std::size_t MostPictures = 32;  // 4.5 MB each
+    MemoryCache<std::vector<torch::Tensor>> pictures_;
 };
 
 }  // namespace

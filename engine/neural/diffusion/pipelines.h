@@ -10,6 +10,9 @@
 
 namespace gse::neural {
 
+/// Pictures whose latents are kept: 64 KB each of one of 512 pixels.
+inline constexpr std::size_t MostLatents = 256;
+
 /// One denoising run; the rows of a UNet call are as Conditioning says.
 struct DenoiseJob {
     Sampler* sampler = nullptr;

@@ -233,9 +233,9 @@ torch::Tensor BundleAttentionSource::context_of(const std::string& sentence) {
 }
 
 torch::Tensor BundleAttentionSource::latents_of(const Image& picture) {
-    return latents_.of(picture, [&](const Image& unknown) {
+    return latents_.get(key_of(picture), [&] {
         return image_to_latents(*bundle_,
-                                resize_square(to_tensor(unknown, bundle_->device), bundle_->image_size()),
+                                resize_square(to_tensor(picture, bundle_->device), bundle_->image_size()),
                                 Codec::Quick);
     });
 }
@@ -260,12 +260,12 @@ void BundleAttentionSource::prepare(std::span<const edit::AttentionQuery> querie
         });
     });
     for (std::size_t i = 0; i < queries.size(); ++i)
-        if (!answers[i].empty()) prepared_[edit::question_hash(queries[i])] = std::move(answers[i]);
+        if (!answers[i].empty()) prepared_[edit::key_of(queries[i])] = std::move(answers[i]);
 }
 
 std::vector<Image> BundleAttentionSource::locate(const edit::AttentionQuery& query) {
     if (!prepared_.empty())
-        if (auto known = prepared_.extract(edit::question_hash(query))) return std::move(known.mapped());
+        if (auto known = prepared_.extract(edit::key_of(query))) return std::move(known.mapped());
     std::vector<Image> maps;
     for_parts(1, at_once() > 1, [&](std::int64_t, std::int64_t) {
         maps = maps_of(query);

@@ -9,9 +9,9 @@
 #include <unordered_map>
 #include <vector>
 
+#include "engine/base/memory_cache.h"
 #include "engine/edit/interfaces/interfaces.h"
 #include "engine/neural/api/attention_parameters.h"
-#include "engine/neural/diffusion/latent_cache.h"
 #include "engine/neural/diffusion/pipelines.h"
 #include "engine/neural/layers/buffer_cache.h"
 
@@ -69,8 +69,8 @@ private:
     std::vector<double> levels_;  // of the parameters
     std::mutex mutex_;            // of the contexts
     std::map<std::string, torch::Tensor> contexts_;
-    LatentCache latents_;
-    std::unordered_map<std::uint64_t, std::vector<Image>> prepared_;  // by the question; until it is asked
+    MemoryCache<torch::Tensor> latents_{MostLatents};
+    std::unordered_map<ContentKey, std::vector<Image>> prepared_;  // by the question; until it is asked
 };
 
 /// "a bear" and "front view" to "a bear, front view".

@@ -79,7 +79,7 @@ void count_step(TuneReport& report, const TuningStep& step, int planned);
 struct TuningTask {
     std::span<const Image> instance;
     std::string instance_prompt, class_prompt;
-    AnswerCache* memory = nullptr;  // of pictures of the class that this model drew before; may be null
+    AnswerCache* cache = nullptr;  // of pictures of the class that this model drew before; may be null
 };
 
 struct TuningResult {

@@ -66,11 +66,11 @@ EncodedPictures encode_instance(const ModelBundle& bundle, const TuningTask& tas
 /// The class pictures stay latents: decoding and encoding them again would only blur them.
 class ClassPictures {
 public:
-    /// `memory` may be null.
+    /// `cache` may be null.
     ClassPictures(const ModelBundle& bundle, const DreamBoothParameters& parameters,
-                  const std::string& prompt, AnswerCache* memory)
+                  const std::string& prompt, AnswerCache* cache)
         : bundle_(bundle), parameters_(parameters), sampler_steps_(parameters.class_steps), prompt_(prompt),
-          memory_(memory), context_(bundle.encode_prompts({"", prompt})), ids_(bundle.token_ids({prompt})) {}
+          cache_(cache), context_(bundle.encode_prompts({"", prompt})), ids_(bundle.token_ids({prompt})) {}
 
     EncodedPictures draw(ThreadPool& pool, const JobControl& job) {
         const std::int64_t batches = (parameters_.class_images + ClassBatch - 1) / ClassBatch;
@@ -101,13 +101,13 @@ private:
     }
 
     torch::Tensor remembered_sample(std::int64_t index, const JobControl& job) {
-        if (memory_ == nullptr) return sample(index, job);
+        if (cache_ == nullptr) return sample(index, job);
         const auto side = bundle_.latent_size();
         const auto question =
             fmt::format("pictures of the class\n{}\n{} steps, guidance {}, seed {}, batch {} of {}", prompt_,
                         sampler_steps_, parameters_.class_guidance, parameters_.seed, index, size_of(index));
         auto latents = torch::empty({size_of(index), bundle_.latent_channels(), side, side}, torch::kFloat32);
-        if (const auto answer = memory_->find(question); answer && answer->size() == latents.nbytes()) {
+        if (const auto answer = cache_->find(question); answer && answer->size() == latents.nbytes()) {
             std::copy(answer->begin(), answer->end(), static_cast<char*>(latents.data_ptr()));
             ++found_;
             return latents.to(bundle_.device);
@@ -116,7 +116,7 @@ private:
         if (job.stop_requested()) return drawn;  // it is not finished
         latents.copy_(drawn);
         if (torch::isfinite(latents).all().item<bool>())
-            memory_->keep(question, {static_cast<const char*>(latents.data_ptr()), latents.nbytes()});
+            cache_->keep(question, {static_cast<const char*>(latents.data_ptr()), latents.nbytes()});
         return drawn;
     }
 
@@ -144,7 +144,7 @@ private:
     const DreamBoothParameters& parameters_;
     std::int64_t sampler_steps_;
     std::string prompt_;
-    AnswerCache* memory_;
+    AnswerCache* cache_;
     std::atomic<std::uint64_t> found_ = 0;  // batches that were drawn before
     torch::Tensor context_, ids_;
 };
@@ -296,7 +296,7 @@ TuningResult run_dreambooth(const ModelBundle& bundle, const DreamBoothParameter
     if (parameters.prior_weight > 0 && parameters.class_images > 0) {
         ThreadPool pool(tuning_threads(parameters, bundle.device));
         prior.emplace(bundle,
-                      ClassPictures(bundle, parameters, task.class_prompt, task.memory).draw(pool, job),
+                      ClassPictures(bundle, parameters, task.class_prompt, task.cache).draw(pool, job),
                       Random::stream(parameters.seed, PriorStream).next());
         report.class_seconds = wall_seconds() - start;
     }

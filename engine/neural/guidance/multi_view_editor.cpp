@@ -150,16 +150,16 @@ DiffusionViews::Batch DiffusionViews::prepare(const std::vector<edit::EditView>&
         return image_to_latents(
             *bundle_, resize_square(to_tensor(image, bundle_->device), bundle_->image_size()), Codec::Quick);
     };
+    const auto kept = [&](const Image& image) {
+        return originals_.get(key_of(image), [&] { return latents(image); });
+    };
     for_parts(static_cast<std::int64_t>(views.size()), apart_, [&](std::int64_t begin, std::int64_t end) {
         for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v) {
             const auto& view = views[v];
             clean[v] = latents(view.rendered);
-            original[v] =
-                view.rendered.data == view.original.data ? clean[v] : originals_.of(view.original, latents);
+            original[v] = view.rendered.data == view.original.data ? clean[v] : kept(view.original);
             if (inpaints)
-                behind[v] = view.backdrop.picture.data.empty()
-                                ? original[v]
-                                : originals_.of(view.backdrop.picture, latents);
+                behind[v] = view.backdrop.picture.data.empty() ? original[v] : kept(view.backdrop.picture);
         }
     });
     for (const auto& view : views)

@@ -6,9 +6,9 @@
 #include <map>
 #include <memory>
 
+#include "engine/base/memory_cache.h"
 #include "engine/edit/interfaces/interfaces.h"
 #include "engine/neural/api/sds_parameters.h"
-#include "engine/neural/diffusion/latent_cache.h"
 #include "engine/neural/diffusion/pipelines.h"
 #include "engine/neural/layers/buffer_cache.h"
 
@@ -68,7 +68,7 @@ private:
     const bool restyles_;
     const bool apart_;  // views are shared out among threads, not operations
     std::map<std::pair<bool, std::string>, torch::Tensor> encoded_;  // [1,T,D], one per sentence and network
-    LatentCache originals_;  // of the unedited views: the same in every round
+    MemoryCache<torch::Tensor> originals_{MostLatents};  // of the unedited views: the same in every round
 };
 
 }  // namespace gse::neural

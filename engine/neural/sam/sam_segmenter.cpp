@@ -5,21 +5,19 @@
 #include <utility>
 
 #include "engine/base/check.h"
+#include "engine/base/memory_cache.h"
 #include "engine/neural/layers/devices.h"
 #include "engine/neural/layers/images.h"
-#include "engine/neural/layers/picture_cache.h"
 #include "engine/neural/layers/torch_errors.h"
 #include "engine/neural/sam/sam_model.h"
 
 namespace gse::neural {
 namespace {
 
-constexpr std::size_t MostEncodedPictures = 64;  // 4 MB each with SAM's weights
-
 class SamSegmenter final : public edit::Segmenter {
 public:
     SamSegmenter(SamModel model, const torch::Device& device)
-        : model_(std::move(model)), device_(device), pictures_(MostEncodedPictures) {}
+        : model_(std::move(model)), device_(device), pictures_(MostPictures) {}
 
     Mask segment(const Image& image, const std::vector<edit::PointPrompt>& points,
                  const std::optional<edit::BoxPrompt>& box, const Image&) override {
@@ -68,12 +66,14 @@ private:
     }
 
     torch::Tensor embedding(const Image& image) {
-        return pictures_.get(image, [&] { return model_->embed(model_->pixels(to_tensor(image, device_))); });
+        return pictures_.get(key_of(image),
+                             [&] { return model_->embed(model_->pixels(to_tensor(image, device_))); });
     }
 
     SamModel model_;
     torch::Device device_;
-    PictureCache<torch::Tensor> pictures_;
+    static constexpr std::size_t MostPictures = 64;  // 4 MB each with SAM's weights
+    MemoryCache<torch::Tensor> pictures_;
 };
 
 }  // namespace

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "engine/base/clock.h"
-#include "engine/base/digest.h"
+#include "engine/base/content_hash.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/json.h"
@@ -24,8 +24,6 @@
 
 namespace gse::pipeline {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 template <class T> void put(std::string& bytes, const T& value) {
     bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
@@ -112,12 +110,6 @@ std::optional<edit::EditedViews> targets_in(std::string_view bytes, std::size_t 
     return targets;
 }
 
-std::string digest_of(const Image& image) {
-    Digest digest;
-    digest.image(image);
-    return digest.hex();
-}
-
 /// A file of a library that reads and writes by name; gone when this is.
 class ScratchFile {
 public:
@@ -156,7 +148,7 @@ public:
 
     std::vector<float> image(const Image& image) override {
         keep_sentences();  // those asked about the picture before
-        const auto question = model_->question("vector of a picture", digest_of(image));
+        const auto question = model_->question("vector of a picture", key_of(image).hex());
         if (const auto answer = model_->cache().find(question))
             return count_cached_answer(), floats_in(*answer);
         auto vector = score().image(image);
@@ -164,7 +156,7 @@ public:
         return vector;
     }
     std::vector<float> viewpoint(const Image& image) override {
-        const auto question = model_->question("viewpoint of a picture", digest_of(image));
+        const auto question = model_->question("viewpoint of a picture", key_of(image).hex());
         if (const auto answer = model_->cache().find(question))
             return count_cached_answer(), floats_in(*answer);
         auto shares = score().viewpoint(image);
@@ -208,9 +200,9 @@ private:
 };
 
 /// The cache as the networks see it: questions are about this model.
-class ModelMemory final : public AnswerCache {
+class ModelCache final : public AnswerCache {
 public:
-    ModelMemory(DiskCache& cache, std::string about) : cache_(cache), about_(std::move(about)) {}
+    ModelCache(DiskCache& cache, std::string about) : cache_(cache), about_(std::move(about)) {}
     std::optional<std::string> find(std::string_view question) override {
         return cache_.find(about_ + std::string(question));
     }
@@ -224,57 +216,51 @@ private:
 };
 
 std::string question_of(const edit::AttentionQuery& query, const neural::AttentionParameters& parameters) {
-    return Json{fields_to_json(parameters),
-                query.prompt,
-                query.words,
-                query.view_words,
-                query.absent,
-                query.repeats,
-                query.seed,
-                digest_of(query.image)}
-        .dump(-1, ' ', false, Json::error_handler_t::replace);
+    ContentHash hash;
+    hash.fields(parameters);
+    hash.text(query.prompt);
+    hash.texts(query.words);
+    hash.text(query.view_words);
+    hash.numbers(query.absent, query.repeats, query.seed);
+    hash.image(query.image);
+    return hash.key().hex();
+}
+
+void add_view(ContentHash& hash, const edit::EditView& view) {
+    for (const auto* image :
+         {&view.rendered, &view.original, &view.depth, &view.backdrop.picture, &view.backdrop.depth})
+        hash.image(*image);
+    hash.bytes(view.mask.data.data(), view.mask.data.size());
+    const auto& camera = view.view.camera;
+    hash.numbers(camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy);
+    for (int i = 0; i < 9; ++i) hash.numbers(camera.rotation(i / 3, i % 3));
+    hash.numbers(camera.translation.x, camera.translation.y, camera.translation.z);
+    hash.numbers(view.elevation, view.azimuth.has_value(), view.azimuth.value_or(0));
+    hash.text(view.view_words);
 }
 
 /// Everything of a round that its pictures follow from.
 std::string question_of(const std::vector<edit::EditView>& views, const edit::EditViewsRequest& input,
                         const std::string& prompt, const neural::SdsParameters& parameters) {
-    Json seen = Json::array();
-    for (const auto& view : views) {
-        Digest digest;
-        for (const auto* image :
-             {&view.rendered, &view.original, &view.depth, &view.backdrop.picture, &view.backdrop.depth})
-            digest.image(*image);
-        digest.bytes(view.mask.data.data(), view.mask.data.size());
-        const auto& camera = view.view.camera;
-        Json numbers{camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy, view.elevation};
-        numbers.push_back(camera.rotation.rows());
-        numbers.push_back({camera.translation.x, camera.translation.y, camera.translation.z});
-        if (view.azimuth) numbers.push_back(*view.azimuth);
-        seen.push_back({digest.hex(), numbers, view.view_words});
-    }
-    return Json{fields_to_json(parameters),
-                prompt,
-                input.sentence,
-                input.round,
-                input.rounds,
-                input.steps,
-                input.strength,
-                input.seed,
-                input.anew,
-                input.guided_until,
-                input.noise,
-                seen}
-        .dump(-1, ' ', false, Json::error_handler_t::replace);
+    ContentHash hash;
+    hash.fields(parameters);
+    hash.text(prompt);
+    hash.text(input.sentence);
+    hash.numbers(input.round, input.rounds, input.steps, input.strength, input.seed, input.anew,
+                 input.guided_until, input.noise);
+    for (const auto& view : views) add_view(hash, view);
+    return hash.key().hex();
 }
 
-std::string question_of(const neural::DreamBoothParameters& parameters, std::span<const Image> instance,
+std::string question_of(neural::DreamBoothParameters parameters, std::span<const Image> instance,
                         const std::string& instance_prompt, const std::string& class_prompt) {
-    auto settings = fields_to_json(parameters);
-    settings.erase("threads");  // the result is the same
-    Json pictures = Json::array();
-    for (const auto& image : instance) pictures.push_back(digest_of(image));
-    return Json{settings, instance_prompt, class_prompt, pictures}.dump(-1, ' ', false,
-                                                                        Json::error_handler_t::replace);
+    parameters.threads = 0;  // the result is the same
+    ContentHash hash;
+    hash.fields(parameters);
+    hash.text(instance_prompt);
+    hash.text(class_prompt);
+    for (const auto& image : instance) hash.image(image);
+    return hash.key().hex();
 }
 
 /// A tuning as an entry: length of the report, report, weights.
@@ -477,9 +463,9 @@ std::shared_ptr<neural::TextToImage> CachedModel::load_lora(const std::filesyste
 }
 
 std::shared_ptr<CachedModel> CachedModel::tuned_model(const std::string& question, Loader loader) const {
-    Digest digest;
-    digest.text(question);
-    auto model = std::make_shared<CachedModel>(cache_, digest.hex(), std::move(loader));
+    ContentHash hash;
+    hash.text(question);
+    auto model = std::make_shared<CachedModel>(cache_, hash.key().hex(), std::move(loader));
     model->loaded_identity_ = loaded_identity_;
     auto facts = this->facts();
     facts.supports_appearance_editing = false;  // a tuning changes none of the others
@@ -508,8 +494,8 @@ neural::TunedModel CachedModel::tune(const neural::DreamBoothParameters& paramet
             }
         }
     }
-    ModelMemory memory(*cache_, fmt::format("{} on {} threads\n", loaded_identity_, network_threads()));
-    auto tuned = real().tune(parameters, instance, instance_prompt, class_prompt, job, &memory);
+    ModelCache cache(*cache_, fmt::format("{} on {} threads\n", loaded_identity_, network_threads()));
+    auto tuned = real().tune(parameters, instance, instance_prompt, class_prompt, job, &cache);
     try {
         const ScratchFile file;
         if (tuned.model->save_tuning(file.path(), cache_->largest_bytes()))

@@ -49,7 +49,7 @@ public:
     std::unique_ptr<edit::ImageTextEncoder> image_text_encoder() const override;
     neural::TunedModel tune(const neural::DreamBoothParameters& parameters, std::span<const Image> instance,
                             const std::string& instance_prompt, const std::string& class_prompt,
-                            const JobControl& job, AnswerCache* memory) const override;
+                            const JobControl& job, AnswerCache* cache) const override;
     bool save_tuning(const std::filesystem::path& path, std::uint64_t most_bytes) const override;
     std::shared_ptr<TextToImage> load_tuning(const std::filesystem::path& path) const override {
         return real().load_tuning(path);

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <vector>
 
-#include "engine/base/digest.h"
+#include "engine/base/content_hash.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/neural/api/lora_spec.h"
@@ -29,17 +29,17 @@ constexpr std::array<std::string_view, 4> ModelEndings{".safetensors", ".json", 
 std::string digest_of(const fs::path& path) {
     const InputFile file(path);
     std::vector<std::byte> piece(PieceBytes);
-    Digest digest;
+    ContentHash hash;
     for (std::uint64_t at = 0; at < file.size(); at += PieceBytes) {
         const auto bytes = static_cast<std::size_t>(std::min<std::uint64_t>(PieceBytes, file.size() - at));
         file.read(at, std::span(piece).first(bytes));
-        digest.bytes(piece.data(), bytes);
+        hash.bytes(piece.data(), bytes);
     }
-    return digest.hex();
+    return hash.key().hex();
 }
 
-/// The digest, from memory where size, times and place say that the file is the one it was taken of.
-std::string contents_of(const fs::path& path, AnswerCache& memory) {
+/// The digest, from the cache where size, times and place say that the file is the one it was taken of.
+std::string contents_of(const fs::path& path, AnswerCache& cache) {
     struct stat status {};
     if (stat(path.c_str(), &status) != 0) return digest_of(path);  // which says what is wrong
     const auto seconds = [](const timespec& time) {
@@ -48,9 +48,9 @@ std::string contents_of(const fs::path& path, AnswerCache& memory) {
     const auto question = fmt::format("contents of {}: device {}, file {}, {} bytes, changed {} and {}",
                                       fs::absolute(path).string(), status.st_dev, status.st_ino,
                                       status.st_size, seconds(status.st_mtim), seconds(status.st_ctim));
-    if (auto known = memory.find(question)) return *known;
+    if (auto known = cache.find(question)) return *known;
     auto digest = digest_of(path);
-    memory.keep(question, digest);
+    cache.keep(question, digest);
     return digest;
 }
 
@@ -60,7 +60,7 @@ bool belongs_to_model(const fs::path& path) {
 }
 
 /// One line per file below a folder: its name there and its contents.
-std::string contents_below(const fs::path& folder, AnswerCache& memory) {
+std::string contents_below(const fs::path& folder, AnswerCache& cache) {
     std::vector<std::string> lines;
     std::error_code failure;
     for (fs::recursive_directory_iterator
@@ -69,7 +69,7 @@ std::string contents_below(const fs::path& folder, AnswerCache& memory) {
          !failure && at != end; at.increment(failure))
         if (at->is_regular_file(failure) && belongs_to_model(at->path()))
             lines.push_back(at->path().lexically_relative(folder).generic_string() + " " +
-                            contents_of(at->path(), memory));
+                            contents_of(at->path(), cache));
     if (failure)
         throw Error(ErrorCode::Unreadable, "the folder cannot be read (" + failure.message() + ")", "",
                     folder);
@@ -78,16 +78,16 @@ std::string contents_below(const fs::path& folder, AnswerCache& memory) {
 }
 
 /// A checkpoint has its configurations, and the tiny autoencoder, beside it.
-std::string contents_beside(const fs::path& checkpoint, AnswerCache& memory) {
-    std::string text = "weights " + contents_of(checkpoint, memory) + "\n";
+std::string contents_beside(const fs::path& checkpoint, AnswerCache& cache) {
+    std::string text = "weights " + contents_of(checkpoint, cache) + "\n";
     std::vector<std::string> lines;
     const auto folder = fs::absolute(checkpoint).parent_path();
     for (const auto& entry : fs::directory_iterator(folder))
         if (entry.is_regular_file() && entry.path().extension() == ".json")
-            lines.push_back(entry.path().filename().string() + " " + contents_of(entry.path(), memory));
+            lines.push_back(entry.path().filename().string() + " " + contents_of(entry.path(), cache));
     std::sort(lines.begin(), lines.end());
     text += fmt::format("{}\n", fmt::join(lines, "\n"));
-    if (fs::is_directory(folder / "taesd")) text += contents_below(folder / "taesd", memory);
+    if (fs::is_directory(folder / "taesd")) text += contents_below(folder / "taesd", cache);
     return text;
 }
 
@@ -109,42 +109,42 @@ std::string processor() {
     return {};
 }
 
-std::string library_line(AnswerCache& memory) {
+std::string library_line(AnswerCache& cache) {
     const auto library = neural_library();
-    return library.empty() ? std::string() : "library " + contents_of(library, memory) + "\n";
+    return library.empty() ? std::string() : "library " + contents_of(library, cache) + "\n";
 }
 
 std::string digest_of_text(const std::string& text) {
-    Digest digest;
-    digest.text(text);
-    return digest.hex();
+    ContentHash hash;
+    hash.text(text);
+    return hash.key().hex();
 }
 
 }  // namespace
 
-std::string segmenter_identity(const fs::path& path, const std::string& device, AnswerCache& memory,
+std::string segmenter_identity(const fs::path& path, const std::string& device, AnswerCache& cache,
                                int version) {
     return digest_of_text(fmt::format("segmenter, version {}\n{}\n{}device {}\n", version, processor(),
-                                      library_line(memory), device) +
-                          (fs::is_directory(path) ? contents_below(path, memory)
-                                                  : "weights " + contents_of(path, memory) + "\n"));
+                                      library_line(cache), device) +
+                          (fs::is_directory(path) ? contents_below(path, cache)
+                                                  : "weights " + contents_of(path, cache) + "\n"));
 }
 
-std::string model_identity(const JobParameters& job, AnswerCache& memory, int version) {
+std::string model_identity(const JobParameters& job, AnswerCache& cache, int version) {
     const auto path = model_path(job);
     const bool folder = fs::is_directory(path);
     std::string text =
         fmt::format("version {}\n{}\nname {}\n", version, processor(), path.filename().string());
-    text += library_line(memory);
+    text += library_line(cache);
     text += fmt::format("device {}, precision {}, tiny autoencoder {}\n", job.device, job.precision,
                         job.taesd == "none" ? "off" : "on");
-    text += folder ? contents_below(path, memory) : contents_beside(path, memory);
+    text += folder ? contents_below(path, cache) : contents_beside(path, cache);
     if (const auto tiny = named_taesd(job, folder ? path : path.parent_path());
         !tiny.empty() && fs::is_directory(tiny))
-        text += "tiny autoencoder\n" + contents_below(tiny, memory);
+        text += "tiny autoencoder\n" + contents_below(tiny, cache);
     for (const auto& lora : neural::find_loras(job.lora))  // its name may say that it was distilled
         text += fmt::format("lora {} {} {}\n", static_cast<int>(neural::lora_mark(lora.file)), lora.strength,
-                            contents_of(lora.file, memory));
+                            contents_of(lora.file, cache));
     return digest_of_text(text);
 }
 

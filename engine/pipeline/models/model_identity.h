@@ -17,10 +17,10 @@ constexpr int AnswersVersion = 4;
 /// Changes with the contents of weights, configurations, vocabularies, LoRAs, the tiny autoencoder and the
 /// networks' library, with device, precision and processor, and with `version`; of names, only the model's
 /// own counts. The contents of a file are read once as long as its size and times stay (remembered in
-/// `memory`). Throws Error (NotFound, Unreadable).
-std::string model_identity(const JobParameters& job, AnswerCache& memory, int version = AnswersVersion);
+/// `cache`). Throws Error (NotFound, Unreadable).
+std::string model_identity(const JobParameters& job, AnswerCache& cache, int version = AnswersVersion);
 /// The same of a segmenter's weights: a file or a folder.
 std::string segmenter_identity(const std::filesystem::path& weights, const std::string& device,
-                               AnswerCache& memory, int version = AnswersVersion);
+                               AnswerCache& cache, int version = AnswersVersion);
 
 }  // namespace gse::pipeline

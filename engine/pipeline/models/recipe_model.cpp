@@ -51,7 +51,7 @@ std::optional<ModelLoad> load_of(const neural::TextToImage& model) {
     return remembering != nullptr ? remembering->load() : std::nullopt;
 }
 
-const neural::TextToImage& without_memory(const neural::TextToImage& model) {
+const neural::TextToImage& uncached(const neural::TextToImage& model) {
     const auto* remembering = dynamic_cast<const CachedModel*>(&model);
     return remembering != nullptr ? remembering->real() : model;
 }

@@ -37,7 +37,7 @@ struct ModelLoad {
 std::optional<ModelLoad> load_of(const neural::TextToImage& model);
 
 /// The networks themselves: for questions that are never asked twice. Loads them.
-const neural::TextToImage& without_memory(const neural::TextToImage& model);
+const neural::TextToImage& uncached(const neural::TextToImage& model);
 
 /// Settings of the cache.
 struct CacheSettings {

@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "engine/base/digest.h"
+#include "engine/base/content_hash.h"
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/edit/masks/word_mask.h"
@@ -23,7 +23,7 @@ namespace gse::pipeline {
 namespace {
 
 /// Weights that are loaded now, for as long as somebody has them: they may take gigabytes.
-template <class Kind> class Shared {
+template <class Kind> class WeightsCache {
 public:
     template <class Load>
     std::shared_ptr<Kind> get(const std::string& weights, const JobParameters& job, const Load& load) {
@@ -52,14 +52,14 @@ private:
 };
 
 std::shared_ptr<edit::Segmenter> load_clicks(const JobParameters& job) {
-    static Shared<edit::Segmenter> shared;
-    return shared.get(job.segmenter, job,
-                      [&](neural::Api& api) { return api.load_segmenter(job.segmenter, job.device); });
+    static WeightsCache<edit::Segmenter> cache;
+    return cache.get(job.segmenter, job,
+                     [&](neural::Api& api) { return api.load_segmenter(job.segmenter, job.device); });
 }
 
 std::shared_ptr<edit::TextSegmenter> load_words(const JobParameters& job) {
-    static Shared<edit::TextSegmenter> shared;
-    return shared.get(job.text_segmenter, job, [&](neural::Api& api) {
+    static WeightsCache<edit::TextSegmenter> cache;
+    return cache.get(job.text_segmenter, job, [&](neural::Api& api) {
         return api.load_text_segmenter(job.text_segmenter, job.device);
     });
 }
@@ -114,13 +114,12 @@ public:
 private:
     std::string question(const Image& image, const std::vector<edit::PointPrompt>& points,
                          const std::optional<edit::BoxPrompt>& box) const {
-        Digest digest;
-        digest.image(image);
-        auto text = fmt::format("mask by segmenter {} in {}:", identity_, digest.hex());
-        for (const auto& point : points)
-            text += fmt::format(" {} {} {}", point.x, point.y, point.positive ? "in" : "out");
-        if (box) text += fmt::format(" box {} {} {} {}", box->x0, box->y0, box->x1, box->y1);
-        return text;
+        ContentHash hash;
+        hash.image(image);
+        hash.numbers(points.size(), box.has_value());
+        for (const auto& point : points) hash.numbers(point.x, point.y, point.positive);
+        if (box) hash.numbers(box->x0, box->y0, box->x1, box->y1);
+        return fmt::format("mask by segmenter {}: {}", identity_, hash.key().hex());
     }
 
     const JobParameters job_;
@@ -143,10 +142,8 @@ public:
     }
 
     std::pair<Mask, double> segment(const Image& image, const std::string& noun) override {
-        Digest digest;
-        digest.image(image);
         const auto asked =
-            fmt::format("mask by text segmenter {} in {} of {}", identity_, digest.hex(), noun);
+            fmt::format("mask by text segmenter {} in {} of {}", identity_, key_of(image).hex(), noun);
         double score = 0;
         if (const auto known = cache_->find(asked); known && known->size() > sizeof score) {
             std::memcpy(&score, known->data(), sizeof score);
@@ -194,8 +191,8 @@ private:
     const std::shared_ptr<edit::Segmenter> clicks_;
 };
 
-/// The one that remembers, or the weights themselves where nothing is to be remembered.
-template <class Remembering, class Kind>
+/// A segmenter with its cache, or the weights themselves where nothing is to be kept.
+template <class Cached, class Kind>
 std::shared_ptr<Kind> open(const std::string& weights, const JobParameters& job,
                            const std::shared_ptr<DiskCache>& cache,
                            std::shared_ptr<Kind> (*load)(const JobParameters&)) {
@@ -208,7 +205,7 @@ std::shared_ptr<Kind> open(const std::string& weights, const JobParameters& job,
         log::debug("the segmenter's weights cannot be compared: {}", failure.what());
         return load(job);
     }
-    return std::make_shared<Remembering>(job, cache, std::move(identity));
+    return std::make_shared<Cached>(job, cache, std::move(identity));
 }
 
 }  // namespace
@@ -226,9 +223,9 @@ Segmenters open_segmenters(const JobParameters& job, const std::shared_ptr<DiskC
     return opened;
 }
 
-edit::Segmenter& without_memory(edit::Segmenter& segmenter) {
-    auto* remembering = dynamic_cast<CachedSegmenter*>(&segmenter);
-    return remembering != nullptr ? remembering->real() : segmenter;
+edit::Segmenter& uncached(edit::Segmenter& segmenter) {
+    auto* cached = dynamic_cast<CachedSegmenter*>(&segmenter);
+    return cached != nullptr ? cached->real() : segmenter;
 }
 
 }  // namespace gse::pipeline

@@ -22,7 +22,7 @@ struct Segmenters {
 Segmenters open_segmenters(const JobParameters& job, const std::shared_ptr<DiskCache>& cache);
 
 /// The one behind it, for pictures that are not seen twice.
-edit::Segmenter& without_memory(edit::Segmenter& segmenter);
+edit::Segmenter& uncached(edit::Segmenter& segmenter);
 
 /// Masks of `words` whose box `clicks` fills with nearly the same are what it makes of that box. Both outlive
 /// the result.

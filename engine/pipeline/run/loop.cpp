@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/base/content_hash.h"
 #include "engine/base/log.h"
 #include "engine/edit/placement/head.h"
 #include "engine/edit/request/colour_word.h"
@@ -333,12 +334,11 @@ Edited run_attempt(RunContext& workplace, const GaussianSet& scene, const Locate
     tools.snapshot_seconds = observer.snapshot_seconds;
     tools.new_label = observer.new_label;
     tools.start = observer.start ? &*observer.start : nullptr;
-    const auto attention =
-        without_memory(model).attention(recipe.attention);  // every render is another question
+    const auto attention = uncached(model).attention(recipe.attention);  // every render is another question
     // What the words did not find, their attention does not follow either.
     const bool lost = located.by_label() && located.result.mode == edit::EditMode::Modify;
     tools.attention = lost ? nullptr : attention.get();
-    tools.segmenter = by_views ? &workplace.segmenter() : &without_memory(workplace.segmenter());
+    tools.segmenter = by_views ? &workplace.segmenter() : &uncached(workplace.segmenter());
     tools.word = dynamic_word(located, request);
     std::optional<edit::OnPlainGround> on_ground;
     if (way.plain_ground && ground && views)
@@ -374,8 +374,11 @@ Edited run_attempt(RunContext& workplace, const GaussianSet& scene, const Locate
     if (pattern)
         edited.result.set = pattern->over(edited.result.set, edited.result.label, edited.result.hidden);
     edited.drawn = drawable(edited.result.set);
-    edited.key = located.key + fields_to_json(static_cast<const edit::LoopSettings&>(request)).dump() +
-                 fields_to_json(recipe.guidance).dump();
+    ContentHash hash;
+    hash.text(located.key);
+    hash.fields(static_cast<const edit::LoopSettings&>(request));
+    hash.fields(recipe.guidance);
+    edited.key = hash.key().hex();
     return edited;
 }
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/base/content_hash.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/json.h"
@@ -17,9 +18,10 @@ constexpr int RecipeVersion = 1;
 
 using Json = nlohmann::ordered_json;
 
-/// What the networks are, and from where the scene is looked at.
-Json surroundings(const JobParameters& job) {
-    return {job.model, job.lora, job.taesd, job.device, job.precision, job.cameras, job.up, job.front};
+/// Adds what the networks are, and from where the scene is looked at.
+void add_surroundings(ContentHash& hash, const JobParameters& job) {
+    hash.texts({job.model, job.taesd, job.device, job.precision, job.cameras, job.up, job.front});
+    hash.texts(job.lora);
 }
 
 /// "FILE:strength" with the file in that folder.
@@ -112,18 +114,17 @@ EditRecipe read_recipe(const std::filesystem::path& path) {
 }
 
 std::string search_key(const EditRecipe& recipe) {
-    Json key{fields_to_json<edit::EditWords>(recipe.request),
-             fields_to_json<edit::SearchSettings>(recipe.request), fields_to_json(recipe.attention),
-             surroundings(recipe.job), recipe.job.use_label};
-    if (!recipe.job.cut_out.empty()) key.push_back({{"cut_out", recipe.job.cut_out}});
-    if (!recipe.job.looked_from.empty()) key.push_back({{"looked_from", recipe.job.looked_from}});
-    if (recipe.use_dreambooth) key.push_back(fields_to_json(recipe.dreambooth));
-    if (!recipe.job.segmenter.empty()) key.push_back({{"segmenter", recipe.job.segmenter}});
-    if (recipe.job.rasterizer == "cuda")
-        key.push_back({{"rasterizer", recipe.job.rasterizer}});  // other last digits
-    if (!recipe.job.text_segmenter.empty()) key.push_back({{"text_segmenter", recipe.job.text_segmenter}});
-    if (!recipe.guidance.plain_ground) key.push_back({{"plain_ground", false}});
-    return key.dump();
+    const auto& job = recipe.job;
+    ContentHash hash;
+    hash.fields(static_cast<const edit::EditWords&>(recipe.request));
+    hash.fields(static_cast<const edit::SearchSettings&>(recipe.request));
+    hash.fields(recipe.attention);
+    add_surroundings(hash, job);
+    hash.texts({job.cut_out, job.looked_from, job.segmenter, job.text_segmenter});
+    hash.numbers(job.use_label, recipe.use_dreambooth, recipe.guidance.plain_ground,
+                 job.rasterizer == "cuda");  // other last digits
+    if (recipe.use_dreambooth) hash.fields(recipe.dreambooth);
+    return hash.key().hex();
 }
 
 std::string valid_search_key(EditRecipe recipe) {
@@ -135,15 +136,12 @@ std::string valid_search_key(EditRecipe recipe) {
 
 std::string tuning_key(const EditRecipe& recipe) {
     const auto& request = recipe.request;
-    return Json{fields_to_json(recipe.dreambooth),
-                request.source,
-                request.prompt,
-                request.views,
-                request.image_size,
-                request.elevation,
-                request.background,
-                surroundings(recipe.job)}
-        .dump();
+    ContentHash hash;
+    hash.fields(recipe.dreambooth);
+    hash.texts({request.source, request.prompt, request.background});
+    hash.numbers(request.views, request.image_size, request.elevation);
+    add_surroundings(hash, recipe.job);
+    return hash.key().hex();
 }
 
 }  // namespace gse::pipeline

@@ -101,7 +101,7 @@ edit::LocateTools RunContext::tools(const Views& views, const std::optional<edit
     renders_key_ = key;
     edit::LocateTools tools{painter_.rasterizer(), *attention_, segmenters_.clicks.get(),
                             segmenters_.words.get(), control};
-    tools.memory = &renders_;
+    tools.cache = &renders_;
     tools.threads = &threads_;
     tools.recognition = recognition_.get();
     if (watch_)

@@ -93,7 +93,7 @@ private:
     std::unique_ptr<edit::CachedAttention> attention_;
     std::unique_ptr<edit::VocabularyRanker> recognition_;
     Segmenters segmenters_;
-    edit::ViewMemory renders_;  // of the views with this key
+    edit::LocateCache renders_;  // of the views with this key
     std::string renders_key_;
     ViewWatch watch_;
     PlaceCost place_cost_;

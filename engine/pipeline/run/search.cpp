@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "engine/base/check.h"
-#include "engine/base/hash.h"
+#include "engine/base/content_hash.h"
 #include "engine/base/log.h"
 #include "engine/edit/masks/view_vote.h"
 #include "engine/edit/placement/head.h"
@@ -122,12 +122,14 @@ bool worth_moving(const OrbitParameters& from, const OrbitParameters& to, edit::
 }
 
 std::string key_of(const Located& located) {
-    Hash label;
-    label.bytes(located.label.data(), located.label.size());
-    label.bytes(located.result.label.bits->data(), located.result.label.bits->size());
-    const auto& thresholds = static_cast<const edit::LabelThresholds&>(located.recipe.request);
-    return fmt::format("{} {} {} {}", search_key(located.recipe), fields_to_json(thresholds).dump(),
-                       located.views.key, label.value());
+    ContentHash hash;
+    hash.text(search_key(located.recipe));
+    hash.fields(static_cast<const edit::LabelThresholds&>(located.recipe.request));
+    hash.text(located.views.key);
+    hash.numbers(located.label.size());
+    hash.bytes(located.label.data(), located.label.size());
+    hash.bytes(located.result.label.bits->data(), located.result.label.bits->size());
+    return hash.key().hex();
 }
 
 /// What an unsure search found is seen in its views only.

@@ -8,8 +8,8 @@
 #include <limits>
 #include <numbers>
 
+#include "engine/base/content_hash.h"
 #include "engine/base/error.h"
-#include "engine/base/hash.h"
 #include "engine/edit/search/front_reading.h"
 #include "engine/math/framing.h"
 #include "engine/scene/viewpoints.h"
@@ -39,22 +39,17 @@ Vec3 direction_at(const OrbitParameters& orbit, double azimuth) {
 
 /// What the renders of the views follow from, beside the scene.
 std::string key_of(const Views& views, const EditRecipe& recipe) {
-    Hash key;
+    ContentHash hash;
     for (const auto& view : views.views) {
         const Camera& camera = view.camera;
         const Vec3 centre = camera.centre();
-        for (const double value : {camera.fx, camera.fy, camera.cx, camera.cy, centre.x, centre.y, centre.z})
-            key.bytes(&value, sizeof value);
-        for (int i = 0; i < 9; ++i) {
-            const double value = camera.rotation(i / 3, i % 3);
-            key.bytes(&value, sizeof value);
-        }
-        key.add(static_cast<std::uint64_t>(camera.width));
-        key.add(static_cast<std::uint64_t>(camera.height));
+        hash.numbers(camera.fx, camera.fy, camera.cx, camera.cy, centre.x, centre.y, centre.z, camera.width,
+                     camera.height);
+        for (int i = 0; i < 9; ++i) hash.numbers(camera.rotation(i / 3, i % 3));
     }
-    for (const auto& words : views.words) key.text(words);
-    key.text(recipe.request.background);
-    return std::to_string(key.value());
+    hash.texts(views.words);
+    hash.text(recipe.request.background);
+    return hash.key().hex();
 }
 
 /// Fills in what follows from cameras and orbit.

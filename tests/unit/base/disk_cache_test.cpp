@@ -11,7 +11,6 @@
 #include <string>
 #include <thread>
 
-#include "engine/base/digest.h"
 #include "engine/base/disk_cache.h"
 #include "engine/base/file.h"
 #include "tests/test_paths.h"
@@ -205,29 +204,6 @@ DOCTEST_TEST_CASE(
     DiskCache cache(folder.path(), 120000);
     for (int i = 0; i < 7; ++i) cache.keep(fmt::format("last {}", i), answer_of(20000, i));
     DOCTEST_CHECK(cached_bytes(folder.path()) <= 120000);
-}
-
-DOCTEST_TEST_CASE("digest: every byte, its place and the borders between texts count") {
-    const auto hex = [](auto... texts) {
-        Digest digest;
-        (digest.text(texts), ...);
-        return digest.hex();
-    };
-    DOCTEST_CHECK(hex("ab", "c") != hex("a", "bc"));
-    DOCTEST_CHECK(hex("") != hex());
-    DOCTEST_CHECK(hex(std::string(3, '\0')) != hex(std::string(4, '\0')));
-    DOCTEST_CHECK(hex("abc").size() == 32);
-    std::set<std::string> seen;
-    for (int bit = 0; bit < 1024; ++bit) {
-        std::string bytes(128, '\0');
-        bytes[static_cast<std::size_t>(bit / 8)] = static_cast<char>(1 << bit % 8);
-        seen.insert(hex(bytes));
-    }
-    DOCTEST_CHECK(seen.size() == 1024);
-    Image wide(4, 2, 1, 0.5f), tall(2, 4, 1, 0.5f);
-    Digest of_wide, of_tall;
-    of_wide.image(wide), of_tall.image(tall);
-    DOCTEST_CHECK(of_wide.value() != of_tall.value());
 }
 
 }  // namespace disk_cache_test

@@ -528,16 +528,16 @@ DOCTEST_TEST_CASE("another threshold asks no network, and remembered views and t
     Fixture fixture;
     edit::CachedAttention cached(std::make_unique<ColourAttention>());
     const auto segmenter = edit::make_default_segmenter();
-    edit::ViewMemory memory;
+    edit::LocateCache cache;
     ThreadPool threads(2);
     const auto find = [&](bool remembers) {
         edit::LocateTools tools{*fixture.rasterizer, cached, segmenter.get(), nullptr, {}};
-        if (remembers) tools.memory = &memory, tools.threads = &threads;
+        if (remembers) tools.cache = &cache, tools.threads = &threads;
         return edit::locate(fixture.input(request), tools);
     };
     find(true);
     const auto asked = cached.asked();
-    DOCTEST_CHECK(memory.renders.size() == fixture.views.size());
+    DOCTEST_CHECK(cache.renders.size() == fixture.views.size());
     for (const double threshold : {0.35, 0.6}) {
         request.attention_threshold = threshold;
         const auto quick = find(true), plain = find(false);
@@ -557,9 +557,9 @@ DOCTEST_TEST_CASE("a threshold at which another view is at odds with the rest as
     Fixture fixture;
     const auto asked_at = [&](double first, double then) {
         edit::CachedAttention cached(std::make_unique<DistractedAttention>());
-        edit::ViewMemory memory;
+        edit::LocateCache cache;
         edit::LocateTools tools{*fixture.rasterizer, cached, nullptr, nullptr, {}};
-        tools.memory = &memory;
+        tools.cache = &cache;
         std::vector<std::size_t> asked;
         for (const double threshold : {first, then}) {
             request.attention_threshold = threshold;

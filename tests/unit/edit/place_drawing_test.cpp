@@ -105,7 +105,7 @@ struct Fixture {
     std::unique_ptr<raster::Rasterizer> rasterizer = raster::make_fast_rasterizer(pool);
     ColourAttention attention;
     HatPainter painter;
-    edit::ViewMemory memory;
+    edit::LocateCache cache;
     edit::EditRequest request;
     bool plain_ground = false;
 
@@ -119,7 +119,7 @@ struct Fixture {
     edit::LocateResult locate(const std::vector<std::uint8_t>* label = nullptr) {
         edit::LocateTools tools{*rasterizer, attention, nullptr, nullptr, {}};
         tools.drawing = &painter;
-        tools.memory = &memory;
+        tools.cache = &cache;
         tools.plain_ground = plain_ground;
         return edit::locate({scene.set, views, words, request, {}, {0, -1, 0}, {0, 0, -1}, label}, tools);
     }

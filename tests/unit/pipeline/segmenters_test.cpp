@@ -112,7 +112,7 @@ DOCTEST_TEST_CASE("masks are remembered: the same picture and clicks ask no netw
     DOCTEST_CHECK(first->name() == "SAM");
     const auto mask = first->segment(image, Clicks, std::nullopt, {});
     DOCTEST_CHECK(mask.width == image.width);
-    DOCTEST_CHECK(mask.data == without_memory(*first).segment(image, Clicks, std::nullopt, {}).data);
+    DOCTEST_CHECK(mask.data == uncached(*first).segment(image, Clicks, std::nullopt, {}).data);
     const auto again = open_segmenters(job, cache).clicks;
     const auto before = network_use();
     DOCTEST_CHECK(again->segment(image, Clicks, std::nullopt, {}).data == mask.data);
