@@ -42,7 +42,20 @@ SUB_ROOMS = {
         "cameras": {"bytes", "image", "scene"},
         "project": {"bytes", "files", "image", "scene", "cameras"},
     },
+    "neural": {
+        "": {"api", "layers", "weights", "diffusion", "guidance", "clip", "sam"},
+        "api": set(),
+        "layers": {"api"},
+        "weights": {"api", "layers"},
+        "diffusion": {"api", "layers", "weights"},
+        "guidance": {"api", "layers", "weights", "diffusion"},
+        "clip": {"api", "layers", "weights", "diffusion"},
+        "sam": {"api", "layers", "weights"},
+    },
 }
+# room -> the one folder of it that other rooms include, and who may include the rest
+DOORS = {"neural": ("engine/neural/api/", {"neural", "laboratory/starter"})}
+TORCH_FREE = "engine/neural/api/"
 UNIT_LIMIT = 15        # units (files of one stem) directly in a folder of a room that has sub-rooms
 UI_FORBIDDEN = {"vulkan", "preview", "neural"}
 SOURCE_LIMIT = 600     # lines of a file
@@ -81,6 +94,11 @@ def check_include(relative, line_number, target, is_header):
             used = module_of(target.split("/"))
             if used != folder and used not in ARROWS[folder]:
                 yield f"{relative}:{line_number}: engine/{folder} must not include engine/{used}"
+    for behind, (door, exempt) in DOORS.items():
+        if room != "tests" and target.startswith(f"engine/{behind}/") and not target.startswith(door) and folder not in exempt:
+            yield f"{relative}:{line_number}: of engine/{behind} only {door} is included from outside"
+    if str(relative).startswith(TORCH_FREE) and target.startswith(("torch/", "ATen/", "c10/")):
+        yield f"{relative}:{line_number}: {TORCH_FREE} is free of torch"
     settings = target.startswith("engine/neural/") and target.endswith("_parameters.h")   # lists of fields, nothing else
     if room == "ui" and target.startswith("engine/") and target.split("/")[1] in UI_FORBIDDEN and not settings:
         yield f"{relative}:{line_number}: ui must not include {target}"
@@ -227,6 +245,10 @@ def self_test():
         "ui/k.cpp": ("// x\n#include <glm/vec3.hpp>\n", "glm is included by"),
         "engine/raster/h.cpp": ("// x\n#include \"app/main.h\"\n", "must not include app"),
         "engine/io/bytes/m.cpp": ("// x\n#include \"engine/io/image/png.h\"\n", "engine/io/bytes must not include engine/io/image"),
+        "engine/neural/layers/p.cpp": ("// x\n#include \"engine/neural/diffusion/unet.h\"\n",
+                                       "engine/neural/layers must not include engine/neural/diffusion"),
+        "engine/neural/api/q.cpp": ("// x\n#include <torch/torch.h>\n", "is free of torch"),
+        "engine/pipeline/r.cpp": ("// x\n#include \"engine/neural/weights/lora.h\"\n", "is included from outside"),
         "engine/io/other/o.cpp": ("// x\n#include \"engine/io/image/png.h\"\n", "has no sub-room"),
         **{f"engine/io/files/unit{number}.h": ("// x\n", "") for number in range(15)},
         "engine/io/files/unit15.h": ("// x\n", "engine/io/files: 16 units"),
