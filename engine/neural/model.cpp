@@ -73,7 +73,7 @@ public:
         return !facts.shape_lora.empty() && !facts.shape_cameras.empty() &&
                shows_scene(SafetensorsFile(loaded_->path / facts.shape_cameras));
     }
-    /// What was tuned draws by itself: the network beside it knows nothing of that.
+    /// A tuned model draws by itself: the network beside it was not tuned.
     bool supports_appearance_editing() const override {
         return bundle_ == loaded_ && loaded_->facts.shape_restyles && !loaded_->facts.shape_unet.empty() &&
                supports_scene_conditioning();
@@ -241,8 +241,8 @@ std::unique_ptr<TextToImage> load_model(const std::filesystem::path& path, const
                       lora.file.filename().string(), mark == LoraMark::Tcd ? "tcd" : "lcm");
         }
     }
-    // Matrices of a small model are too small for OpenBLAS to share them out; its second thread would wait
-    // for them in a loop all the same, on the processor that the viewport needs.
+    // Matrices of a small model are too small for OpenBLAS to share them out. Its second thread would spin on
+    // the processor that the viewport needs.
     set_blas_threads(is_small(bundle.unet->config()) ? 1 : torch::get_num_threads());
     return std::make_unique<Model>(std::move(bundle), std::move(fast));
 }

@@ -22,7 +22,7 @@
 
 namespace gse::neural {
 
-/// How a sample is drawn from the model.
+/// Settings of one sample.
 struct SampleRequest {
     std::string prompt;
     std::string negative_prompt;
@@ -48,10 +48,10 @@ public:
     /// are as `parameters` say.
     virtual std::unique_ptr<edit::MultiViewEditor> views(const std::string& prompt,
                                                          const SdsParameters& parameters) const = 0;
-    /// Whether its views() are shown the backdrops where they draw anew: they then know where in a scene a
-    /// new thing goes.
+    /// Tells whether views() shows the model the clean plate where it draws anew. Such a model knows where in
+    /// a scene a new object goes.
     virtual bool supports_scene_conditioning() const { return false; }
-    /// Whether its views() give things another look by a network that is shown them
+    /// Tells whether views() changes the look of objects by a network that is shown them
     /// (edit::MultiViewEditor::supports_appearance_editing()).
     virtual bool supports_appearance_editing() const { return false; }
     /// Words the model was trained on; empty = an open vocabulary.
@@ -61,17 +61,17 @@ public:
     /// Side of the square images the model works at.
     virtual int image_size() const = 0;
     virtual std::string name() const = 0;
-    /// How views are redrawn by it.
+    /// Kind of the model, which decides how views are redrawn.
     virtual BundleKind kind() const = 0;
     virtual Image sample(const SampleRequest& request) const = 0;
     virtual Image img2img(const Image& image, const SampleRequest& request) const = 0;
     /// The bundle's text-image encoder; null when it has none.
     virtual std::unique_ptr<edit::ImageTextEncoder> image_text_encoder() const { return nullptr; }
 
-    /// DreamBooth: a model of its own that has learned what the pictures show under `instance_prompt`, while
-    /// pictures of `class_prompt`, drawn from the loaded weights first, keep what it knows. Begins at the
-    /// loaded weights, also where this model is a tuned one. The class's pictures are taken from `cache` (of
-    /// the loaded weights; may be null) and kept there. Throws Error (Cancelled) on a stop request.
+    /// Tunes a model of its own by DreamBooth (Ruiz et al. 2023). It learns what the pictures show under
+    /// `instance_prompt`; pictures of `class_prompt` keep what it knows. The tuning begins at the loaded
+    /// weights, also where this model is a tuned one. Pictures of the class come from `cache` and go there;
+    /// it is of the loaded weights and may be null. Throws Error (Cancelled) on a stop request.
     virtual TunedModel tune(const DreamBoothParameters& parameters, std::span<const Image> instance,
                             const std::string& instance_prompt, const std::string& class_prompt,
                             const JobControl& job, AnswerCache* cache) const = 0;
@@ -94,7 +94,7 @@ public:
     }
 };
 
-/// What tune() gives.
+/// Result of tune().
 struct TunedModel {
     std::shared_ptr<TextToImage> model;
     TuneReport report;
@@ -106,7 +106,7 @@ inline TunedModel TextToImage::tune(const DreamBoothParameters& parameters, std:
     return tune(parameters, instance, instance_prompt, class_prompt, job, nullptr);
 }
 
-/// What a model is loaded with.
+/// Options of loading a model.
 struct ModelOptions {
     std::string device = "cpu";
     /// Merged into the weights, in order; one that was distilled (lora_mark()) only into those that redraw
@@ -131,12 +131,13 @@ public:
     /// threads. Throws Error (NotFound, Malformed, Unsupported, Model).
     virtual std::unique_ptr<edit::Segmenter> load_segmenter(const std::filesystem::path& path,
                                                             const std::string& device) = 0;
-    /// Finds nouns in pictures: CLIPSeg, from a folder. The same of threads and errors.
+    /// Loads CLIPSeg from a folder; it finds nouns in pictures. Threads and errors are as for
+    /// load_segmenter().
     virtual std::unique_ptr<edit::TextSegmenter> load_text_segmenter(const std::filesystem::path& folder,
                                                                      const std::string& device) = 0;
     /// Threads inside one network operation; 0 = one per core.
     virtual void set_threads(int count) = 0;
-    /// What the calling thread has asked of the networks since it began.
+    /// Counts what the calling thread has asked of the networks since it began.
     virtual NetworkUse use() const = 0;
 };
 

@@ -8,7 +8,7 @@
 namespace gse::neural {
 namespace {
 
-/// What a UNet is that takes so many channels beside the latents.
+/// Kind of a UNet by the number of channels that it takes beside the latents.
 std::string other_model(std::int64_t in, std::int64_t out, std::int64_t latents) {
     if (out == latents && in == 2 * latents + 1)
         return fmt::format(

@@ -1,5 +1,4 @@
-// What kind of text-to-image model a bundle is: how it is walked from noise to a picture, and what it is
-// told. No torch in it.
+// Kinds of text-to-image models: samplers and conditioning differ between them.
 #pragma once
 
 #include <array>
@@ -22,14 +21,14 @@ enum class BundleKind {
 /// the kinds.
 constexpr std::array BundleKindNames{"plain", "lcm", "tcd", "turbo", "ip2p"};
 inline const char* kind_name(BundleKind kind) { return BundleKindNames[static_cast<std::size_t>(kind)]; }
-/// Whether a few steps do, at a guidance that is off or built in.
+/// Tells whether a few steps are enough, at a guidance scale that is off or built in.
 inline bool is_few_step(BundleKind kind) {
     return kind == BundleKind::Lcm || kind == BundleKind::Tcd || kind == BundleKind::Turbo;
 }
 
-/// The kind that the configurations tell, or `stated` (of gseditpro.json; empty = nothing) says. Throws Error
-/// (Model) with one sentence for a UNet that is of none of these kinds, (Malformed) for a statement that is
-/// no kind or cannot be.
+/// Kind by the configurations, or by `stated` (of gseditpro.json; empty = nothing). Throws Error (Model) for
+/// a UNet that is of no known kind. Throws Error (Malformed) for a statement that is no kind, or contradicts
+/// the configurations.
 BundleKind bundle_kind(const UNetConfig& unet, const SchedulerConfig& scheduler, std::int64_t latent_channels,
                        const std::string& stated, const std::filesystem::path& path);
 

@@ -49,7 +49,7 @@ public:
     void expect_absent(const char* key) const {
         if (has(key)) refuse(fmt::format("the configuration asks for \"{}\", which is not supported", key));
     }
-    /// The same for a key that tells what the model is.
+    /// Reads a key that tells what the model is.
     void expect_absent(const char* key, const char* model) const {
         if (has(key))
             refuse(fmt::format("this is {}: the configuration asks for \"{}\", which is not supported", model,
@@ -415,7 +415,7 @@ ClipConfig read_towers(const Reader& reader, const std::filesystem::path& path) 
     ClipConfig config;
     reader.get("projection_dim", config.projection_dim);
     reader.positive("projection_dim", config.projection_dim, MaxWidth);
-    // What transformers leaves out of the file is CLIP ViT-B/32's.
+    // Defaults are those of CLIP ViT-B/32, which transformers leaves out of the file.
     config.text.hidden_size = 512;
     config.text.intermediate_size = 2048;
     config.text.num_attention_heads = 8;

@@ -11,7 +11,7 @@ namespace gse::neural {
 
 using Json = nlohmann::ordered_json;
 
-/// unet/config.json. What is predicted (noise or velocity) stands in the scheduler's config.
+/// Contents of unet/config.json. The kind of prediction (noise or velocity) stands in the scheduler's config.
 struct UNetConfig {
     std::int64_t sample_size = 64;  // side of the latent the model was trained at
     std::int64_t in_channels = 4;
@@ -39,8 +39,8 @@ struct UNetConfig {
     /// Channels in which it is shown the picture that is to change (inpainting()); 0 = none. Not in the file
     /// either.
     std::int64_t inpaint_channels = 0;
-    /// Pixels of an outline along the side of a latent cell, where it also tells which of them what is new
-    /// covers; 0 = it does not. Not in the file either.
+    /// Pixels of an outline along the side of a latent cell; 0 = the network predicts no outlines. Not in the
+    /// file either.
     std::int64_t outline_scale = 0;
 
     /// Throws Error (Model, Malformed) naming the key that is wrong or not supported.
@@ -153,7 +153,7 @@ struct SchedulerConfig {
     bool set_alpha_to_one = false;
     bool clip_sample = false;
     double clip_sample_range = 1;
-    // Of models distilled to few steps (LCM, TCD)
+    // Models distilled to few steps (LCM, TCD)
     std::int64_t original_inference_steps = 50;  // of the solver they were distilled from
     double timestep_scaling = 10;
 

@@ -61,7 +61,7 @@ struct DreamBoothParameters {
     }
 };
 
-/// What a tuning did. Losses are mean squared errors of the prediction, "before" and "after" over the same
+/// Report of a tuning. Losses are mean squared errors of the prediction, "before" and "after" over equal
 /// noise.
 struct TuneReport {
     int steps = 0;

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether `text` has `word` between characters that are no letters, whatever the case.
+/// Finds `word` between characters that are no letters, in either case.
 bool says_word(const std::string& text, std::string_view word) {
     const auto lower = [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); };
     std::string plain(text);

@@ -7,7 +7,7 @@
 
 namespace gse::neural {
 
-/// What a LoRA makes of the model, beside its looks: one that was distilled wants a sampler of its own.
+/// Mark of a distilled LoRA, which needs a sampler of its own.
 enum class LoraMark { None, Lcm, Tcd };
 
 struct LoraSpec {
@@ -27,7 +27,7 @@ std::string lora_text(const LoraSpec& lora);
 /// not there or is pickled.
 std::vector<LoraSpec> find_loras(const std::vector<std::string>& texts);
 
-/// What the file's metadata, its name or the name of its folder says: "lcm" or "tcd" as a word of its own.
+/// Mark by the file's metadata, its name or the name of its folder: "lcm" or "tcd" as a word of its own.
 LoraMark lora_mark(const std::filesystem::path& file);
 
 }  // namespace gse::neural

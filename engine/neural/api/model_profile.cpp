@@ -23,7 +23,7 @@ constexpr std::int64_t LeastSdWidth =
     320;  // channels of the UNet's first level; every Stable Diffusion has them
 constexpr std::int64_t Sd2TextWidth = 1024;
 
-/// What a model says about the machine.
+/// Machine settings that a model states.
 struct MachineDefaults {
     int threads = 1;
 
@@ -84,13 +84,13 @@ ModelNature checkpoint_nature(const fs::path& path) {
     unet.use_linear_projection = shape_of(header, "input_blocks.1.1.proj_in.weight").size() == 2;
     const auto beside = path.parent_path();
     unet = config_or(beside / "unet_config.json", unet);
-    // As the model is loaded: nothing in the file tells what an SD 2.x predicts.
+    // The file does not tell what an SD 2.x predicts; loading assumes velocity, too.
     SchedulerConfig scheduler;
     if (unet.cross_attention_dim >= Sd2TextWidth) scheduler.prediction_type = "v_prediction";
     return nature_of(unet, config_or(beside / "scheduler_config.json", scheduler), unet.out_channels, beside);
 }
 
-/// What suits a kind that redraws views in its own way, over what its size states (views.md section 15).
+/// Adds the settings of a kind that redraws views in its own way, over those of its size (METHOD.md).
 void state_kind(Json& json, const ModelNature& nature) {
     if (nature.kind == BundleKind::Plain) return;
     Json request = json.value("request", Json::object()), guidance = json.value("guidance", Json::object());
@@ -123,7 +123,7 @@ void state_kind(Json& json, const ModelNature& nature) {
     json["guidance"] = std::move(guidance);
 }
 
-/// method.md section 7; LoRA and class pictures: views.md section 15. What is not here suits all kinds.
+/// Settings by size. Fields that are not here have one default for all kinds.
 Json stated_by_size(ModelKind kind) {
     if (kind == ModelKind::Small) return Json::object();
     Json json;

@@ -1,5 +1,4 @@
-// What a model states as defaults of an edit's settings, read from its small files and headers, without
-// torch.
+// Defaults of an edit's settings that a model states, read from its small files and headers, without torch.
 #pragma once
 
 #include <filesystem>
@@ -20,7 +19,7 @@ enum class ModelKind {
     Sd2Velocity,  // Stable Diffusion 2.x, 768 pixels, predicts velocity
 };
 
-/// What a run knows of a model before it is loaded.
+/// Facts about a model before it is loaded.
 struct ModelNature {
     ModelKind size = ModelKind::Small;
     BundleKind kind = BundleKind::Plain;
@@ -42,16 +41,15 @@ struct ModelProfile {
         entries;  // one per field; those of a small model are the settings' own defaults
 };
 
-/// A model folder's or checkpoint's kind. What is wrong with a model is said when it is loaded: here it is
-/// small.
+/// Size of a model folder or checkpoint. A broken model counts as small; loading it says what is wrong.
 ModelKind model_kind(const std::filesystem::path& model);
 
-/// The same with how it is walked; a LoRA that was distilled makes a plain model one of few steps.
+/// Size and kind of a model. A distilled LoRA turns a plain model into one of few steps.
 ModelNature model_nature(const std::filesystem::path& model, const std::vector<LoraSpec>& loras = {});
 
-/// What the kind states, and over it "profile" of gseditpro.json beside the weights: {"request":
-/// {"image_size": 512}, ...}. Throws Error (Malformed) that names the setting and the file: unknown, of the
-/// wrong type, out of its range.
+/// Settings by kind, and over them "profile" of gseditpro.json beside the weights: {"request": {"image_size":
+/// 512}, ...}. Throws Error (Malformed) that names setting and file: unknown, of the wrong type, or out of
+/// range.
 ModelProfile model_profile(const std::filesystem::path& model, const std::vector<LoraSpec>& loras = {});
 
 }  // namespace gse::neural

@@ -1,4 +1,4 @@
-// What a run asks of the networks, counted in one place.
+// Counts of what is asked of the networks.
 #pragma once
 
 #include <cstdint>
@@ -27,8 +27,8 @@ struct NetworkUse {
     }
 };
 
-/// What the calling thread has asked for since it began: a run works on one thread, so that the difference of
-/// two readings is its own.
+/// Counts of the calling thread since it began. A run works on one thread: the difference of two readings is
+/// its own.
 NetworkUse& thread_use();
 
 }  // namespace gse::neural

@@ -1,4 +1,4 @@
-// How much of a sentence a model's text encoder reads; known without loading a network.
+// Reader of prompts: counts the words that a model's text encoder has tokens for, without loading a network.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ public:
     PromptReader(const PromptReader&) = delete;
     PromptReader& operator=(const PromptReader&) = delete;
 
-    /// How many of the sentence's words are read to their end.
+    /// Counts the words that fit the text encoder to their end.
     std::size_t words_read(const std::vector<std::string>& words) const;
 
 private:

@@ -7,7 +7,7 @@
 
 namespace gse::neural {
 
-/// What the image encoder returns; N = 1 + patches, the class token first.
+/// Output of the image encoder; N = 1 + patches, the class token first.
 struct VisionEncoding {
     std::vector<torch::Tensor> hidden_states;  // [B,N,D]; [0] after pre_layrnorm, [i] output of layer i-1
     torch::Tensor pooled;                      // [B,D] class token after post_layernorm
@@ -56,7 +56,7 @@ TORCH_MODULE(ClipModel);
 LoadPlan clip_plan();
 std::string clip_key(const std::string& parameter);
 
-/// How a picture becomes the image encoder's input.
+/// Preprocessing of pictures for the image encoder.
 struct ClipPreprocessing {
     std::int64_t size = 224;
     std::vector<double> mean = {0.48145466, 0.4578275, 0.40821073};  // OpenAI CLIP's

@@ -8,7 +8,7 @@
 
 namespace gse::neural {
 
-/// Where the encoder is and what it shares with the model around it.
+/// Folder of the encoder, and what it shares with the model around it.
 struct ClipFolder {
     std::filesystem::path path;       // config.json, model.safetensors; may have tokenizer files of its own
     std::filesystem::path tokenizer;  // used when it has none

@@ -42,7 +42,8 @@ class ClipSegModelImpl : public torch::nn::Module {
 public:
     explicit ClipSegModelImpl(const ClipSegConfig& config, const WeightOptions& options = {});
 
-    /// What the decoder is shown of normalised pixels [B,3,H,W], sides multiples of the patch size.
+    /// Features that the decoder takes, of normalised pixels [B,3,H,W]; sides are multiples of the patch
+    /// size.
     std::vector<torch::Tensor> activations(const torch::Tensor& pixels) const;
     /// Logits [B,H,W] of a condition [B,P]: the text encoder's text_embeds, or the image encoder's
     /// image_embeds.

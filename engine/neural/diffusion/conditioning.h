@@ -1,12 +1,12 @@
-// What steers one call of the UNet: text against a negative text (classifier-free guidance), an embedded
-// guidance scale (latent consistency models), or text and picture (InstructPix2Pix).
+// Conditioning of one UNet call: classifier-free guidance, an embedded guidance scale (latent consistency
+// models), or text and picture (InstructPix2Pix).
 #pragma once
 
 #include "engine/neural/diffusion/unet.h"
 
 namespace gse::neural {
 
-/// Of B pictures at one timestep.
+/// Conditioning of B pictures at one timestep.
 struct Conditioning {
     torch::Tensor context;        // [B,2,T,D] negative, positive
     double guidance_scale = 7.5;  // 1 = the positive text alone
@@ -19,7 +19,7 @@ struct Conditioning {
 /// Guidance scale that a network distilled with it (LCM) is told where nobody asks for one: its reference's.
 constexpr double UsualEmbeddedScale = 8.5;
 
-/// Whether the UNet takes the latents of a picture beside its own (InstructPix2Pix).
+/// Tells whether the UNet takes the latents of a picture beside its own (InstructPix2Pix).
 bool takes_picture(const UNetConfig& config);
 
 /// Into how many parts the call's rows fall.
@@ -33,14 +33,14 @@ struct UNetRows {
     int parts = 1;
 };
 
-/// Rows for latents [B,C,h,w] as the UNet sees them. Classifier-free guidance: [negative; positive]. With a
-/// picture (Brooks et al. 2023, section 3.2): [text and picture; picture; neither], where neither has a
-/// picture of zeros; [picture; text and picture] at image scale 1, where the third cancels; the first alone
-/// where a scale turns guidance off. A network distilled with its guidance scale: one row, whatever the
-/// scale.
+/// Rows for latents [B,C,h,w] as the UNet sees them.
+/// Classifier-free guidance: [negative; positive]; the positive row alone where the scale turns guidance off.
+/// Text and picture (Brooks et al. 2023, section 3.2): [text and picture; picture; neither], where neither
+/// has a picture of zeros. At image scale 1 the third row cancels: [picture; text and picture].
+/// A network distilled with its guidance scale: one row, whatever the scale.
 UNetRows unet_rows(const UNetConfig& config, const torch::Tensor& latents, const Conditioning& conditioning);
 
-/// What the rows' outputs [parts * B,C,h,w] come to together: [B,C,h,w].
+/// Combines the outputs [parts * B,C,h,w] of the rows into [B,C,h,w].
 torch::Tensor combine_rows(const torch::Tensor& output, int parts, const Conditioning& conditioning);
 
 /// Both, and the call between them, at timestep `t` (a scalar). `capture` sees all rows; an outline is that

@@ -1,6 +1,6 @@
 // Samplers of models distilled to few steps: latent consistency models (Luo et al. 2023, algorithm 3) and
-// trajectory consistency distillation (Zheng et al. 2024, algorithm 4), in the conventions (tables, last
-// step) of diffusers.
+// trajectory consistency distillation (Zheng et al. 2024, algorithm 4). Tables and the last step follow
+// diffusers.
 #include <fmt/format.h>
 
 #include <cmath>

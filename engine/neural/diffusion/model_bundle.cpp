@@ -37,7 +37,7 @@ struct Parts {
     ModelFacts facts;
     BundleKind kind = BundleKind::Plain;
 
-    /// Where what belongs to the model lies beside its weights.
+    /// Paths of what belongs to the model beside its weights.
     fs::path folder() const { return single_file ? root.parent_path() : root; }
 };
 

@@ -30,7 +30,7 @@ struct ModelFacts {
     std::vector<std::int64_t> attention_sizes;
     /// Noise levels probed, as shares of the schedule; empty = 0.3, 0.5, 0.7.
     std::vector<double> attention_timesteps;
-    /// The same for what is not in the image yet; empty = 0.8, 0.85, 0.9.
+    /// Noise levels for objects that are not in the image yet; empty = 0.8, 0.85, 0.9.
     std::vector<double> attention_absent_timesteps;
     /// Words the model was trained on; empty = an open vocabulary.
     std::vector<std::string> vocabulary;
@@ -45,14 +45,13 @@ struct ModelFacts {
     /// model is told the side exactly: it knows the eight of edit::side_blend(), and what lies between two by
     /// the mixture of both sentences. Empty = it has none.
     std::string shape_lora;
-    /// The embedding of cameras that goes with it, and the convolution in which it is shown the scene without
-    /// what may change (with_scene_inputs()), relative to the model's folder; empty = it is told and shown
-    /// nothing.
+    /// File of that LoRA's scene inputs (with_scene_inputs()), relative to the model's folder. Empty = the
+    /// LoRA has none.
     std::string shape_cameras;
-    /// Folder of a network of its own for the same, which takes the place of both (load_shape_unet()),
-    /// relative to the model's; what is tuned or merged with a LoRA does not change it. Empty = it has none.
+    /// Folder of a UNet of its own for new objects (load_shape_unet()), relative to the model's folder. It
+    /// takes the place of LoRA and scene inputs; tunings and LoRAs do not change it. Empty = none.
     std::string shape_unet;
-    /// Whether that network has learned to give what it is shown another colour, material or ground, too.
+    /// Tells whether that network can change colour, material or ground of what it is shown.
     bool shape_restyles = false;
     /// Folder of the classifier that tells from where a picture shows a thing (ViewpointReader), relative to
     /// the model's; it needs an image-text encoder beside it. Empty = it has none.
@@ -63,7 +62,7 @@ struct ModelFacts {
     static ModelFacts from_json(const Json& json, const std::filesystem::path& path);
 };
 
-/// What a model is, read from its small files and headers only.
+/// Description of a model, read from its small files and headers only.
 struct ModelDescription {
     std::string name;
     std::string layout;  // "diffusers folder" or "single file"

@@ -34,10 +34,10 @@ torch::Tensor seeded_noise(torch::IntArrayRef shape, std::uint64_t seed);
 /// Walks `latents` [1,C,h,w] to the clean sample, without a graph.
 torch::Tensor denoise(const ModelBundle& bundle, torch::Tensor latents, const DenoiseJob& job);
 
-/// How a kind of model walks from noise to a picture.
+/// Sampler and guidance of a kind of model.
 SamplerKind sampler_of(BundleKind kind);
 
-/// Which autoencoder: the VAE, or the tiny one where the model has it.
+/// Choice of autoencoder: the VAE, or the tiny one where the model has it.
 enum class Codec { Full, Quick };
 
 /// Images are [B,3,H,W] in [0,1]; latents are scaled (what the UNet sees). Encoding takes the posterior's
@@ -46,7 +46,8 @@ torch::Tensor image_to_latents(const ModelBundle& bundle, const torch::Tensor& i
                                Codec codec = Codec::Full);
 torch::Tensor latents_to_image(const ModelBundle& bundle, const torch::Tensor& latents,
                                Codec codec = Codec::Full);
-/// What a model that takes a picture is told of it: the same mean, not scaled; undefined for other models.
+/// Latents of a picture that conditions the model: the mean, not scaled. Undefined for models that take no
+/// picture.
 torch::Tensor picture_latents(const ModelBundle& bundle, const torch::Tensor& image);
 
 /// Score distillation on scaled latents.

@@ -11,7 +11,7 @@
 
 namespace gse::neural {
 
-/// What the UNet's output means.
+/// Meaning of the UNet's output.
 enum class Prediction { Epsilon, Velocity, Sample };
 
 /// The forward process: betas and cumulative products, fp32 as in the reference.
@@ -31,7 +31,7 @@ public:
                             const torch::Tensor& t) const;
     /// Target of velocity prediction: sqrt(a_t) noise - sqrt(1-a_t) x0.
     torch::Tensor velocity(const torch::Tensor& x0, const torch::Tensor& noise, const torch::Tensor& t) const;
-    /// What the UNet is trained to return, according to the configured prediction.
+    /// Training target of the UNet, according to the configured prediction.
     torch::Tensor target(const torch::Tensor& x0, const torch::Tensor& noise, const torch::Tensor& t) const;
     /// The noise, or the clean sample, that a model output stands for at x_t.
     torch::Tensor to_epsilon(const torch::Tensor& output, const torch::Tensor& x_t,
@@ -78,7 +78,7 @@ public:
 
 protected:
     explicit Sampler(const NoiseSchedule& schedule) : schedule_(schedule) {}
-    /// As the schedule's configuration asks: a clean sample in its range.
+    /// Clips a clean sample to its range where the schedule's configuration asks for it.
     torch::Tensor clipped(const torch::Tensor& x0) const;
 
     const NoiseSchedule schedule_;
@@ -87,7 +87,7 @@ protected:
     torch::Tensor predicted_x0_;
 };
 
-/// What only some samplers go by; the others ignore it.
+/// Options of some samplers; the others ignore them.
 struct SamplerOptions {
     double eta = 0;  // share of fresh noise: DDIM's eta, TCD's gamma
     double strength =
@@ -118,8 +118,8 @@ struct ImageToImage {
     std::unique_ptr<Sampler> sampler;
     std::int64_t first = 0;
 };
-/// LCM and TCD take the strength into their table and do all `steps`; the others do the last int(steps *
-/// strength) of them, at least one.
+/// Prepares an image to image run. LCM and TCD take the strength into their table and do all `steps`. The
+/// others do the last int(steps * strength) steps, at least one.
 ImageToImage image_to_image(SamplerKind kind, const NoiseSchedule& schedule, std::int64_t steps,
                             SamplerOptions options);
 

@@ -5,7 +5,7 @@
 
 namespace gse::neural {
 
-/// Where the merges are: beside the checkpoint, or among the program's assets. Throws Error (NotFound).
+/// Finds the merges beside the checkpoint, or among the program's assets. Throws Error (NotFound).
 std::filesystem::path find_tokenizer(const std::filesystem::path& beside);
 
 }  // namespace gse::neural

@@ -61,7 +61,7 @@ TORCH_MODULE(TinyAutoencoder);
 /// and taesd_decoder.safetensors; fp32. Throws Error (NotFound, Malformed, Model).
 TinyAutoencoder load_tiny_autoencoder(const std::filesystem::path& folder);
 
-/// Whether load_tiny_autoencoder() would find files there.
+/// Tells whether load_tiny_autoencoder() would find files there.
 bool has_tiny_autoencoder(const std::filesystem::path& folder);
 
 }  // namespace gse::neural

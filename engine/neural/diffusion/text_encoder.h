@@ -6,7 +6,7 @@
 
 namespace gse::neural {
 
-/// What the text encoder returns; [B,T,D] unless said otherwise.
+/// Output of the text encoder; [B,T,D] unless said otherwise.
 struct TextEncoding {
     torch::Tensor last_hidden;                 // after the final norm: what the UNet is conditioned on
     std::vector<torch::Tensor> hidden_states;  // [0] embeddings, [i] output of layer i-1; no final norm

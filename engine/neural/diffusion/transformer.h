@@ -37,7 +37,7 @@ private:
 };
 TORCH_MODULE(FeedForward);
 
-/// Where a captured map comes from.
+/// Origin of a captured map.
 struct CaptureSite {
     AttentionCapture* capture = nullptr;
     std::string layer;

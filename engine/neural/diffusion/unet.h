@@ -13,7 +13,7 @@
 
 namespace gse::neural {
 
-/// What to keep of the cross-attention of one forward pass. Maps are appended in execution order (down, mid,
+/// Selection of cross-attention maps of one forward pass. Maps are appended in execution order (down, mid,
 /// up).
 struct AttentionCapture {
     struct Map {
@@ -28,7 +28,7 @@ struct AttentionCapture {
     bool stop_after_last = false;        // the pass ends after the last wanted layer and predicts nothing
     std::int64_t self_attention_side =
         0;  // above 0: keeps `affinities` of wanted layers of at most that side
-    /// Which layers; empty = all.
+    /// Filter of layers; empty = all.
     std::function<bool(std::string_view layer, std::int64_t height, std::int64_t width)> wants;
 
     std::vector<Map> maps;
@@ -37,22 +37,22 @@ struct AttentionCapture {
     std::vector<Map> affinities;
 };
 
-/// Pictures of one scene that are denoised together, each seeing what becomes of the others: self-attention
-/// goes across all of their tokens, and each is told its camera (MVDream, Shi et al. 2023, sections 3.1
-/// and 3.2). Maps of the latents' own size stay apart: their scores would be most of a pass.
+/// Pictures of one scene that are denoised together (MVDream, Shi et al. 2023, sections 3.1 and 3.2).
+/// Self-attention goes across all of their tokens, and each is told its camera. Maps of the latents' own size
+/// stay apart: their scores would be most of a pass.
 struct SceneViews {
     std::int64_t together = 1;   // consecutive rows of the batch that show one scene; divides the batch
     torch::Tensor cameras = {};  // [B,camera_dim]; undefined = nothing is known of them
     torch::Tensor inpaint =
         {};  // [B,inpaint_channels,h,w], inpainting(); undefined = they are not shown what was there
-    /// Where not null: set to which pixels of each picture what is new covers, logits [B,1,s h,s w] in fp32
-    /// with s = outline_scale (a picture and its transparency from one network: Zhang and Agrawala 2024,
-    /// "Transparent Image Layer Diffusion"); left alone by networks that do not tell.
+    /// Receives the outline of the new object where not null: logits [B,1,s h,s w] in fp32, s =
+    /// outline_scale. One network predicts a picture and its transparency (Zhang and Agrawala 2024). Networks
+    /// without outlines leave it alone.
     torch::Tensor* outline = nullptr;
 };
 
-/// Embedding [B,width] of guidance scales w [B] (LCM's is the scale - 1), fp32: sines, then cosines, of 1000
-/// w f_i with f_i = 10000^(-i / (width/2 - 1)) (Luo et al. 2023, section 4.2; an odd width ends in 0).
+/// Embedding [B,width] of guidance scales w [B] in fp32 (Luo et al. 2023, section 4.2); LCM's w is the scale
+/// - 1. Sines, then cosines, of 1000 w f_i with f_i = 10000^(-i / (width/2 - 1)); an odd width ends in 0.
 torch::Tensor guidance_embedding(const torch::Tensor& w, std::int64_t width);
 
 class UNetImpl : public torch::nn::Module {

@@ -56,7 +56,7 @@ Image word_map(const torch::Tensor& tokens, int width, int height) {
     return to_image(map);
 }
 
-/// What a model that takes a picture is shown beside the noisy one: the same picture.
+/// Picture beside the noisy one, for models that take one.
 torch::Tensor shown_picture(const ModelBundle& bundle, const torch::Tensor& latents) {
     return takes_picture(bundle.unet->config()) ? latents / bundle.scaling_factor() : torch::Tensor();
 }

@@ -1,5 +1,4 @@
-// Where the words of a prompt land in an image: cross-attention averaged over layers, heads, noise levels and
-// repeats.
+// Attention of words in an image: cross-attention averaged over layers, heads, noise levels and repeats.
 #pragma once
 
 #include <map>
@@ -52,7 +51,7 @@ public:
 
 private:
     std::vector<Image> maps_of(const edit::AttentionQuery& query);
-    /// Of a picture, kept for other questions about it.
+    /// Latents of a picture, cached for other questions about it.
     torch::Tensor latents_of(const Image& picture);
     AttentionCapture make_capture() const;
     torch::Tensor checked(const AttentionAccumulator& sum) const;

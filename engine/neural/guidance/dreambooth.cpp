@@ -13,8 +13,8 @@
 namespace gse::neural {
 namespace {
 
-/// A network of the same structure whose parameters are those of `source`, in fp32, another type, or each as
-/// it is (nullopt): shared memory where the type stays and no copy is asked for.
+/// Network of equal structure with the parameters of `source`, in fp32, another type, or each as it is
+/// (nullopt). Memory is shared where the type stays and no copy is asked for.
 template <class Holder>
 Holder twin_of(const Holder& source, bool copy, std::optional<torch::Dtype> dtype = torch::kFloat32) {
     const torch::NoGradGuard no_grad;

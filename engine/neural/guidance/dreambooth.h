@@ -51,7 +51,7 @@ public:
     /// Loss of one batch without a graph.
     double loss_of(const TuningBatch& batch);
 
-    /// What is trained, by name: "unet.conv_in.weight", "text.text_model...", "lora.unet.<layer>.down".
+    /// Trained parameters by name: "unet.conv_in.weight", "text.text_model...", "lora.unet.<layer>.down".
     NamedTensors trained() const;
     /// The model with the weights reached so far. With all weights tuned it shares them with the trainer.
     ModelBundle tuned() const;
@@ -75,7 +75,7 @@ private:
 /// what little was learned from the others is of no use.
 void count_step(TuneReport& report, const TuningStep& step, int planned);
 
-/// What a model learns from.
+/// Pictures and prompts that a model learns from.
 struct TuningTask {
     std::span<const Image> instance;
     std::string instance_prompt, class_prompt;
@@ -89,7 +89,7 @@ struct TuningResult {
 };
 
 /// Draws the class pictures, then tunes. Throws Error (Cancelled) on a stop request, (InvalidArgument)
-/// without pictures. The same seed gives the same weights, whatever the number of threads.
+/// without pictures. One seed gives one set of weights, whatever the number of threads.
 TuningResult run_dreambooth(const ModelBundle& bundle, const DreamBoothParameters& parameters,
                             const TuningTask& task, const JobControl& job);
 

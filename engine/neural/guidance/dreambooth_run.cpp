@@ -186,7 +186,7 @@ public:
         return make(rows, timesteps, random);
     }
 
-    /// The same pictures and noise at evenly spaced levels every time: what the report compares.
+    /// Losses for the report: fixed pictures and noise at evenly spaced levels.
     std::vector<TuningBatch> probes() const {
         std::vector<TuningBatch> batches;
         Random random(seed_ ^ ProbeStream);

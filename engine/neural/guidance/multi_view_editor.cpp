@@ -298,8 +298,8 @@ void DiffusionViews::denoise(Batch& batch, const std::vector<edit::EditView>& vi
     }
 }
 
-/// What the decoder makes of the change is added to the render: its own loss, and that of the resize, cancel.
-/// Where the picture is made anew, it is taken as it is. The tiny decoder does for all rounds but the last.
+/// Adds the decoded change to the render: losses of autoencoder and resize cancel. A picture that is made
+/// anew is taken as it is. All rounds but the last use the tiny decoder.
 edit::EditedViews DiffusionViews::finish(const Batch& batch, const std::vector<edit::EditView>& views,
                                          const edit::EditViewsRequest& input) const {
     const auto codec = input.round + 1 < input.rounds ? Codec::Quick : Codec::Full;
@@ -345,7 +345,7 @@ edit::EditedViews DiffusionViews::finish(const Batch& batch, const std::vector<e
     return targets;
 }
 
-/// What learned to draw new things learned to draw them from close by, too.
+/// The network for new objects has learned close views, too.
 edit::EditedViews DiffusionViews::edit(const std::vector<edit::EditView>& views,
                                        const edit::EditViewsRequest& input, const JobControl& job) {
     if (!shown_scene(input)) return redraw(views, input, job);

@@ -1,6 +1,5 @@
-// View guidance by a diffusion model: all views of a round go from a noised render to the prompt in a few
-// DDIM steps, with noise that lies on the scene's surface (views.md 8 and 9.1; DDIM: Song et al. 2021, eq.
-// 12).
+// Multi-view editing by a diffusion model: a noised render goes to the prompt in a few DDIM steps (Song et
+// al. 2021, eq. 12). Its noise lies on the scene's surface.
 #pragma once
 
 #include <map>
@@ -15,12 +14,12 @@
 namespace gse::neural {
 
 /// Timesteps of an img2img run of `steps` steps from `strength` of a schedule of `total` steps: strength (S -
-/// i) / S, i = 0..S-1, rounded to the schedule, descending, none twice.
+/// i) / S, i = 0..S-1. Rounded to the schedule, descending, none twice.
 std::vector<std::int64_t> redraw_timesteps(double strength, int steps, std::int64_t total);
 
-/// The same for a kind of model (views.md 4 and 10), of which a distilled one knows some levels only: of an
-/// LCM or TCD those of its table up to the strength; of a Turbo model trailing ones, at least the quarters it
-/// was trained on. Never none; at most `steps`.
+/// Timesteps of a run for a kind of model; distilled ones know some levels only. LCM and TCD take levels of
+/// their table up to the strength. Turbo models take trailing levels, at least the quarters they were trained
+/// on. Never empty; at most `steps`.
 std::vector<std::int64_t> redraw_levels(BundleKind kind, const NoiseSchedule& schedule, double strength,
                                         int steps);
 
@@ -37,7 +36,7 @@ public:
 
 private:
     struct Batch;
-    /// Whether what draws new things draws this round.
+    /// Tells whether the network for new objects draws this round.
     bool shown_scene(const edit::EditViewsRequest& input) const {
         return shapes_ != nullptr && (input.anew || restyles_);
     }
@@ -54,8 +53,8 @@ private:
     /// Guided output of the UNet for latents [K,C,h,w], in pieces that fit into memory.
     torch::Tensor output(const UNet& unet, const torch::Tensor& x, std::int64_t timestep,
                          const Conditioning& conditioning) const;
-    /// The same of what draws new things: in each of `groups` the views see each other. `outline`, where not
-    /// null, gets what it tells of them.
+    /// Guided output of the network for new objects; in each of `groups` the views see each other. `outline`,
+    /// where not null, receives outlines.
     torch::Tensor output_together(const torch::Tensor& x, std::int64_t timestep,
                                   const Conditioning& conditioning,
                                   const std::vector<std::vector<std::int64_t>>& groups,

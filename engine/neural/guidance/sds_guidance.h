@@ -1,6 +1,5 @@
-// Score distillation as the edit's guidance (GSEditPro eq. 3; DreamFusion, Poole et al. 2022), from which a
-// share of what the model would do to the unedited picture is taken (Delta Denoising Score, Hertz et al.
-// 2023, eq. 3).
+// Score distillation as the edit's guidance (DreamFusion, Poole et al. 2022). A share of the pull on the
+// unedited picture is taken off (Delta Denoising Score, Hertz et al. 2023, eq. 3).
 #pragma once
 
 #include <map>

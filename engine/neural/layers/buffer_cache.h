@@ -1,5 +1,5 @@
-// Memory of large tensors is kept for the next ones: a pass of a network asks for the same sizes again and
-// again, and what the system gives anew has to be filled with zeros page by page.
+// Cache of large tensors' memory: passes of a network ask for equal sizes again and again. The system fills
+// what it gives anew with zeros, page by page.
 #pragma once
 
 #include <cstddef>
@@ -25,7 +25,7 @@ void keep_buffers();
 /// Gives back what is not in use, to the system.
 void release_buffers();
 
-/// Of what asks the networks for a while: gives the buffers back in the end.
+/// Scope that asks the networks for a while; gives the buffers back at its end.
 class BufferHolder {
 public:
     BufferHolder() = default;

@@ -12,8 +12,8 @@ torch::Tensor to_tensor(const Image& image, const torch::Device& device);
 /// From [1,C,H,W].
 Image to_image(const torch::Tensor& tensor);
 
-/// Square of `size` pixels: bilinear when the image is not larger, else the mean over the covered area
-/// (bilinear would skip most pixels of a large render). Differentiable.
+/// Resizes to a square of `size` pixels: bilinear where the image is not larger, else the mean over the
+/// covered area. Bilinear would skip most pixels of a large render. Differentiable.
 torch::Tensor resize_square(const torch::Tensor& image, std::int64_t size);
 
 }  // namespace gse::neural

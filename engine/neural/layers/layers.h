@@ -13,8 +13,8 @@
 
 namespace gse::neural {
 
-/// How parameters come to life. `initialize` false leaves them undefined (they will be loaded); on
-/// torch::kMeta only names and shapes exist.
+/// Options of new parameters. `initialize` false leaves them undefined until they are loaded; on torch::kMeta
+/// only names and shapes exist.
 struct WeightOptions {
     torch::Device device = torch::kCPU;
     torch::Dtype dtype = torch::kFloat32;
@@ -108,7 +108,7 @@ void init_weights(torch::nn::Module& module, std::uint64_t seed);
 /// x * sigmoid(x), in place when no graph is recorded.
 torch::Tensor apply_silu(torch::Tensor x);
 
-/// What one attention computes besides its output.
+/// Result of one attention.
 struct AttentionRequest {
     std::int64_t heads = 1;
     bool upcast = false;  // scores in fp32 even for half inputs (SD 2.1)

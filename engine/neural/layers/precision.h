@@ -9,17 +9,17 @@
 
 namespace gse::neural {
 
-/// Whether libtorch multiplies bfloat16 matrices here with sums in single precision: on a processor with
-/// AVX-512 BF16 or AMX, by oneDNN (its own loops would sum in bfloat16). Always true for a GPU.
+/// Tells whether libtorch multiplies bfloat16 matrices here with sums in single precision. Processors need
+/// AVX-512 BF16 or AMX, where oneDNN does it; libtorch's own loops sum in bfloat16. Always true for a GPU.
 bool multiplies_bfloat16(const torch::Device& device);
 
 /// Seconds of a 3x3 convolution and a linear layer as the widest maps of such a UNet have them, the least of
 /// a few runs.
 double layer_seconds(const UNetConfig& config, torch::Dtype dtype);
 
-/// The number type of a UNet's weights for a setting: "fp32", "bf16", or "auto", which is bfloat16 where
-/// layers of that size were measured to be faster with it. Small models always compute in fp32 with "auto".
-/// Throws Error (InvalidArgument) for another word, and for "bf16" where this processor cannot.
+/// Number type of a UNet's weights for a setting: "fp32", "bf16" or "auto". "auto" is bfloat16 where layers
+/// of that size were measured to be faster with it; small models compute in fp32. Throws Error
+/// (InvalidArgument) for another word, and for "bf16" where this processor cannot.
 torch::Dtype choose_precision(const std::string& setting, const UNetConfig& config,
                               const torch::Device& device);
 

@@ -1,4 +1,4 @@
-// What torch's messages say.
+// Reading of torch's messages.
 #include "engine/neural/layers/torch_errors.h"
 
 #include <cstdlib>

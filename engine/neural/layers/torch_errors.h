@@ -16,7 +16,7 @@ namespace gse::neural {
 std::string first_line(const std::string& text);
 
 /// Bytes that a torch message about a failed allocation names ("you tried to allocate 1024 bytes", "Tried to
-/// allocate 2.00 GiB"); 0 when it is about something else.
+/// allocate 2.00 GiB"). Returns 0 for other messages.
 std::uint64_t refused_bytes(const std::string& text);
 
 /// Runs `work`; a torch exception becomes Error (Foreign) "`what` failed: ...", or OutOfMemory.

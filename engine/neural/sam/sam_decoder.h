@@ -1,5 +1,5 @@
-// From clicks and boxes to masks: the prompt encoder and the mask decoder of the Segment Anything model
-// (Kirillov et al. 2023, appendix A), which MobileSAM shares.
+// Prompt encoder and mask decoder of the Segment Anything model (Kirillov et al. 2023, appendix A). MobileSAM
+// shares them.
 #pragma once
 
 #include <vector>

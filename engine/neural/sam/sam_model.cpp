@@ -66,7 +66,7 @@ std::string transformers_name(const std::string& name, std::int64_t iou_layers) 
     return renamed(name, DecoderNames);
 }
 
-/// What files hold besides: counters, a classifier that is not used, tables that follow from sizes, a second
+/// Keys that files hold besides: counters, an unused classifier, tables that follow from sizes, a second
 /// name.
 bool is_left_over(const std::string& key) {
     return key.ends_with(".num_batches_tracked") || key.starts_with("image_encoder.norm_head.") ||
@@ -89,7 +89,7 @@ public:
             refuse(fmt::format("the tensor \"{}\" has another shape", key(name)));
         return found->second[dimension];
     }
-    /// How many there are of `prefix`0`suffix`, `prefix`1`suffix`, ...
+    /// Counts `prefix`0`suffix`, `prefix`1`suffix`, ...
     std::int64_t count(const std::string& prefix, const std::string& suffix) const {
         std::int64_t count = 0;
         while (has(fmt::format("{}{}{}", prefix, count, suffix))) ++count;

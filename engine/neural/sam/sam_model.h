@@ -1,5 +1,5 @@
-// The Segment Anything model (Kirillov et al. 2023) and MobileSAM (Zhang et al. 2023): a picture is encoded
-// once, then every set of clicks costs a hundredth of that.
+// Segment Anything model (Kirillov et al. 2023) and MobileSAM (Zhang et al. 2023). A picture is encoded once;
+// every set of clicks then costs a hundredth of that.
 #pragma once
 
 #include <filesystem>
@@ -42,8 +42,8 @@ public:
     explicit SamModelImpl(const SamShape& shape, const WeightOptions& options = {});
 
     const SamShape& shape() const { return shape_; }
-    /// Normalised pixels [1,3,S,S] of a picture [1,3,H,W] in [0,1]: its longer side S, antialiased, in steps
-    /// of 1/255 as the weights have seen them; zeros at the right and the bottom.
+    /// Normalised pixels [1,3,S,S] of a picture [1,3,H,W] in [0,1]: longer side S, antialiased, zeros at the
+    /// right and the bottom. Values lie in steps of 1/255, as the weights have seen them.
     torch::Tensor pixels(const torch::Tensor& picture) const;
     /// [1,C,S/16,S/16].
     torch::Tensor embed(const torch::Tensor& pixels, SamTrace* trace = nullptr) const {

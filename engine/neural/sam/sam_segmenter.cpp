@@ -1,4 +1,4 @@
-// Clicks to prompts, and embeddings that are remembered.
+// Clicks to prompts, and a cache of embeddings.
 #include "engine/neural/sam/sam_segmenter.h"
 
 #include <algorithm>

@@ -32,8 +32,8 @@ private:
 };
 TORCH_MODULE(SamMlp);
 
-/// Self-attention in a square of tokens, with a learned bias for how far two of them are apart, one table per
-/// axis, multiplied with the unscaled query.
+/// Self-attention in a square of tokens with a learned bias for distances, one table per axis. The bias is
+/// multiplied with the unscaled query.
 class SamAttentionImpl : public torch::nn::Module {
 public:
     SamAttentionImpl(std::int64_t width, std::int64_t heads, std::int64_t side, const WeightOptions& options)

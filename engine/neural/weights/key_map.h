@@ -1,4 +1,4 @@
-// Where the networks' parameters are found in each of the layouts that Stable Diffusion weights come in.
+// Keys of the networks' parameters in each layout of Stable Diffusion weights.
 #pragma once
 
 #include "engine/neural/api/config.h"
@@ -7,7 +7,7 @@
 
 namespace gse::neural {
 
-/// How the text encoder is stored in a single-file checkpoint.
+/// Layout of the text encoder in a single-file checkpoint.
 enum class SingleFileText {
     Transformers,      // cond_stage_model.transformer.text_model.* (SD 1.x)
     TransformersBare,  // cond_stage_model.transformer.* without "text_model."

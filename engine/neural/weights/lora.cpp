@@ -72,8 +72,8 @@ std::map<std::string, torch::Tensor> weights_by_layer(const torch::nn::Module& n
     return weights;
 }
 
-/// The weight with its change, some rows after the other, so that what is in between stays near the
-/// processor: as whole matrices it goes to memory and back five times.
+/// Adds the change to the weight, some rows at a time, so that intermediate values stay in the processor's
+/// cache.
 torch::Tensor changed_in_parts(const torch::Tensor& weight, const LoraFactor& factor, double strength) {
     constexpr std::int64_t numbers_at_once = 1 << 18;
     const auto up = factor.up.to(torch::kFloat32).flatten(1) * (factor.scale() * strength),
@@ -125,7 +125,7 @@ std::vector<LoraFactor> new_lora(const std::vector<LoraTarget>& targets, std::in
     for (const auto& target : targets) {
         const auto& weight = target.linear->weight;
         const auto in = weight.flatten(1).size(1);
-        // As the reference initialises a linear layer (Kaiming uniform with a = sqrt 5).
+        // Draws as the reference initialises a linear layer (Kaiming uniform with a = sqrt 5).
         const double bound = 1.0 / std::sqrt(static_cast<double>(in));
         LoraFactor factor;
         factor.layer = target.layer;

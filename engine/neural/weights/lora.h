@@ -58,10 +58,11 @@ void merge_lora(torch::nn::Module& network, const std::vector<LoraFactor>& facto
 /// lora_unet_<layer>.lora_down.weight, .lora_up.weight, .alpha; lora_te_<layer> for the text encoder.
 void write_lora(const std::filesystem::path& path, const LoraWeights& weights);
 
-/// Reads kohya's and LyCORIS' names (lora_unet_*, with a middle too), PEFT's (unet.*.lora_A) and those of
-/// diffusers before it (unet.*.processor.to_q_lora.down, unet.*.to_q.lora.down), also mixed. A missing alpha
-/// is the rank. Throws Error (NotFound, Malformed, Unsupported, Model) with one sentence that names the file
-/// and the tensor: other kinds of adapters, incomplete, misshapen or non-finite ones; then nothing is read.
+/// Reads a LoRA. Names may be mixed:
+/// kohya and LyCORIS (lora_unet_*, with a middle too), PEFT (unet.*.lora_A), diffusers before PEFT
+/// (unet.*.processor.to_q_lora.down, unet.*.to_q.lora.down).
+/// A missing alpha is the rank. Throws Error (NotFound, Malformed, Unsupported, Model) that names file and
+/// tensor for other kinds of adapters and for incomplete, misshapen or non-finite ones. Nothing is read then.
 LoraWeights read_lora(const std::filesystem::path& path);
 
 }  // namespace gse::neural

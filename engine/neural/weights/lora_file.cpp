@@ -21,8 +21,8 @@ struct RoleEnding {
     std::string_view ending;
     LoraRole role;
 };
-/// What stands behind a module's name, longer endings before those they end in. "_lora" is diffusers' first
-/// way: to_q_lora.down beside to_q.
+/// Endings of a module's name, longer ones before those they end in. "_lora" is diffusers' first way:
+/// to_q_lora.down beside to_q.
 constexpr std::array RoleEndings{
     RoleEnding{".lora_down.weight", LoraRole::Down},  // kohya, LyCORIS
     RoleEnding{".lora_up.weight", LoraRole::Up},

@@ -51,8 +51,8 @@ private:
 
 using NamedTensors = std::vector<std::pair<std::string, torch::Tensor>>;
 
-/// Ending of the name of a quantized tensor's scales. Such a matrix or kernel holds whole numbers of -127 to
-/// 127 and has one factor per row (its first dimension), by which they are multiplied.
+/// Ending of the name of a quantized tensor's scales. Quantized matrices and kernels hold whole numbers of
+/// -127 to 127. The scales have one factor per row (first dimension).
 inline constexpr const char* QuantizationScale = "_scale";
 
 /// Writes the tensors in the given order, atomically. Throws Error (Unwritable).

@@ -24,8 +24,7 @@ constexpr std::size_t MostDimensions = 64;  // PyTorch's own limit
 struct Value;
 using Values = std::vector<Value>;
 
-/// A pickle may remember a value and take it up again with two bytes, so that no copy of one may cost more
-/// than a pointer.
+/// Pickles take a value up again with two bytes: no copy of one may cost more than a pointer.
 struct Text {
     std::shared_ptr<const std::string> held;
 };
@@ -81,7 +80,7 @@ public:
     Machine(const Machine&) = delete;
     Machine& operator=(const Machine&) = delete;
 
-    /// What it describes; good as long as the machine.
+    /// Result of the program; valid as long as the machine.
     Value run() {
         for (;;) {
             const auto step = static_cast<unsigned char>(take(1)[0]);
@@ -330,9 +329,8 @@ private:
         return result;
     }
 
-    /// (storage, offset, shape, strides, ...); everything lies inside the storage, and no number of it is
-    /// used twice: a tensor is made with as many numbers as its shape says, which would be any number of
-    /// copies.
+    /// Arguments are (storage, offset, shape, strides, ...). Everything lies inside the storage, and no
+    /// number of it is used twice. Otherwise a small file could ask for any number of copies.
     StoredTensor tensor(const Values& items) const {
         const auto& from = as<Storage>(items[0], "a tensor has no storage");
         StoredTensor tensor{from.type,         *from.key.held,
@@ -367,7 +365,7 @@ private:
     std::vector<std::shared_ptr<Items>> dictionaries_;
 };
 
-/// How deep a dictionary has been looked into. One may be named any number of times, by others that are, too.
+/// Depth to which a dictionary was looked into. Others may name it any number of times.
 using Depths = std::map<const Items*, std::size_t>;
 
 /// The tensors of the dictionary; those of an inner one where it has none itself.

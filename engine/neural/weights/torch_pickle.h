@@ -1,5 +1,5 @@
-// The pickle in what torch.save writes. A pickle is a program; this reader knows only the few steps that put
-// plain tensors together and refuses every other, so that nothing in the file can run. No torch in it.
+// Reader of the pickle in files of torch.save. A pickle is a program. This reader knows only the few steps
+// that build plain tensors and refuses every other, so that nothing in the file can run. No torch in it.
 #pragma once
 
 #include <cstdint>

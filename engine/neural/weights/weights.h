@@ -10,7 +10,7 @@
 
 namespace gse::neural {
 
-/// Where one parameter of a network is found in a file.
+/// Place of one parameter in a file.
 struct WeightSource {
     std::string key;        // name in the file
     std::int64_t row = -1;  // part number `row` of `rows` stacked blocks along the first dimension (q, k, v)
@@ -21,7 +21,7 @@ struct WeightSource {
 /// Maps a parameter's name in our network to its place in the file.
 using WeightMap = std::function<WeightSource(const std::string& parameter)>;
 
-/// How a file is matched to a network.
+/// Matching of a file to a network.
 struct LoadPlan {
     WeightMap map;  // empty = same names
     std::function<bool(const std::string& key)>
@@ -33,8 +33,8 @@ struct LoadPlan {
 /// or the mis-shaped key (the first, and how many more). Returns the keys of the file that were used.
 std::set<std::string> load_weights(torch::nn::Module& module, const TensorFile& file, const LoadPlan& plan);
 
-/// The same check on names and shapes only (module on torch::kMeta, a manifest): `shapes` are the keys of the
-/// file.
+/// Checks names and shapes as load_weights() does, without values: `module` on torch::kMeta, `shapes` the
+/// keys of the file.
 std::set<std::string> check_weights(const torch::nn::Module& module, const KeyShapes& shapes,
                                     const LoadPlan& plan, const std::filesystem::path& path);
 
