@@ -1,4 +1,4 @@
-// How many pictures a second the viewport shows while the camera moves (dynamic resolution).
+// Pictures per second of the viewport while the camera moves (dynamic resolution).
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,8 +7,8 @@
 
 namespace gse::app {
 
-/// Turns the camera for some seconds with the native preview as the window uses it: {"pictures_per_second",
-/// "scale"}, the latter the mean share of the full width.
+/// Turns the camera for some seconds with the native preview as the window uses it. Returns
+/// {"pictures_per_second", "scale"}; "scale" is the mean share of the full width.
 nlohmann::ordered_json bench_moving(const Scene& scene, int width, int height);
 
 }  // namespace gse::app

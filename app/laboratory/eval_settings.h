@@ -10,7 +10,7 @@ namespace gse::app {
 
 /// Model, machine, and every field of the request and the guidance that the suite does not set itself.
 void add_eval_settings(CLI::App& command, EditRecipe& settings);
-/// What the command line does not say is as the model states.
+/// Sets what the command line leaves open as the model states it.
 void apply_eval_model(const CLI::App& command, EditRecipe& settings);
 
 }  // namespace gse::app

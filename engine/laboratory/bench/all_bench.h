@@ -35,14 +35,14 @@ struct AllBenchParameters {
     }
 };
 
-/// Writes index.html (which refers to no other file), all.json and a picture per subject into `folder`, and
-/// returns what is in all.json: {"machine", "parameters", "subjects": {...}, "seconds": {...}}. A subject
-/// that fails is named with its reason; the others go on. The page says where a parameter is not the
+/// Writes index.html (which refers to no other file), all.json and a picture per subject into `folder`.
+/// Returns the contents of all.json: {"machine", "parameters", "subjects": {...}, "seconds": {...}}. A
+/// subject that fails is named with its reason; the others go on. The page says where a parameter is not the
 /// subject's own default. Throws Error for wrong parameters, and when stopped.
 nlohmann::ordered_json bench_all(const AllBenchParameters& parameters, const pipeline::EditRecipe& settings,
                                  const std::filesystem::path& folder, const JobControl& job);
 
-/// What is left where bench_all() ran well.
+/// Names of the files that bench_all() leaves where all subjects ran.
 std::vector<std::string> all_bench_files();
 
 }  // namespace gse::bench

@@ -215,7 +215,7 @@ private:
         note("no change: noise, asked for an accessory", direction(seen, noisy, bare, worn));
     }
 
-    /// Which side of a scene is its front, from views all around that begin anywhere.
+    /// Finds the front of a scene from views all around that begin anywhere.
     void ask_front(Random& random) {
         const SceneSpec spec = synth::held_out_spec(random, 0.5);
         const double begin = random.uniform(-std::numbers::pi, std::numbers::pi);

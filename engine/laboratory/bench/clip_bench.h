@@ -26,9 +26,10 @@ struct ClipBenchParameters {
     }
 };
 
-/// {"retrieval": share of pictures whose true word ranks first, per kind of word,
-///  "direction": cosines of true changes, wrong changes and no change,
-///  "fronts": how far the front that was read off each scene is from the true one}.
+/// Report of the bench:
+/// "retrieval": share of pictures whose true word ranks first, per kind of word;
+/// "direction": cosines of true changes, wrong changes and no change;
+/// "fronts": distance of the front that was read off each scene from the true one.
 nlohmann::ordered_json bench_clip(edit::ImageTextEncoder& score, const ClipBenchParameters& parameters,
                                   const JobControl& job);
 

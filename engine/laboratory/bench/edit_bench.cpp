@@ -139,7 +139,7 @@ Json means_of(const Json& edits, std::size_t count) {
     return means;
 }
 
-/// What was looked for before: the same for all points.
+/// Search that all points share.
 Json search_means(const Json& edits) {
     Json means;
     for (const char* name : {"unet", "tflop"}) {
@@ -193,7 +193,7 @@ std::vector<SettingPoint> setting_points(const Json& curves) {
     return points;
 }
 
-/// Of the two methods' defaults that which an edit takes by itself.
+/// Default that an edit takes by itself.
 std::vector<SettingPoint> with_one_default(std::vector<SettingPoint> points) {
     for (auto& point : points) point.standard = point.standard && point.curve == curve_name("views");
     return points;

@@ -1,5 +1,4 @@
-// What edits reach against what they cost, by methods and settings: a Pareto picture over the evaluation's
-// suite (views.md 13).
+// Error of edits against their cost, by methods and settings: a Pareto picture over the evaluation's suite.
 #pragma once
 
 #include <cstdint>
@@ -47,7 +46,7 @@ struct EditBenchParameters {
 nlohmann::ordered_json bench_edit(const EditBenchParameters& parameters, const pipeline::EditRecipe& settings,
                                   const std::filesystem::path& folder, const JobControl& job);
 
-/// What bench_edit() returned as a subject, with its picture; the evaluation is left out.
+/// Subject of a report of bench_edit(), with its picture; the evaluation is left out.
 Subject edit_bench_subject(nlohmann::ordered_json report);
 
 }  // namespace gse::bench

@@ -1,4 +1,4 @@
-// How a cost grows with a size.
+// Growth of a cost with a size.
 #pragma once
 
 #include <array>

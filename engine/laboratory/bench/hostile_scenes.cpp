@@ -94,7 +94,7 @@ void put(Draft& d, std::size_t row, const Vec3& place) {
         d.scene.data.position[row * 3 + axis] = static_cast<float>(place[static_cast<int>(axis)]);
 }
 
-/// What a cause changes of one row; used for a whole scene and, row by row, for mixtures.
+/// Change of one row by a cause; used for a whole scene and, row by row, for mixtures.
 using RowChange = void (*)(Draft&, std::size_t row);
 
 constexpr RowChange Needle = [](Draft& d, std::size_t row) {
@@ -186,8 +186,8 @@ void fisheye(Draft& d) {
 
 void few_pixels(Draft& d) { d.width = d.whole(1, 3), d.height = d.whole(1, 3); }
 
-/// As wide or as high as a 4k picture, and a few pixels across: coordinates are as large, at a price that can
-/// be paid.
+/// Picture as wide or as high as a 4k picture, and a few pixels across: coordinates are as large at a small
+/// price.
 void strip(Draft& d) {
     const bool wide = d.random.below(2) == 0;
     d.width = wide ? 4096 : d.whole(1, 5), d.height = wide ? d.whole(1, 5) : 4096;

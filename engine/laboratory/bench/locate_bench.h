@@ -1,5 +1,5 @@
-// gseditpro-lab bench locate: how well searches find the true splats, against what they ask of the networks and
-// how long they take.
+// gseditpro-lab bench locate: how well searches find the true splats, against what they ask of the networks
+// and how long they take.
 #pragma once
 
 #include <cstdint>
@@ -38,10 +38,10 @@ struct LocateBenchParameters {
     }
 };
 
-/// Every scene is searched as a user begins it (scene and words; automatic views), once with the settings as
-/// they are and once per point with one of them changed. Error: 1 - IoU of the labelled splats with the true
-/// ones, each counting as much as it is seen, mean over the scenes; a search that labels nothing has an IoU
-/// of 0. Throws Error for wrong parameters, a model that cannot be read, and when stopped.
+/// Searches every scene as a user begins (scene and words; automatic views): once with the settings as they
+/// are, and once per point with one of them changed. The error is 1 - IoU of the labelled splats with the
+/// true ones, weighted by how much each is seen, mean over the scenes. A search that labels nothing has an
+/// IoU of 0. Throws Error for wrong parameters, a model that cannot be read, and when stopped.
 Subject bench_locate(const LocateBenchParameters& parameters, const pipeline::EditRecipe& settings,
                      const JobControl& job);
 

@@ -16,7 +16,7 @@
 namespace gse::bench {
 namespace {
 
-/// What stands behind "model name : " and the like in /proc/cpuinfo, first processor.
+/// Value behind "model name : " and the like in /proc/cpuinfo, first processor.
 std::string processor_line(const std::string& key) {
     std::ifstream file("/proc/cpuinfo");
     for (std::string line; std::getline(file, line);) {

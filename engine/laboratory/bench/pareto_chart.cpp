@@ -173,7 +173,7 @@ struct Place {
     bool far = false;
 };
 
-/// Where a name stands beside its point: the first place within the plot that is free; nothing when none is.
+/// Place of a name beside its point: the first one within the plot that is free; nothing when none is.
 std::optional<Place> free_place(const Point& at, double width, const Box& plot, std::vector<Box>& taken) {
     const auto try_place = [&](const Point& place, bool far) -> std::optional<Place> {
         const Box box{place[0] - 2, place[1] - Small - 2, place[0] + width + 2, place[1] + 3};
@@ -276,7 +276,7 @@ void draw_curves(Image& image, const ChartPanel& panel, const Scale& scale) {
                     draw_name(image, point, place(point), scale.plot, curve.colour, taken);
 }
 
-/// What a legend explains.
+/// Entries of a legend.
 struct Legend {
     std::vector<ChartCurve> curves;  // without points
     bool front = false, mark = false;

@@ -21,7 +21,7 @@ struct ChartCurve {
     std::vector<ChartPoint> points;
 };
 
-/// What a panel's lines go through: of each curve the points that no cheaper one reaches, the same of all
+/// Points that a panel's lines go through: those of each curve that no cheaper one reaches, those of all
 /// curves together, or all points.
 enum class ChartLine { OwnFront, CommonFront, AllPoints };
 
@@ -63,7 +63,7 @@ std::vector<std::size_t> pareto_front(const std::vector<ChartPoint>& points, boo
 
 /// Round numbers from `low` to `high` (not more than about `count`), for a linear axis.
 std::vector<double> linear_ticks(double low, double high, int count);
-/// The same for a logarithmic one: powers of ten, with their double and fivefold where there are few.
+/// Ticks of a logarithmic axis: powers of ten, with their double and fivefold where there are few.
 std::vector<double> logarithmic_ticks(double low, double high);
 /// A number on an axis or in a table: three digits, thousands grouped, powers of ten where it is very small
 /// or large.

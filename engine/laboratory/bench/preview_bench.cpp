@@ -70,7 +70,7 @@ struct Error2 {
     double psnr_db = 0, max_abs = 0;
 };
 
-/// Of the red, green and blue of pictures with different numbers of channels.
+/// Error over red, green and blue of pictures with different numbers of channels.
 Error2 difference(const Image& a, const Image& b) {
     double squares = 0, worst = 0;
     for (std::size_t pixel = 0; pixel < a.pixel_count(); ++pixel)

@@ -27,7 +27,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// How a picture is drawn.
+/// Settings of drawing a picture.
 struct PreviewSetting {
     int sh_degree = 3;
     bool antialiased = false;

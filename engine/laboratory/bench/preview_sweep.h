@@ -32,10 +32,11 @@ struct PreviewSweepParameters {
     }
 };
 
-/// Each setting draws a turn around a generated scene (synth/timing_scene.h), each picture from nothing: wall
-/// time (least of the turn) against the root mean square error to the double-precision picture of all colours
-/// at full size, with the same opacity compensation; a smaller picture is enlarged as the window does it.
-/// Throws Error for wrong parameters, where there is no Vulkan device, and when stopped.
+/// Draws a turn around a generated scene (synth/timing_scene.h) with each setting, each picture from nothing.
+/// Cost is the wall time, least of the turn. The error is the root mean square difference to the
+/// double-precision picture of all colours at full size, with equal opacity compensation. A smaller picture
+/// is enlarged as the window does it. Throws Error for wrong parameters, where there is no Vulkan device, and
+/// when stopped.
 Subject bench_preview_sweep(const PreviewSweepParameters& parameters, const JobControl& job);
 
 }  // namespace gse::bench

@@ -1,4 +1,4 @@
-// What a measurement of the rasterizer says, for files and scripts.
+// Report of a measurement of the rasterizer, for files and scripts.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -13,8 +13,8 @@ namespace gse::bench {
 /// version.
 nlohmann::ordered_json raster_report(const raster::RasterBench& bench);
 
-/// Of an edit's iterations with and without skips: processor time in milliseconds, memory in MiB, and what
-/// they differ by.
+/// Report of an edit's iterations with and without skips: processor time in milliseconds, memory in MiB, and
+/// differences of the results.
 nlohmann::ordered_json skip_report(const std::vector<raster::SkipBench>& shares);
 
 /// The floor of forward and backward, what it is made of, and how far the rasterizer is from it.

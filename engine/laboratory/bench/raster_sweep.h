@@ -1,4 +1,5 @@
-// gseditpro-lab bench raster: error against time of the rasterizer, per instruction set and number of threads.
+// gseditpro-lab bench raster: error against time of the rasterizer, per instruction set and number of
+// threads.
 #pragma once
 
 #include <cstdint>
@@ -41,9 +42,9 @@ struct RasterSweepParameters {
 /// (InvalidArgument).
 std::vector<std::string> kernels_in_list(const std::string& list);
 
-/// Forward and backward pass over a generated scene (synth/timing_scene.h): wall time per picture, least of
-/// the rounds, against the largest error of a pixel and the relative error of the gradient, both to the plain
-/// double version. Throws Error for wrong parameters, and when stopped.
+/// Measures forward and backward pass over a generated scene (synth/timing_scene.h): wall time per picture,
+/// least of the rounds. Errors are the largest of a pixel and the relative one of the gradient, both to the
+/// plain double version. Throws Error for wrong parameters, and when stopped.
 Subject bench_raster_sweep(const RasterSweepParameters& parameters, const JobControl& job);
 
 }  // namespace gse::bench

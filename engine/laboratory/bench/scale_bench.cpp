@@ -24,7 +24,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What a size costs: figures by name, in order.
+/// Costs of a size: figures by name, in order.
 using Costs = std::vector<std::pair<std::string, double>>;
 
 /// A size that grows, with the sizes and what each costs.

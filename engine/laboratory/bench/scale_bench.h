@@ -42,9 +42,9 @@ struct ScaleBenchParameters {
     }
 };
 
-/// Wall times, the most memory above what the process held before, and growth exponents: slopes of
-/// least-squares lines through the logarithms, over all points and over the larger half of them. Generated
-/// scenes. Throws Error for wrong parameters, a model that cannot be read, and when stopped.
+/// Measures wall times and the peak of memory above what the process held before, on generated scenes. Growth
+/// exponents are slopes of least-squares lines through the logarithms, over all points and over the larger
+/// half. Throws Error for wrong parameters, a model that cannot be read, and when stopped.
 Subject bench_scale(const ScaleBenchParameters& parameters, const pipeline::EditRecipe& settings,
                     const JobControl& job);
 

@@ -9,9 +9,9 @@
 
 namespace gse::bench {
 
-/// Up to `count` cameras, evenly spread over those of the file `cameras` (empty = found beside the scene); an
-/// orbit of `width` x `height` pixels where there are none, or `cameras` is "none". Throws Error where the
-/// file cannot be read.
+/// Up to `count` cameras, evenly spread over those of the file `cameras` (empty = found beside the scene). An
+/// orbit of `width` x `height` pixels stands in where there are none, or `cameras` is "none". Throws Error
+/// where the file cannot be read.
 std::vector<Camera> spread_cameras(const Scene& scene, const std::filesystem::path& scene_file,
                                    const std::string& cameras, int count, int width, int height);
 

@@ -23,7 +23,7 @@ using synth::SceneSpec;
 constexpr std::array<double, 9> Thresholds{0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6};
 constexpr double AccessoryShare = 0.6;  // of the scenes have one
 
-/// What no synthetic scene shows and no starter model knows.
+/// Words that no synthetic scene shows and no starter model knows.
 const std::vector<std::string>& unknown_words() {
     static const std::vector<std::string> words{"sign",  "zebra",  "sofa",   "lamp",
                                                 "train", "guitar", "violin", "laptop"};
@@ -38,7 +38,7 @@ const std::string& other_than(const std::vector<std::string>& words, Random& ran
     }
 }
 
-/// What is typed, and what the scene has of it.
+/// Words as they are typed, and the object of the scene that they name.
 struct Question {
     std::string kind, source, prompt, target;
     bool present = false;

@@ -58,7 +58,7 @@ std::optional<Lead> lead_of(const SettingPoint& one, const SettingPoint& other, 
     return lead;
 }
 
-/// Where the default lies; null where no point is it.
+/// Place of the default; null where no point is it.
 Json default_of(const std::vector<SettingPoint>& points, const Facet& facet) {
     for (const auto& point : points) {
         if (!point.standard) continue;

@@ -31,17 +31,16 @@ struct Facet {
 /// run.
 constexpr double CostNoise = 0.05;
 
-/// A lead in a mean over cases counts from this many standard errors of the mean difference, case by case: of
-/// many cases one lead of chance in forty passes it, of four one in fourteen, and a bench compares a dozen
-/// points.
+/// Standard errors of the mean difference from which a lead counts, case by case. One lead of chance in forty
+/// passes over many cases, one in fourteen over four; a bench compares a dozen points.
 constexpr double LeadErrors = 2;
 
-/// [{"x", "y", "front": ["avx512, 2 threads", ...], "default": {"name", "on_front", "beaten_by": [...],
-/// "within_scatter":
-/// [{"name", "lead", "standard_error"}]}}], one per facet. The default is on the front where no point reaches
-/// more for a cost that is at most (1 + CostNoise) times as high, nor as much for one lower by more than
-/// CostNoise. Where both points have figures per case, a lead below LeadErrors standard errors is listed as
-/// within the scatter of the cases and does not count.
+/// Fronts and default per facet: [{"x", "y", "front": ["avx512, 2 threads", ...], "default": {"name",
+/// "on_front", "beaten_by": [...], "within_scatter": [{"name", "lead", "standard_error"}]}}].
+/// The default is on the front unless a point beats it. A point beats it by reaching more for a cost of at
+/// most (1 + CostNoise) times, or as much for a cost lower by more than CostNoise. A lead below LeadErrors
+/// standard errors is within the scatter of the cases and does not count, where both points have figures per
+/// case.
 nlohmann::ordered_json fronts_of(const std::vector<SettingPoint>& points, const std::vector<Facet>& facets);
 
 /// The points as JSON: curve, name, default, settings and the figures.

@@ -1,4 +1,4 @@
-// How far the float kernels of the rasterizer are from the plain double version on a hostile scene.
+// Error of the rasterizer's float kernels against the plain double version on a hostile scene.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace gse::bench {
 
-/// What the double version says of a scene: pictures, and gradients of a fixed noise.
+/// Truth by the double version: pictures, and gradients of a fixed noise.
 class StabilityTruth {
 public:
     explicit StabilityTruth(const HostileScene& scene);
@@ -51,7 +51,7 @@ struct Disagreement {
     /// unit quaternions.
     double gradient = 0;
     std::string tensor;  // the one it is of
-    /// The same of a single row: over its own gradient, but at least a thousandth of the tensor's largest.
+    /// Error of a single row: over its own gradient, but at least a thousandth of the tensor's largest.
     double row = 0;
     std::size_t miscounted = 0;  // clear pixels with another number of blended splats
     bool finite = true;          // every number of pictures and gradients
@@ -64,7 +64,7 @@ public:
     /// Throws Error where the instruction set is unknown or not on this processor, or no CUDA device is
     /// usable.
     explicit KernelStability(const std::string& kernels);
-    /// Of another rasterizer: `make` gets the threads.
+    /// Error of another rasterizer: `make` gets the threads.
     KernelStability(std::string name,
                     const std::function<std::unique_ptr<raster::Rasterizer>(ThreadPool&)>& make);
     Disagreement measure(const StabilityTruth& truth);

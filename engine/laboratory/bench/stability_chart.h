@@ -14,8 +14,8 @@ struct HistogramPanel {
     std::vector<std::vector<std::size_t>> counts;  // [names][decades]
 };
 
-/// [H,ChartWidth,3]: the panels beside each other, a line per name and a cell per decade of error
-/// (stability_bench.h), the darker the larger its share of the line, with the count in it.
+/// Chart [H,ChartWidth,3]: panels beside each other, a line per name and a cell per decade of error
+/// (stability_bench.h). A cell is darker the larger its share of the line, with the count in it.
 Image draw_histograms(const std::string& title, const std::vector<std::string>& names,
                       const std::vector<HistogramPanel>& panels, const std::vector<std::string>& notes);
 

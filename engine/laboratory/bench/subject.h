@@ -1,5 +1,5 @@
-// A subject of `gseditpro-lab bench`: figures, a picture, tables; the same for the terminal, for files and for
-// the page of all.
+// A subject of `gseditpro-lab bench`: figures, a picture, tables; the same for the terminal, for files and
+// for the page of all.
 #pragma once
 
 #include <filesystem>
@@ -48,7 +48,7 @@ void leave_subject(const Subject& subject, const std::filesystem::path& folder);
 
 /// Words of a list with spaces or commas between them.
 std::vector<std::string> words_in_list(const std::string& text);
-/// The same as numbers, each once and ascending. Throws Error (InvalidArgument) that names the setting unless
+/// Numbers of a list, each once and ascending. Throws Error (InvalidArgument) that names the setting unless
 /// all are numbers from `low` to `high`.
 std::vector<double> numbers_in_list(const std::string& name, const std::string& text, double low,
                                     double high);

@@ -9,9 +9,9 @@
 
 namespace gse::bench {
 
-/// One per renderer. Buffers grow, and memory is touched for the first time, in the first picture of every
-/// view, not only in the very first picture: before anything is timed, a whole turn is drawn, else the first
-/// setting would look dearer than the others. Before the turns of other settings one picture is enough.
+/// Timer of turns, one per renderer. The first picture of every view grows buffers and touches memory for the
+/// first time. A whole turn is therefore drawn before anything is timed, else the first setting would look
+/// dearer than the others. Before the turns of other settings one picture is enough.
 class TurnTimer {
 public:
     /// Wall milliseconds of draw(0) to draw(views - 1), ascending.

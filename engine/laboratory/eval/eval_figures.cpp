@@ -167,7 +167,7 @@ void add_outside(const HeldOut& seen, Json& json) {
     json["leak_rate"] = outside.leak_rate();
 }
 
-/// The same outside the masks the edit itself worked with: what its preservation could and could not hold.
+/// Drift outside the masks that the edit itself worked with: what its preservation could hold.
 void add_own_outside(const EvalSetting& setting, const edit::EditPlan& plan, const GaussianSet& edited,
                      pipeline::Painter& painter, Json& json) {
     OutsideFigures outside;
@@ -188,8 +188,8 @@ void add_changed(const HeldOut& seen, Json& json) {
     json["changed_precision"] = overlap.precision();
 }
 
-/// How well the outline of the new thing is the true one: of all rows that were allowed to change, but for
-/// the ground that the old thing hid, as seen from the held-out views, pooled over them.
+/// Agreement of the new object's outline with the true one, seen from the held-out views and pooled over
+/// them. All rows that were allowed to change count, but for the ground that the old object hid.
 void add_silhouette(const EvalSetting& setting, const edit::EditResult& result, const HeldOut& seen,
                     pipeline::Painter& painter, Json& json) {
     PooledOverlap overlap;
@@ -204,9 +204,8 @@ void add_silhouette(const EvalSetting& setting, const edit::EditResult& result, 
     json["silhouette_precision"] = overlap.precision();
 }
 
-/// Of the old thing's pixels that should be clearly another: the share that is still nearer to what it was
-/// than to what it should be (a white dot in another place of a mushroom's cap is nearer to gold than the
-/// green there), and the share that has not clearly changed.
+/// Shares of the old object's pixels that should clearly be another: those still nearer to what they were
+/// than to what they should be, and those that have not clearly changed.
 void add_old_left(const HeldOut& seen, Json& json) {
     double left = 0, unchanged = 0, pixels = 0;
     for (std::size_t v = 0; v < seen.old.size(); ++v) {
@@ -245,8 +244,8 @@ void add_old_shown(const EvalSetting& setting, const edit::EditResult& result, c
     json["old_shown"] = overlap.recall();
 }
 
-/// What another true scene of the same sentence is measured at, in the heading and the size in which it comes
-/// nearest: how much of the truth the sentence leaves open, and what no model could know.
+/// Figures of another true scene of the sentence, in the heading and size in which it comes nearest. They
+/// tell how much of the truth the sentence leaves open.
 Json figures_of_another_truth(const EvalSetting& setting, const EvalTools& tools) {
     EvalSetting other = setting;
     auto spec = setting.edit.target;
@@ -267,8 +266,8 @@ Json figures_of_another_truth(const EvalSetting& setting, const EvalTools& tools
     return json;
 }
 
-/// The mean of the pictures of several other true scenes in the pose that the edit is compared in: about the
-/// best guess that the sentence allows, though no picture of anything.
+/// Mean picture of several other true scenes in the pose that the edit is compared in. It is about the best
+/// guess that the sentence allows, though no picture of anything.
 Json figures_of_mean_truth(const EvalSetting& setting, const EvalTools& tools) {
     constexpr int Scenes = 16;
     HeldOut seen = look(setting, setting.target.scene.gaussians, tools.painter);

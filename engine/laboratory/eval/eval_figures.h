@@ -1,4 +1,4 @@
-// What eval measures of one edit: where it was found, how near the truth it came, what else it changed.
+// Measurement of one edit: where it was found, how near the truth it came, what else it changed.
 #pragma once
 
 #include <memory>
@@ -45,9 +45,8 @@ EvalSetting make_setting(const EvalCase& edit, const edit::EditRequest& settings
 /// The kind of edit that the case's sentence asks for.
 edit::EditMode right_mode(const EvalCase& edit);
 
-/// What the sentence leaves open is no error: of the true scenes with the new thing in eight headings, then
-/// in three sizes, takes the one that is nearest to the edited scene on the held-out views. Nothing changes
-/// for edits in which no thing is replaced.
+/// Takes the true scene that is nearest to the edited one on the held-out views, out of eight headings, then
+/// three sizes. The sentence leaves both open. Nothing changes for edits in which no object is replaced.
 void settle_pose(EvalSetting& setting, const GaussianSet& edited, const EvalTools& tools);
 
 /// [rows] 1 where a row belongs to the part.

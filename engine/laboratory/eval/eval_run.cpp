@@ -52,7 +52,7 @@ Json spec_json(const synth::SceneSpec& spec) {
             {"seed", spec.seed}};
 }
 
-/// What was said of the redrawn views of the last round, and of the fit to them.
+/// Verdict on the redrawn views of the last round, and on the fit to them.
 Json redrawing_figures(const edit::EditResult& result) {
     Json figures;
     for (const auto& record : result.history)
@@ -234,7 +234,7 @@ private:
         return figures;
     }
 
-    /// The same search, edited with other settings of the loop.
+    /// Edits the scene of one search with other settings of the loop.
     Json ablate(std::size_t index, EvalSetting setting, pipeline::EditJob& job, const Json& settings) {
         check_stop();
         Json entry{{"index", index}, {"kind", setting.edit.kind}};

@@ -12,7 +12,7 @@
 
 namespace gse::bench {
 
-/// What is evaluated.
+/// Settings of an evaluation.
 struct EvalParameters {
     std::uint64_t seed = 1;
     int edits = 30;

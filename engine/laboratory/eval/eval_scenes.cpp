@@ -1,4 +1,4 @@
-// The same job as `gseditpro edit`, measured.
+// Runs the job of `gseditpro edit`, and measures it.
 #include "engine/laboratory/eval/eval_scenes.h"
 
 #include <algorithm>

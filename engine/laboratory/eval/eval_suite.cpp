@@ -16,7 +16,7 @@ bool is_substance(const std::string& material) {
     return material == "wooden" || material == "stone" || material == "golden";
 }
 
-/// What comes is called by.
+/// Words that name what comes.
 struct Vocabulary {
     const std::vector<std::string>& objects = synth::object_words();
     const std::vector<std::string>& accessories = synth::accessory_words();

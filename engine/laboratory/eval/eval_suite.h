@@ -20,16 +20,17 @@ struct EvalCase {
     synth::Part part = synth::Part::Object;  // what changes; in the source scene, or new in the target
 };
 
-/// What an edit may be about.
+/// Kinds of edits.
 const std::vector<std::string>& eval_kinds();
 
-/// `count` edits, the kinds in turn. The target's combination of object, material and accessory is always one
-/// that training never saw; for recolour and material edits of scenes with an accessory (half of them) the
-/// source's is too. "replace" puts another object, of the same material or another, in the place of one
-/// without an accessory. Scene seeds are drawn from `seed`. Combinations repeat only when there are no
-/// others. Edits that replace are drawn apart: the others are the same with and without them. `drawn_words`:
-/// what is added or comes in a thing's place is one of synth::more_accessory_words() or more_object_words(),
-/// in a colour or material of the others. Throws Error for an unknown kind.
+/// Makes `count` edits, the kinds in turn. The target's combination of object, material and accessory is
+/// always one that training never saw. For recolour and material edits of scenes with an accessory (half of
+/// them) the source's is too.
+/// "replace" puts another object, of one material or another, in the place of one without an accessory.
+/// Scene seeds are drawn from `seed`. Combinations repeat only when there are no others. Edits that replace
+/// are drawn apart: the others do not depend on them.
+/// `drawn_words`: additions and replacements are of synth::more_accessory_words() and more_object_words().
+/// Throws Error for an unknown kind.
 std::vector<EvalCase> make_suite(std::uint64_t seed, int count, const std::vector<std::string>& kinds,
                                  bool drawn_words = false);
 

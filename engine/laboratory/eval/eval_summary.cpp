@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What a figure should be.
+/// Goal of a figure.
 struct Goal {
     const char* relation = nullptr;  // ">=", "<=", "==" or none
     double limit = 0;
@@ -157,8 +157,7 @@ void add_preservation(const Json& edits, Json& summary) {
     summary["inconsistency_of_truth"] = figure(mean(all, "inconsistency_of_truth"), {});
 }
 
-/// Of what other true scenes of each sentence are measured at ("another_truth": one, "mean_truth": the mean
-/// of several).
+/// Summary of other true scenes of each sentence ("another_truth": one, "mean_truth": the mean of several).
 Json mean_of_truths(const Edits& edits, const char* which, const char* key) {
     double sum = 0;
     std::size_t count = 0;
@@ -170,7 +169,7 @@ Json mean_of_truths(const Edits& edits, const char* which, const char* key) {
     return count > 0 ? Json(sum / static_cast<double>(count)) : Json();
 }
 
-/// What another thing took the place of.
+/// Summary of the objects that others replaced.
 void add_replacements(const Json& report, const Json& edits, Json& summary) {
     const Edits replaced = of_kinds(edits, {"replace"}), done = finished(replaced);
     if (replaced.empty()) return;
@@ -192,8 +191,8 @@ void add_replacements(const Json& report, const Json& edits, Json& summary) {
     summary["replace_weighted_iou"] = figure(mean(replaced, "weighted_iou"), {});
 }
 
-/// How often the verdict on the redrawn views warns of an edit that brings the scene no nearer to the truth,
-/// and of the others.
+/// Rate of warnings by the verdict on the redrawn views: for edits that bring the scene no nearer to the
+/// truth, and for the others.
 void add_verdicts(const Json& edits, Json& summary) {
     std::size_t judged[2] = {0, 0}, warned[2] = {0, 0};
     for (const auto& edit : edits) {
@@ -259,7 +258,7 @@ const Json* named(const Json& table, const std::string& name) {
     return nullptr;
 }
 
-/// The paper's order: both ablations keep the rest less well. As 1 or 0.
+/// Order of the paper, as 1 or 0: both ablations keep the rest less well.
 void add_order(const Json& table, Json& summary) {
     const Json* full = named(table, "full");
     for (const char* name : {"no_localization", "no_pseudo_gt"}) {

@@ -6,9 +6,9 @@
 
 namespace gse::bench {
 
-/// From the "edits" (and, where run, "ablations") of an evaluation: per figure {"value", "goal", "met"};
-/// value null = there was nothing to measure it with. A failed edit has found, changed and covered nothing:
-/// it counts as zero there; what it would have kept unchanged is no merit and is left out.
+/// Figures from the "edits" (and, where run, "ablations") of an evaluation: per figure {"value", "goal",
+/// "met"}. A null value had nothing to be measured with. A failed edit counts as zero where it found, changed
+/// and covered nothing. It is left out where keeping things unchanged is measured.
 nlohmann::ordered_json eval_summary(const nlohmann::ordered_json& report);
 
 /// One line per edit, the means, the ablations, the real scenes.

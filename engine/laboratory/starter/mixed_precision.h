@@ -5,8 +5,8 @@
 
 namespace gse::training {
 
-/// While it lives, convolutions and matrix products of this thread compute in bfloat16 (mixed precision,
-/// Micikevicius et al. 2018; bfloat16 has the range of float, so losses need no scaling). Weights and their
+/// Scope in which convolutions and matrix products of this thread compute in bfloat16 (mixed precision,
+/// Micikevicius et al. 2018). Losses need no scaling: bfloat16 has the range of float. Weights and their
 /// gradients stay in float.
 class MixedPrecision {
 public:

@@ -39,7 +39,7 @@ torch::Tensor augment(torch::Tensor group, Random& random) {
     return (group + noise * torch::randn(group.sizes(), generator)).clamp(0.0, 1.0);
 }
 
-/// Which changes are the same, and which have nothing to do with each other; `facts` of all rows.
+/// Marks equal changes and unrelated ones; `facts` of all rows.
 void compare_changes(const std::vector<std::int64_t>& from, const std::vector<std::int64_t>& to,
                      const std::vector<std::uint64_t>& facts, TwinBatch& batch) {
     struct Change {

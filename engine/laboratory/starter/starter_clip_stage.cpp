@@ -1,8 +1,9 @@
-// Trains the image-text encoder: symmetric InfoNCE over pictures and sentences (Radford et al. 2021) in which
-// sentences that are true of another picture do not count against it, and the same over changes: the
-// difference of two twins' pictures must point where the difference of their sentences points (directional
-// CLIP loss, Gal et al. 2022), at right angles to changes of other things. Sentences with one word replaced
-// count against a picture's own (hard negative captions, Yuksekgonul et al. 2023).
+// Trains the image-text encoder.
+// Pictures and sentences: symmetric InfoNCE (Radford et al. 2021). Sentences that are true of another picture
+// do not count against it.
+// Changes: the difference of two twins' pictures points where the difference of their sentences points
+// (directional CLIP loss, Gal et al. 2022), at right angles to changes of other things.
+// Hard negatives: sentences with one word replaced count against a picture's own (Yuksekgonul et al. 2023).
 #include <cmath>
 #include <limits>
 
@@ -28,7 +29,7 @@ double share_right(const torch::Tensor& scores, const torch::Tensor& blocked) {
     return best.eq(torch::arange(best.size(0), best.options())).to(torch::kFloat).mean().item<double>();
 }
 
-/// What the sentences with a word replaced cost, and the share of them that fit their picture less than its
+/// Loss of the sentences with a word replaced, and the share of them that fit their picture less than its
 /// own.
 struct Told {
     torch::Tensor loss;

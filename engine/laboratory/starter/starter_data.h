@@ -23,8 +23,8 @@ struct StarterPictures {
 StarterPictures load_or_render_pictures(const StarterTrainParameters& parameters, const StarterSource& source,
                                         const std::filesystem::path& work, const JobControl& job);
 
-/// Text of vocab.json and merges.txt in which every given word is one token (CLIP's byte-level BPE, trained
-/// until no word is left in pieces); the last two ids are the start and end tokens.
+/// Text of vocab.json and merges.txt in which every given word is one token. CLIP's byte-level BPE is trained
+/// until no word is left in pieces. The last two ids are the start and end tokens.
 struct StarterVocabulary {
     std::string vocab_json;
     std::string merges_txt;

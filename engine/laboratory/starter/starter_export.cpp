@@ -43,20 +43,20 @@ Json tokenizer_config() {
             {"do_lower_case", true}};
 }
 
-/// Whether the initial model's UNet and text encoder are exported as they were.
+/// Tells whether the initial model's UNet and text encoder are exported as they were.
 bool keeps_networks(const StarterTrainParameters& parameters) {
     return !parameters.initial.empty() && parameters.average.empty() && parameters.unet_steps == 0 &&
            parameters.unet_minutes == 0;
 }
 
-/// What the initial model says about itself; empty where there is none, or it says nothing.
+/// Facts of the initial model; empty where it has none.
 Json initial_facts(const StarterTrainParameters& parameters) {
     const auto file = std::filesystem::path(parameters.initial) / "gseditpro.json";
     return !parameters.initial.empty() && std::filesystem::exists(file) ? read_json_file(file)
                                                                         : Json::object();
 }
 
-/// What the initial model's facts name goes along.
+/// Copies the files that the initial model's facts name.
 void copy_named(const StarterTrainParameters& parameters, const std::vector<std::string>& keys,
                 const std::filesystem::path& output) {
     const std::filesystem::path initial = parameters.initial;
@@ -70,7 +70,7 @@ void copy_named(const StarterTrainParameters& parameters, const std::vector<std:
     }
 }
 
-/// What the model says about itself; what an initial model was measured to work best with stays.
+/// Facts of the model; those that an initial model was measured to work best with stay.
 Json facts_of(const UNetTraining& training) {
     Json facts{{"name", "GSEditPro starter"},
                {"image_size", training.parameters.image_size},
@@ -79,8 +79,8 @@ Json facts_of(const UNetTraining& training) {
                // Measured: `gseditpro-lab bench locate`, points "noise levels", and on scans, of which it
                // labels the ground, too, at less noise.
                {"attention_timesteps", {0.3}},
-               // Where absent things go was learned at every noise level, and is told more exactly where the
-               // picture shows.
+               // Places of absent objects were learned at every noise level; less noise shows more of the
+               // picture.
                {"attention_absent_timesteps", {0.3, 0.5, 0.7}}};
     facts.update(initial_facts(training.parameters));
     if (!keeps_networks(training.parameters) &&

@@ -53,12 +53,11 @@ StarterParts initial_parts(const std::filesystem::path& folder, const StarterCon
 ClipModel initial_clip(const std::filesystem::path& folder, const ClipConfig& config,
                        const StarterVocabulary& vocabulary);
 
-/// Replaces the text encoder and UNet by their mean with another's: the ends of two runs with falling
-/// learning rates lie on the rim of one basin, their mean within (stochastic weight averaging, Izmailov et
-/// al. 2018). Throws Error when the other's VAE is not the same: its UNet would speak of other latents.
+/// Replaces the text encoder and UNet by their mean with another's (stochastic weight averaging, Izmailov et
+/// al. 2018). Throws Error when the other's VAE is another one: its UNet would speak of other latents.
 void average_networks(StarterParts& parts, StarterParts& other, const std::filesystem::path& folder);
 
-/// What the UNet stage works on. `preview`, if set, receives the averaged networks at every checkpoint.
+/// Input of the UNet stage. `preview`, if set, receives the averaged networks at every checkpoint.
 struct UNetTraining {
     const StarterConfigs& configs;
     const StarterTrainParameters& parameters;
@@ -74,7 +73,7 @@ struct UNetTraining {
 void train_unet(StarterNetworks& networks, const UNetTraining& training, const std::filesystem::path& work,
                 const JobControl& job);
 
-/// What the contrastive stage works on; `pictures` are those of `twins`.
+/// Input of the contrastive stage; `pictures` are those of `twins`.
 struct ClipTraining {
     const StarterTrainParameters& parameters;
     const StarterPictures& pictures;
@@ -88,8 +87,8 @@ void train_clip(ClipModel& clip, const ClipTraining& training, const std::filesy
 /// Writes config.json and model.safetensors (fp16) as transformers does; the tokenizer is the bundle's.
 void export_clip(const ClipModel& clip, const std::filesystem::path& folder);
 
-/// Writes the diffusers folder in fp16. What the initial model's gseditpro.json names goes along while it
-/// fits.
+/// Writes the diffusers folder in fp16. Files that the initial model's gseditpro.json names go along while
+/// they fit.
 void export_starter(const UNetTraining& training, AutoencoderKl& vae, StarterNetworks& networks,
                     const std::filesystem::path& output);
 

@@ -13,7 +13,7 @@
 
 namespace gse::training {
 
-/// What a caption's word may name; the order of the coverage maps of a StarterPicture.
+/// Parts that a caption's word may name; the order of the coverage maps of a StarterPicture.
 enum class StarterPart : int { Ground = 0, Object = 1, Accessory = 2 };
 inline constexpr int StarterPartCount = 3;
 
@@ -24,8 +24,8 @@ struct StarterPicture {
     /// The accessory map is that of the twin scene: the picture itself shows no accessory. Captions asked for
     /// with `insertion` then name the accessory, so the words learn where it belongs before it is there.
     bool bare_twin = false;
-    /// How much of each pixel what is new covers (what is restyled, else the accessory, else the object),
-    /// [S,S], 0..255; empty where the source does not tell.
+    /// Coverage of each pixel by what is new (restyled part, else accessory, else object), [S,S], 0..255.
+    /// Empty where the source does not tell.
     std::vector<std::uint8_t> outline = {};
 };
 
@@ -44,7 +44,7 @@ struct StarterCaption {
     double next_share = 0;
 };
 
-/// Where a picture was taken from.
+/// Camera of a picture.
 struct StarterCamera {
     double azimuth = 0;    // radians from the scene's front, positive to the left
     double elevation = 0;  // radians above the horizontal
@@ -53,7 +53,7 @@ struct StarterCamera {
 
 class StarterTwins;
 
-/// Where the pictures come from; every method is const, deterministic and callable from several threads.
+/// Source of training pictures; every method is const, deterministic and callable from several threads.
 class StarterSource {
 public:
     virtual ~StarterSource() = default;
@@ -61,22 +61,21 @@ public:
     /// A caption of picture `index`; `seed` varies the wording.
     virtual StarterCaption caption(std::uint64_t index, std::uint64_t seed, bool insertion) const = 0;
     virtual std::vector<std::string> vocabulary() const = 0;
-    /// How many pictures there are of each scene: picture s * views_of_scene() + v is view v of scene s.
-    /// Captions of one scene that are asked for with one seed differ in the side only.
+    /// Number of pictures of each scene: picture s * views_of_scene() + v is view v of scene s. Captions of
+    /// one scene that are asked for with one seed differ in the side only.
     virtual int views_of_scene() const { return 1; }
     virtual StarterCamera camera(std::uint64_t index) const {
         return static_cast<void>(index), StarterCamera{};
     }
-    /// The same views of the same scenes without what the caption's edit brings: the accessory, else the
-    /// object, whose coverage then is that of the room in which another thing took its place. null = there
-    /// are none.
+    /// Views of these scenes before the caption's edit: without the accessory, else without the object. The
+    /// object's coverage then is that of its placement volume. null = there are none.
     virtual const StarterSource* before() const { return nullptr; }
-    /// The part that the caption's edit gives another colour, material or ground: pictures of before() show
-    /// it as it was, and there is no room. null = something new comes.
+    /// Part that the caption's edit gives another colour, material or ground. Pictures of before() show it as
+    /// it was, and there is no placement volume. nullopt = something new comes.
     virtual std::optional<StarterPart> restyled(std::uint64_t index) const {
         return static_cast<void>(index), std::nullopt;
     }
-    /// Whether all pictures have their outline.
+    /// Tells whether all pictures have their outline.
     virtual bool has_outlines() const { return false; }
     /// Changes when the same index would give another picture (names the picture cache).
     virtual std::string identity() const = 0;
@@ -90,15 +89,15 @@ struct StarterClaim {
     std::uint64_t facts = 0;
 };
 
-/// Groups of pictures of one scene from one place that differ in a word or two: picture g * group_size() + m
+/// Groups of pictures of one scene from one place that differ in a word or two. Picture g * group_size() + m
 /// is member m of group g. Coverage is not needed and may be zero.
 class StarterTwins : public StarterSource {
 public:
     virtual int group_size() const = 0;
     /// Everything that is true of a picture.
     virtual std::uint64_t facts(std::uint64_t index) const = 0;
-    /// A true sentence. `full`: it states nearly every fact, in one form for equal seeds, so that the
-    /// sentences of a group differ in nothing but what they state.
+    /// True sentence of a picture. `full`: it states nearly every fact, in one form for equal seeds.
+    /// Sentences of a group then differ in nothing but what they state.
     virtual StarterClaim claim(std::uint64_t index, std::uint64_t seed, bool full) const = 0;
     /// Sentences that are false of the picture: claim() of the same arguments with one word replaced. May be
     /// empty.

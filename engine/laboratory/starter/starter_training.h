@@ -1,4 +1,4 @@
-// What both training stages share: progress by steps or by the clock, averaged replicas, EMA and checkpoints.
+// Loop of all training stages: progress by steps or by the clock, averaged replicas, EMA and checkpoints.
 #pragma once
 
 #include <torch/torch.h>
@@ -18,7 +18,7 @@ namespace gse::training {
 
 using namespace neural;
 
-/// How far a stage is, in [0,1], by steps when their number is given and by training time otherwise.
+/// Progress of a stage in [0,1], by steps when their number is given and by training time otherwise.
 class StageClock {
 public:
     StageClock(int steps, double minutes) : steps_(steps), seconds_(minutes * 60) {}

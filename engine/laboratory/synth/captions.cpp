@@ -120,7 +120,7 @@ void ground_phrase(CaptionWriter& writer, const SceneSpec& spec, Random& random)
     writer.name(lake ? "lake" : spec.ground, Part::Ground);
 }
 
-/// What an edit sentence has named so far.
+/// Parts that an edit sentence has named so far.
 struct EditReader {
     SceneSpec spec;
     std::string adjective;        // material word waiting for its noun

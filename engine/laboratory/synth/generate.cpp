@@ -41,7 +41,7 @@ struct Pose {
     Vec3 shift{};
 };
 
-/// Of what is another in another variant of a scene.
+/// Streams of what differs between variants of a scene.
 Random own_stream(const SceneSpec& spec, std::uint64_t index) {
     return Random::stream(spec.seed + 0x9e3779b97f4a7c15ULL * spec.variant, index);
 }

@@ -12,7 +12,7 @@ constexpr Paint Main{Slot::Main};
 constexpr Paint Pale{Slot::Pale};
 constexpr Paint Deep{Slot::Deep};
 
-/// Where accessories sit on an object, in model space.
+/// Places of accessories on an object, in model space.
 struct Anchor {
     Vec3 top{0, 1, 0};          // highest point under a hat's middle
     double head_radius = 0.25;  // half width of the head at hat height

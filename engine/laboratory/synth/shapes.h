@@ -14,7 +14,7 @@ namespace gse::synth {
 // Model space: y up, front towards -z, the object stands on y = 0 and is about 1 unit tall. World space (y
 // down) is reached by a half turn about z (see generate.cpp).
 
-/// What the colour of a surface depends on.
+/// Inputs of a surface's colour.
 enum class Slot : std::uint8_t {
     Main,   // the material
     Pale,   // the material, lighter (muzzle, belly, stripes)
@@ -91,7 +91,7 @@ Shape revolution(const Vec3& centre, std::vector<ProfilePoint> profile, Paint pa
 /// Thin surface; normals point away from `inner`.
 Shape sheet(const Vec3& inner, std::function<Vec3(double u, double v)> surface, Paint paint = {});
 
-/// About `target` points spread evenly over the visible surface of `shapes`: points inside another solid of
+/// Spreads about `target` points evenly over the visible surface of `shapes`. Points inside another solid of
 /// `shapes` or inside a solid of `others` are dropped, and so are points below the ground.
 std::vector<SurfacePoint> sample_surface(std::span<const Shape> shapes, std::span<const Shape> others,
                                          int target, Random random);

@@ -43,9 +43,8 @@ const std::vector<std::string>& material_words();   // at least 8
 const std::vector<std::string>& accessory_words();  // at least 5: hat crown sunglasses scarf flames ...
 const std::vector<std::string>& ground_words();     // at least 4
 
-/// More words of each list, which generate() knows, too. What looks for things was not trained on them, only
-/// what draws
-/// (`drawn_vocabulary()`): random specs and, unless they are asked for, suites keep to the lists above.
+/// More words of each list that generate() knows. The network that finds objects was not trained on them; the
+/// one that draws was. Random specs and suites keep to the lists above unless these are asked for.
 const std::vector<std::string>& more_object_words();
 const std::vector<std::string>& more_material_words();
 const std::vector<std::string>& more_accessory_words();
@@ -61,8 +60,8 @@ const std::vector<std::string>& vocabulary();
 /// vocabulary(), then every word that only captions of more_*_words() have.
 const std::vector<std::string>& drawn_vocabulary();
 
-/// The scene of a spec. Ground, object and accessory come from random streams of their own: taking the
-/// accessory away leaves the other rows bit-identical, another material or colour changes nothing but
+/// Generates the scene of a spec. Ground, object and accessory have random streams of their own. Taking the
+/// accessory away leaves the other rows bit-identical; another material or colour changes nothing but
 /// colours. Row order: ground, object, accessory. Throws Error for a word that is not in the lists.
 SynthScene generate(const SceneSpec& spec);
 
@@ -71,12 +70,12 @@ bool held_out(const SceneSpec& spec);
 
 /// Random spec. `with_accessory`: probability of an accessory.
 SceneSpec random_spec(Random& random, double with_accessory = 0.5);
-/// The same, never held out.
+/// Random spec that is never held out.
 SceneSpec training_spec(Random& random, double with_accessory = 0.5);
-/// The same, always held out.
+/// Random spec that is always held out.
 SceneSpec held_out_spec(Random& random, double with_accessory = 0.5);
 
-/// The same with at least one of more_*_words(), never held out. `looks`: of these only materials, colours
+/// Random spec with at least one of more_*_words(), never held out. `looks`: of these only materials, colours
 /// and grounds.
 SceneSpec training_spec_of_more(Random& random, double with_accessory = 0.5, bool looks = false);
 
@@ -86,12 +85,11 @@ double turn_of(const SceneSpec& spec);
 
 /// Camera around the scene at `azimuth` (0 = front, but for turn_of()) and `elevation` radians, 45 degrees
 /// field of view over the shorter side. `zoom` 1 frames the object with ground and leaves room for an
-/// accessory on top; it depends on the angles only, so that a scene and its edited twin are seen by the same
-/// camera.
+/// accessory on top. The framing depends on the angles only: one camera sees a scene and its edited twin.
 Camera scene_camera(const SynthScene& scene, double azimuth, double elevation, double zoom, int width,
                     int height);
 
-/// The same, aimed at the head: for close-ups of small accessories (zoom about 1.5 to 2).
+/// Camera aimed at the head, for close-ups of small accessories (zoom about 1.5 to 2).
 Camera head_camera(const SynthScene& scene, double azimuth, double elevation, double zoom, int width,
                    int height);
 
@@ -101,7 +99,7 @@ std::string view_words(double azimuth);
 /// view"; the camera of positive azimuths is on the left.
 std::string sided_view_words(double azimuth);
 
-/// An azimuth between the middles of two of the eight sides: their words, and how far it is from the first to
+/// Azimuth between the middles of two of the eight sides: their words, and its place between the first and
 /// the second, in [0,1).
 struct SideBlend {
     std::string words, next_words;
@@ -126,13 +124,12 @@ Caption full_caption(const SceneSpec& spec);
 /// Random template with words left out (each kind 10-20 % of the time) and view words appended half of the
 /// time.
 Caption random_caption(const SceneSpec& spec, double azimuth, Random& random);
-/// The same without a word about the side it is seen from.
+/// Caption without a word about the side it is seen from.
 Caption random_caption(const SceneSpec& spec, Random& random);
 
-/// Applies an edit sentence ("a blue bear", "a bear wearing a red hat", "a golden statue on the sand", "turn
-/// the bear into a wooden dog", "a bear made of stone", "remove the hat") to a spec: words the sentence names
-/// replace those of the spec (of two for one thing the last counts), the rest stays. Throws Error if no known
-/// word is found.
+/// Applies an edit sentence to a spec: words that it names replace those of the spec (the last of two for one
+/// part counts), the rest stays. Examples: "a blue bear", "a bear wearing a red hat", "a golden statue on the
+/// sand", "turn the bear into a wooden dog", "remove the hat". Throws Error if no known word is found.
 SceneSpec apply_edit(const SceneSpec& spec, const std::string& sentence);
 
 }  // namespace gse::synth

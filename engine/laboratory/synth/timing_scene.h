@@ -10,7 +10,7 @@
 namespace gse::synth {
 
 /// Sphere, torus, box, cone and a small sphere on a ground disc of radius 7 under a dome of radius 14; SH
-/// degree 3, up is +y. The same count and seed give the same scene.
+/// degree 3, up is +y. One count and seed give one scene.
 Scene timing_scene(std::size_t count, std::uint64_t seed);
 
 /// Cameras on one circle around it, 60 degrees wide.

@@ -1,4 +1,4 @@
-// What the words of the synthetic world mean to its generator.
+// Meaning of the synthetic world's words for its generator.
 #pragma once
 
 #include <cstdint>

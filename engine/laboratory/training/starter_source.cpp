@@ -19,7 +19,7 @@
 namespace gse::training {
 namespace {
 
-/// What one picture shows; a function of seed and index alone.
+/// Content of one picture; a function of seed and index alone.
 struct Shot {
     synth::SceneSpec spec;  // as drawn
     synth::SceneSpec twin;  // with the accessory, when `bare_twin`
@@ -134,8 +134,8 @@ Camera close_camera(const synth::SynthScene& scene, const Shot& shot, int size) 
     return orbit_camera(orbit, shot.azimuth, size, size);
 }
 
-/// An upright cylinder around a thing, as edits redraw it where another takes its place (edit::room_around(),
-/// which leaves low and thin things more room), or where something is added to it (edit::room_above()).
+/// Upright cylinder around an object in which edits redraw it: where another takes its place
+/// (edit::room_around()), or where something is added to it (edit::room_above()).
 struct Room {
     Vec3 low{1e9, 1e9, 1e9}, high{-1e9, -1e9, -1e9};
     bool above = false;  // it is higher by a share of the longest side, not of the height
@@ -145,7 +145,7 @@ struct Room {
         return (1 + share) *
                std::max({0.5 * (high.x - low.x), 0.5 * (high.z - low.z), LeastWidth * (high.y - low.y)});
     }
-    /// Which latent cells see some of it, if it is `share` wider and higher than the thing.
+    /// Latent cells that see some of it, if it is `share` wider and higher than the object.
     void store(const Camera& camera, double share, std::uint8_t* cells) const {
         constexpr int Points = 32;  // per axis: closer than cells
         const int side = camera.width / LatentCell;
@@ -203,7 +203,7 @@ synth::SceneSpec before_restyling(const synth::SceneSpec& after, synth::Part par
     return before;
 }
 
-/// Whether a caption says what `part` looks like.
+/// Tells whether a caption names the look of `part`.
 bool tells_look(const synth::Caption& caption, const synth::SceneSpec& spec, synth::Part part) {
     const auto is_look = [&](const synth::Caption::Grounding& grounding) {
         if (grounding.part != part) return false;
@@ -214,8 +214,8 @@ bool tells_look(const synth::Caption& caption, const synth::SceneSpec& spec, syn
     return std::any_of(caption.groundings.begin(), caption.groundings.end(), is_look);
 }
 
-/// A scene before the edit of which it is the result: with another look of a part, without its accessory,
-/// else with the shadow of another thing, which itself is gone.
+/// Scene before the edit: with another look of a part, without its accessory, or with the shadow alone of
+/// another object.
 struct SceneBefore {
     synth::SynthScene scene;
     std::vector<float> opacity_logit;  // [N]

@@ -15,7 +15,7 @@ inline constexpr int LatentCell = 4;  // pixels per latent cell
 
 /// Pictures 2k and 2k+1 share a scene: where it has an accessory, 2k+1 is the same view without it.
 std::unique_ptr<StarterSource> make_starter_source(std::uint64_t seed);
-/// What the scenes of make_shape_source() are.
+/// Mix of the scenes of make_shape_source().
 struct ShapeMix {
     double restyled = 0;      // share of them with StarterSource::restyled()
     double more = 0;          // share of them with synth::more_object_words() and so on

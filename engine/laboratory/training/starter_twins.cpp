@@ -1,5 +1,5 @@
-// Groups of four pictures: a scene, the same in another material, with or without its accessory, and with one
-// other thing changed (ground, object, accessory or its colour).
+// Groups of four pictures: a scene, one in another material, one with or without its accessory, and one with
+// another thing changed (ground, object, accessory or its colour).
 #include "engine/laboratory/training/starter_twins.h"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ constexpr double HeadShare = 0.15;           // groups seen from near the head
 constexpr double ViewShare = 0.3;            // full sentences that end with view words
 constexpr double PlainShare = 0.35;          // full sentences that do not tell the accessory's colour
 
-/// What a sentence may state, numbered.
+/// Facts that a sentence may state, numbered.
 class FactTable {
 public:
     FactTable() {
@@ -67,7 +67,7 @@ std::uint64_t facts_of(const SceneSpec& spec, double azimuth) {
     return facts;
 }
 
-/// What a sentence of the synthetic world states.
+/// Facts that a sentence of the synthetic world states.
 std::uint64_t claimed_by(const synth::Caption& caption) {
     const auto& table = fact_table();
     std::uint64_t facts = 0;

@@ -29,8 +29,8 @@ constexpr float CleanPlate = 0.1f;
 constexpr std::size_t LogHead = 4;  // step, seconds, lr, grad_norm: not curves
 constexpr int SampleSide = 128, SampleColumns = 6, SampleSteps = 40;
 
-/// What the model is asked to draw: every object, every colour and material, every accessory and ground once
-/// or more.
+/// Sentences of the samples: every object, every colour and material, every accessory and ground once or
+/// more.
 constexpr std::array<const char*, 24> SamplePrompts{"a red bear on the grass",
                                                     "a blue dog on the sand",
                                                     "a green cat on the snow",

@@ -1,5 +1,4 @@
-// What a training leaves beside the weights: logs, curves, and a sheet of pictures drawn by the finished
-// model.
+// Record of a training beside the weights: logs, curves, and a sheet of pictures drawn by the finished model.
 #pragma once
 
 #include <filesystem>
