@@ -209,7 +209,7 @@ void add_edit_bench(CLI::App& bench, CommandContext& context) {
     };
     auto options = std::make_shared<Options>();
     auto* command = bench.add_subcommand(
-        "edit", "What edits reach against TFLOP and seconds, a curve per method: JSON and a picture");
+        "edit", "Error of edits against TFLOP and seconds, a curve per method: JSON and a picture");
     command->add_option("--out", options->output, "Folder for edit.json, pareto.png and contact sheets")
         ->capture_default_str();
     bind_fields(*command, options->parameters, "Cases and points");
@@ -320,7 +320,7 @@ void add_bench_command(CLI::App& app, CommandContext& context) {
     add_clip_bench(*bench, context);
     add_search_bench(*bench, context);
     add_model_subject<LocateBenchParameters>(
-        *bench, context, "locate", "What searches find against passes and seconds, a point per setting",
+        *bench, context, "locate", "Error of searches against passes and seconds, a point per setting",
         bench_locate);
     add_edit_bench(*bench, context);
     add_model_subject<ScaleBenchParameters>(*bench, context, "scale",

@@ -55,10 +55,10 @@ void add_synth_command(CLI::App& app, CommandContext&) {
     command->add_option("--object", spec.object, "Main object")->capture_default_str();
     command->add_option("--material", spec.material, "Colour or material of the object")
         ->capture_default_str();
-    command->add_option("--accessory", spec.accessory, "What the object wears; empty = nothing");
+    command->add_option("--accessory", spec.accessory, "Accessory of the object; empty = none");
     command->add_option("--accessory-colour", spec.accessory_colour,
                         "Colour of the accessory; empty = its own");
-    command->add_option("--ground", spec.ground, "What the object stands on")->capture_default_str();
+    command->add_option("--ground", spec.ground, "Ground below the object")->capture_default_str();
     command->add_option("--seed", spec.seed, "Shape, pose, texture and light")->capture_default_str();
     command->add_option("--splats", spec.gaussian_budget, "About this many splats")
         ->capture_default_str()

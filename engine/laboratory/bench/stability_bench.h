@@ -22,7 +22,7 @@ struct StabilityParameters {
         f("scenes", self.scenes, "Scenes per cause and instruction set.", Range{1, 1e6});
         f("seed", self.seed, "Seed of the first; the others follow.");
         f("causes", self.causes,
-          "What makes scenes hard: all, or names of the table with commas between them.");
+          "Causes that make scenes hard: all, or names of the table with commas between them.");
         f("kernels", self.kernels,
           "Instruction sets: all that run here, or some of scalar avx2 avx512; cuda only where it is named.");
     }

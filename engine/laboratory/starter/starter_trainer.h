@@ -146,15 +146,14 @@ struct StarterTrainParameters {
         f("initial", self.initial,
           "Starter folder to go on from; parts with neither minutes nor steps stay as they are there.");
         f("average", self.average,
-          "Second starter folder: the run begins from the mean of its text encoder and UNet and those of the "
-          "initial one.");
+          "Second starter folder, whose text encoder and UNet are averaged with the initial ones.");
         f("image_size", self.image_size, "Side of the training pictures in pixels.", Range{32, 256});
         f("pictures", self.pictures, "Number of training pictures rendered first.", Range{8, 1e6});
-        f("vae_minutes", self.vae_minutes, "Time for the VAE; ignored when vae_steps is set.", Range{0, 1e5});
-        f("unet_minutes", self.unet_minutes,
-          "Time for text encoder and UNet; ignored when unet_steps is set.", Range{0, 1e5});
-        f("clip_minutes", self.clip_minutes,
-          "Time for the image-text encoder; ignored when clip_steps is set.", Range{0, 1e5});
+        f("vae_minutes", self.vae_minutes, "Time for the VAE, unless steps are set.", Range{0, 1e5});
+        f("unet_minutes", self.unet_minutes, "Time for the UNet and its text encoder, unless steps are set.",
+          Range{0, 1e5});
+        f("clip_minutes", self.clip_minutes, "Time for the image-text encoder, unless steps are set.",
+          Range{0, 1e5});
         f("vae_steps", self.vae_steps, "Steps of the VAE; 0 = go by time.", Range{0, 1e8});
         f("unet_steps", self.unet_steps, "Steps of the UNet; 0 = go by time.", Range{0, 1e8});
         f("clip_steps", self.clip_steps, "Steps of the image-text encoder; 0 = go by time.", Range{0, 1e8});
@@ -164,15 +163,13 @@ struct StarterTrainParameters {
         f("unet_batch", self.unet_batch, "Pictures per replica and UNet step.", Range{1, 4096});
         f("clip_batch", self.clip_batch,
           "Groups of twin pictures per replica and step of the image-text encoder.", Range{2, 4096});
-        f("clip_pictures", self.clip_pictures, "Number of twin pictures rendered for the image-text encoder.",
+        f("clip_pictures", self.clip_pictures, "Twin pictures rendered for the image-text encoder.",
           Range{8, 1e6});
         f("vae_lr", self.vae_lr, "Peak learning rate of the VAE (cosine to zero).", Range{0, 1});
-        f("unet_lr", self.unet_lr, "Peak learning rate of text encoder and UNet (cosine to zero).",
-          Range{0, 1});
+        f("unet_lr", self.unet_lr, "Peak learning rate of the UNet (cosine to zero).", Range{0, 1});
         f("clip_lr", self.clip_lr, "Peak learning rate of the image-text encoder (cosine to zero).",
           Range{0, 1});
-        f("vae_channels", self.vae_channels, "Channels of the VAE at full resolution (x3, x6 below).",
-          Range{8, 512});
+        f("vae_channels", self.vae_channels, "Channels of the VAE at full resolution.", Range{8, 512});
         f("unet_channels", self.unet_channels, "Channels of the UNet at latent resolution.", Range{16, 1024});
         f("text_width", self.text_width, "Width of the text encoder.", Range{32, 1024});
         f("clip_width", self.clip_width, "Width of the image encoder of the image-text encoder.",
@@ -180,9 +177,7 @@ struct StarterTrainParameters {
         f("direction_weight", self.direction_weight,
           "Weight of the loss that makes picture changes point where sentence changes point.", Range{0, 10});
         f("false_weight", self.false_weight,
-          "Weight of the loss that tells a sentence from the same with one word replaced, in the image-text "
-          "encoder.",
-          Range{0, 10});
+          "Weight of the loss that tells a sentence from one with a word replaced.", Range{0, 10});
         f("grounding_weight", self.grounding_weight,
           "Weight of the loss that makes the words of a part attend to that part.", Range{0, 10});
         f("spread_weight", self.spread_weight,
@@ -193,17 +188,14 @@ struct StarterTrainParameters {
         f("caption_dropout", self.caption_dropout, "Share of empty captions (classifier-free guidance).",
           Range{0, 1});
         f("restyled_share", self.restyled_share,
-          "Share of the scenes drawn with --pictures-only in which nothing new comes: the thing, its ground "
-          "or what it wears gets another look.",
+          "Share of the scenes of --pictures-only in which a part gets another look and nothing is added.",
           Range{0, 1});
         f("more_share", self.more_share,
-          "Share of the scenes drawn with --pictures-only that have things, materials, accessories or "
-          "grounds which what finds things is not trained on.",
+          "Share of the scenes of --pictures-only with words that the network for finding is not trained on.",
           Range{0, 1});
-        f("more_looks", self.more_looks, "Of these only materials, colours and grounds.");
+        f("more_looks", self.more_looks, "Take only materials, colours and grounds of those words.");
         f("bf16", self.bf16,
-          "Convolutions and matrix products of text encoder and UNet in bfloat16, norms and losses in "
-          "float.");
+          "Compute convolutions and matrix products of text encoder and UNet in bfloat16.");
         f("device", self.device, "cpu or cuda.");
         f("seed", self.seed, "Seed of pictures, weights, wording and noise.");
     }
