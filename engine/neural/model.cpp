@@ -64,8 +64,8 @@ public:
     }
     std::unique_ptr<edit::MultiViewEditor> views(const std::string& prompt,
                                                  const SdsParameters& parameters) const override {
-        return std::make_unique<DiffusionViews>(bundle_, prompt, parameters, with_shapes(),
-                                                parameters.restyle && supports_appearance_editing());
+        return std::make_unique<DiffusionViewEditor>(bundle_, prompt, parameters, with_shapes(),
+                                                     parameters.restyle && supports_appearance_editing());
     }
     bool supports_scene_conditioning() const override {
         const auto& facts = loaded_->facts;

@@ -41,7 +41,7 @@ torch::Tensor augment(torch::Tensor group, Random& random) {
 
 /// Marks equal changes and unrelated ones; `facts` of all rows.
 void compare_changes(const std::vector<std::int64_t>& from, const std::vector<std::int64_t>& to,
-                     const std::vector<std::uint64_t>& facts, TwinBatch& batch) {
+                     const std::vector<std::uint64_t>& facts, PairBatch& batch) {
     struct Change {
         std::uint64_t gained, lost;
     };
@@ -66,13 +66,13 @@ void compare_changes(const std::vector<std::int64_t>& from, const std::vector<st
 
 }  // namespace
 
-TwinBatchMaker::TwinBatchMaker(const ClipTraining& training)
+PairBatchMaker::PairBatchMaker(const ClipTraining& training)
     : training_(training), table_(training.vocabulary),
-      members_(static_cast<std::uint64_t>(training.twins.group_size())) {}
+      members_(static_cast<std::uint64_t>(training.pairs.group_size())) {}
 
-TwinBatch TwinBatchMaker::make(Random& random) const {
+PairBatch PairBatchMaker::make(Random& random) const {
     const auto rows = draw_rows(random);
-    TwinBatch batch;
+    PairBatch batch;
     batch.pictures = pictures_of(rows, random);
     std::vector<std::string> texts, false_texts;
     std::vector<std::int64_t> false_of;
@@ -90,7 +90,7 @@ TwinBatch TwinBatchMaker::make(Random& random) const {
     return batch;
 }
 
-std::vector<TwinBatchMaker::Row> TwinBatchMaker::draw_rows(Random& random) const {
+std::vector<PairBatchMaker::Row> PairBatchMaker::draw_rows(Random& random) const {
     const auto groups = training_.pictures.count / members_;
     std::vector<Row> rows;
     for (int g = 0; g < training_.parameters.clip_batch; ++g) {
@@ -101,15 +101,15 @@ std::vector<TwinBatchMaker::Row> TwinBatchMaker::draw_rows(Random& random) const
             const std::uint64_t picture = group * members_ + m;
             // Full sentences of a group differ in nothing but what differs in the pictures.
             const std::uint64_t seed = full ? wording : random.next();
-            rows.push_back({picture, training_.twins.claim(picture, seed, full), full, {}});
+            rows.push_back({picture, training_.pairs.claim(picture, seed, full), full, {}});
             if (training_.parameters.false_weight > 0)
-                rows.back().false_texts = training_.twins.false_claims(picture, seed, full);
+                rows.back().false_texts = training_.pairs.false_claims(picture, seed, full);
         }
     }
     return rows;
 }
 
-torch::Tensor TwinBatchMaker::pictures_of(const std::vector<Row>& rows, Random& random) const {
+torch::Tensor PairBatchMaker::pictures_of(const std::vector<Row>& rows, Random& random) const {
     const auto& pictures = training_.pictures;
     const std::int64_t side = pictures.size, count = static_cast<std::int64_t>(rows.size());
     const auto stride = static_cast<std::size_t>(side * side * 3);
@@ -125,7 +125,7 @@ torch::Tensor TwinBatchMaker::pictures_of(const std::vector<Row>& rows, Random& 
     return torch::cat(groups);
 }
 
-torch::Tensor TwinBatchMaker::ids_of(const std::vector<std::string>& texts) const {
+torch::Tensor PairBatchMaker::ids_of(const std::vector<std::string>& texts) const {
     auto ids =
         torch::full({static_cast<std::int64_t>(texts.size()), StarterTokenCount}, table_.eos(), torch::kLong);
     auto cells = ids.accessor<std::int64_t, 2>();
@@ -139,7 +139,7 @@ torch::Tensor TwinBatchMaker::ids_of(const std::vector<std::string>& texts) cons
     return ids;
 }
 
-bool TwinBatchMaker::look_alike(std::uint64_t a, std::uint64_t b) const {
+bool PairBatchMaker::look_alike(std::uint64_t a, std::uint64_t b) const {
     const auto stride = static_cast<std::size_t>(training_.pictures.size) *
                         static_cast<std::size_t>(training_.pictures.size) * 3;
     const std::uint8_t* first = &training_.pictures.rgb[a * stride];
@@ -154,12 +154,12 @@ bool TwinBatchMaker::look_alike(std::uint64_t a, std::uint64_t b) const {
     return clear < LeastClearPixels;
 }
 
-void TwinBatchMaker::add_relations(const std::vector<Row>& rows, TwinBatch& batch) const {
+void PairBatchMaker::add_relations(const std::vector<Row>& rows, PairBatch& batch) const {
     const auto count = static_cast<std::int64_t>(rows.size());
     batch.blocked = torch::zeros({count, count}, torch::kBool);
     auto blocked = batch.blocked.accessor<bool, 2>();
     std::vector<std::uint64_t> facts;
-    for (const auto& row : rows) facts.push_back(training_.twins.facts(row.picture));
+    for (const auto& row : rows) facts.push_back(training_.pairs.facts(row.picture));
     for (std::size_t i = 0; i < rows.size(); ++i)
         for (std::size_t j = 0; j < rows.size(); ++j)
             blocked[static_cast<std::int64_t>(i)][static_cast<std::int64_t>(j)] =

@@ -12,7 +12,7 @@ namespace gse::training {
 
 /// N = groups * members pictures, each with one sentence; all members of a group stand together, the first
 /// first.
-struct TwinBatch {
+struct PairBatch {
     torch::Tensor pictures;  // [N,3,S,S] in [0,1], augmented; a group is augmented as one
     torch::Tensor ids;       // [N,T] long
     torch::Tensor
@@ -25,10 +25,10 @@ struct TwinBatch {
     torch::Tensor unrelated;    // [K,K] bool: no word that one of them brings or takes is among the other's
 };
 
-class TwinBatchMaker {
+class PairBatchMaker {
 public:
-    explicit TwinBatchMaker(const ClipTraining& training);
-    TwinBatch make(Random& random) const;
+    explicit PairBatchMaker(const ClipTraining& training);
+    PairBatch make(Random& random) const;
 
 private:
     struct Row {
@@ -40,7 +40,7 @@ private:
     std::vector<Row> draw_rows(Random& random) const;
     torch::Tensor pictures_of(const std::vector<Row>& rows, Random& random) const;
     torch::Tensor ids_of(const std::vector<std::string>& texts) const;
-    void add_relations(const std::vector<Row>& rows, TwinBatch& batch) const;
+    void add_relations(const std::vector<Row>& rows, PairBatch& batch) const;
     bool look_alike(std::uint64_t a, std::uint64_t b) const;
 
     const ClipTraining& training_;

@@ -46,7 +46,7 @@ Told tell_false(const torch::Tensor& pictures, const torch::Tensor& own, const t
 
 std::pair<torch::Tensor, std::vector<double>> batch_loss(const ClipModel& clip,
                                                          const ClipPreprocessing& preprocessing,
-                                                         const TwinBatch& batch,
+                                                         const PairBatch& batch,
                                                          const StarterTrainParameters& weights) {
     const double direction_weight = weights.direction_weight;
     const auto device = clip->logit_scale.device();
@@ -90,7 +90,7 @@ void train_clip(ClipModel& clip, const ClipTraining& training, const std::filesy
     const torch::Device device(parameters.device);
     ClipPreprocessing preprocessing;
     preprocessing.size = clip->config().vision.image_size;
-    const TwinBatchMaker batches(training);
+    const PairBatchMaker batches(training);
     std::vector<ClipModel> replicas{clip};
     for (int r = 1; r < parameters.threads; ++r) replicas.emplace_back(clip->config());
     Stage stage;

@@ -73,11 +73,11 @@ struct UNetTraining {
 void train_unet(StarterNetworks& networks, const UNetTraining& training, const std::filesystem::path& work,
                 const JobControl& job);
 
-/// Input of the contrastive stage; `pictures` are those of `twins`.
+/// Input of the contrastive stage; `pictures` are those of `pairs`.
 struct ClipTraining {
     const StarterTrainParameters& parameters;
     const StarterPictures& pictures;
-    const StarterTwins& twins;
+    const ContrastivePairs& pairs;
     const StarterVocabulary& vocabulary;
 };
 

@@ -73,9 +73,9 @@ StarterTrainParameters checked(StarterTrainParameters parameters, const StarterS
                                  : 1;
     const bool all = trains(parameters.vae_steps, parameters.vae_minutes) &&
                      trains(parameters.unet_steps, parameters.unet_minutes);
-    if (trains(parameters.clip_steps, parameters.clip_minutes) && source.twins() == nullptr)
+    if (trains(parameters.clip_steps, parameters.clip_minutes) && source.contrastive_pairs() == nullptr)
         throw Error(ErrorCode::InvalidArgument,
-                    "the picture source has no twins to train the image-text encoder on",
+                    "the picture source has no contrastive pairs to train the image-text encoder on",
                     "give it neither minutes nor steps");
     if (parameters.initial.empty() && !all)
         throw Error(ErrorCode::InvalidArgument, "a part of the model would stay untrained",
@@ -99,8 +99,9 @@ void add_clip(const StarterTrainParameters& parameters, const StarterSource& sou
     if (trained) {
         auto twin_parameters = parameters;
         twin_parameters.pictures = parameters.clip_pictures;
-        const auto pictures = load_or_render_pictures(twin_parameters, *source.twins(), work, job);
-        train_clip(clip, {parameters, pictures, *source.twins(), vocabulary}, work, job);
+        const auto pictures =
+            load_or_render_pictures(twin_parameters, *source.contrastive_pairs(), work, job);
+        train_clip(clip, {parameters, pictures, *source.contrastive_pairs(), vocabulary}, work, job);
     }
     export_clip(clip, folder);
 }

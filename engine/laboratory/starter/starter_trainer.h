@@ -51,7 +51,7 @@ struct StarterCamera {
     double front = 0;      // azimuth at which the thing shows its front: it may be turned in the scene
 };
 
-class StarterTwins;
+class ContrastivePairs;
 
 /// Source of training pictures; every method is const, deterministic and callable from several threads.
 class StarterSource {
@@ -80,7 +80,7 @@ public:
     /// Changes when the same index would give another picture (names the picture cache).
     virtual std::string identity() const = 0;
     /// Pictures for the image-text encoder; null = there are none.
-    virtual const StarterTwins* twins() const { return nullptr; }
+    virtual const ContrastivePairs* contrastive_pairs() const { return nullptr; }
 };
 
 /// A sentence and what it states: bit k is fact k ("the object is a bear", "there is no accessory").
@@ -91,7 +91,7 @@ struct StarterClaim {
 
 /// Groups of pictures of one scene from one place that differ in a word or two. Picture g * group_size() + m
 /// is member m of group g. Coverage is not needed and may be zero.
-class StarterTwins : public StarterSource {
+class ContrastivePairs : public StarterSource {
 public:
     virtual int group_size() const = 0;
     /// Everything that is true of a picture.

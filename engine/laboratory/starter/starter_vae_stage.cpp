@@ -95,9 +95,10 @@ StarterLatents encode_pictures(AutoencoderKl& vae, const StarterTrainParameters&
                                 .to(device);
         latents.mean.slice(0, begin, begin + size).copy_(vae->encode_moments(images).mean);
     };
-    for_parts((count + batch - 1) / batch, device.is_cpu(), [&](std::int64_t first, std::int64_t end) {
-        for (auto k = first; k < end; ++k) encode(k * batch);
-    });
+    parallel_for_batches((count + batch - 1) / batch, device.is_cpu(),
+                         [&](std::int64_t first, std::int64_t end) {
+                             for (auto k = first; k < end; ++k) encode(k * batch);
+                         });
     latents.deviation = latents.mean.std().item<double>();
     return latents;
 }

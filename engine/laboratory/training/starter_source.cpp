@@ -13,7 +13,7 @@
 
 #include "engine/base/thread_pool.h"
 #include "engine/laboratory/synth/synth.h"
-#include "engine/laboratory/training/starter_twins.h"
+#include "engine/laboratory/training/contrastive_pairs.h"
 #include "engine/raster/rasterizer.h"
 
 namespace gse::training {
@@ -374,7 +374,7 @@ private:
 
 class SyntheticSource : public StarterSource {
 public:
-    explicit SyntheticSource(std::uint64_t seed) : seed_(seed), twins_(make_starter_twins(seed)) {}
+    explicit SyntheticSource(std::uint64_t seed) : seed_(seed), pairs_(make_contrastive_pairs(seed)) {}
 
     StarterPicture picture(std::uint64_t index, int size) const override {
         thread_local ShotPainter painter;
@@ -401,7 +401,7 @@ public:
 
     std::vector<std::string> vocabulary() const override { return synth::vocabulary(); }
     std::string identity() const override { return "synthetic-3 " + std::to_string(seed_); }
-    const StarterTwins* twins() const override { return twins_.get(); }
+    const ContrastivePairs* contrastive_pairs() const override { return pairs_.get(); }
 
 private:
     /// Insertion captions must name the accessory.
@@ -426,7 +426,7 @@ private:
     }
 
     std::uint64_t seed_;
-    std::unique_ptr<StarterTwins> twins_;
+    std::unique_ptr<ContrastivePairs> pairs_;
 };
 
 }  // namespace

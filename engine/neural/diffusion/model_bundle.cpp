@@ -298,7 +298,7 @@ std::int64_t ModelBundle::token_count() const {
     return std::min(tokenizer.max_length(), text_encoder->config().max_position_embeddings);
 }
 
-std::string ModelBundle::told(const std::string& sentence) const {
+std::string ModelBundle::model_prompt(const std::string& sentence) const {
     return facts.vocabulary.empty() ? sentence
                                     : filter_to_vocabulary(sentence, facts.vocabulary, edit::Identifier);
 }
@@ -306,7 +306,7 @@ std::string ModelBundle::told(const std::string& sentence) const {
 torch::Tensor ModelBundle::token_ids(const std::vector<std::string>& prompts) const {
     std::vector<torch::Tensor> rows;
     for (const auto& prompt : prompts) {
-        const auto encoding = tokenizer.encode(told(prompt), token_count());
+        const auto encoding = tokenizer.encode(model_prompt(prompt), token_count());
         rows.push_back(torch::tensor(encoding.ids, torch::kInt64));
     }
     return torch::stack(rows).to(device);

@@ -95,7 +95,7 @@ struct ModelBundle {
     /// The sentence as the text encoder is given it: without words that a model of a fixed vocabulary was not
     /// trained on. In pieces of letters that mean nothing to it they disturb all others: "a shiny blue bear"
     /// was not blue.
-    std::string told(const std::string& sentence) const;
+    std::string model_prompt(const std::string& sentence) const;
     /// Token ids [B,T] and conditioning [B,T,D] of some prompts, without a graph.
     torch::Tensor token_ids(const std::vector<std::string>& prompts) const;
     torch::Tensor encode_prompts(const std::vector<std::string>& prompts) const;

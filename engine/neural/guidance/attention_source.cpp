@@ -242,7 +242,7 @@ torch::Tensor BundleAttentionSource::latents_of(const Image& picture) {
 
 std::size_t BundleAttentionSource::at_once() const {
     const bool apart = is_small(bundle_->unet->config()) && bundle_->device.is_cpu();
-    return apart ? static_cast<std::size_t>(QueriesPerThread * part_threads()) : 1;
+    return apart ? static_cast<std::size_t>(QueriesPerThread * batch_threads()) : 1;
 }
 
 void BundleAttentionSource::prepare(std::span<const edit::AttentionQuery> queries) {
@@ -250,14 +250,15 @@ void BundleAttentionSource::prepare(std::span<const edit::AttentionQuery> querie
     prepared_.clear();  // what nobody came for
     std::vector<std::vector<Image>> answers(queries.size());
     guard_torch("finding the words in the images", [&] {
-        for_parts(static_cast<std::int64_t>(queries.size()), true, [&](std::int64_t begin, std::int64_t end) {
-            for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-                try {
-                    answers[i] = maps_of(queries[i]);
-                } catch (const Error&) {  // locate() says it where it is asked
+        parallel_for_batches(
+            static_cast<std::int64_t>(queries.size()), true, [&](std::int64_t begin, std::int64_t end) {
+                for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+                    try {
+                        answers[i] = maps_of(queries[i]);
+                    } catch (const Error&) {  // locate() says it where it is asked
+                    }
                 }
-            }
-        });
+            });
     });
     for (std::size_t i = 0; i < queries.size(); ++i)
         if (!answers[i].empty()) prepared_[edit::key_of(queries[i])] = std::move(answers[i]);
@@ -267,14 +268,14 @@ std::vector<Image> BundleAttentionSource::locate(const edit::AttentionQuery& que
     if (!prepared_.empty())
         if (auto known = prepared_.extract(edit::key_of(query))) return std::move(known.mapped());
     std::vector<Image> maps;
-    for_parts(1, at_once() > 1, [&](std::int64_t, std::int64_t) {
+    parallel_for_batches(1, at_once() > 1, [&](std::int64_t, std::int64_t) {
         maps = maps_of(query);
     });  // as prepare() would have it, bit by bit
     return maps;
 }
 
 std::vector<Image> BundleAttentionSource::maps_of(const edit::AttentionQuery& query) {
-    const auto prompt = bundle_->told(with_view_words(query.prompt, query.view_words));
+    const auto prompt = bundle_->model_prompt(with_view_words(query.prompt, query.view_words));
     std::vector<std::vector<std::int64_t>> columns;
     AttentionCapture capture = make_capture();
     for (const auto& word : query.words) {

@@ -81,7 +81,7 @@ public:
             const auto count = std::min(team, batches - first);
             side_by_side(pool, static_cast<std::size_t>(count), [&](std::size_t i) {
                 const auto index = first + static_cast<std::int64_t>(i);
-                latents[static_cast<std::size_t>(index)] = remembered_sample(index, job);
+                latents[static_cast<std::size_t>(index)] = cached_sample(index, job);
             });
             if (job.stop_requested()) stop_here();
         }
@@ -100,7 +100,7 @@ private:
         return std::min(ClassBatch, parameters_.class_images - index * ClassBatch);
     }
 
-    torch::Tensor remembered_sample(std::int64_t index, const JobControl& job) {
+    torch::Tensor cached_sample(std::int64_t index, const JobControl& job) {
         if (cache_ == nullptr) return sample(index, job);
         const auto side = bundle_.latent_size();
         const auto question =

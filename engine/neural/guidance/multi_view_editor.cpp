@@ -93,7 +93,7 @@ std::vector<std::int64_t> redraw_levels(BundleKind kind, const NoiseSchedule& sc
 }
 
 /// Everything of one round, view after view along the first dimension.
-struct DiffusionViews::Batch {
+struct DiffusionViewEditor::Batch {
     torch::Tensor clean;     // [K,C,h,w] latents of the renders
     torch::Tensor original;  // the same of the unedited views
     torch::Tensor noise;
@@ -109,17 +109,17 @@ struct DiffusionViews::Batch {
         outline;  // [K,1,s h,s w] in [0,1], where the network tells what is new in it; else undefined
 };
 
-DiffusionViews::DiffusionViews(std::shared_ptr<const ModelBundle> bundle, std::string prompt,
-                               SdsParameters parameters, std::shared_ptr<const ModelBundle> shapes,
-                               bool supports_appearance_editing)
+DiffusionViewEditor::DiffusionViewEditor(std::shared_ptr<const ModelBundle> bundle, std::string prompt,
+                                         SdsParameters parameters, std::shared_ptr<const ModelBundle> shapes,
+                                         bool supports_appearance_editing)
     : bundle_(std::move(bundle)), shapes_(std::move(shapes)), prompt_(std::move(prompt)),
       parameters_(std::move(parameters)), restyles_(supports_appearance_editing && shapes_ != nullptr),
       apart_(is_small(bundle_->unet->config()) && bundle_->device.is_cpu()) {}
 
 /// `exact`: for what draws new things, which knows every azimuth by the mixture of the sentences for the two
 /// sides beside it.
-torch::Tensor DiffusionViews::contexts(const std::vector<edit::EditView>& views, const std::string& prompt,
-                                       bool exact) {
+torch::Tensor DiffusionViewEditor::contexts(const std::vector<edit::EditView>& views,
+                                            const std::string& prompt, bool exact) {
     const auto encoded = [&](const std::string& sentence) {
         auto& known = encoded_[{exact, sentence}];
         if (!known.defined()) known = (exact ? shapes_ : bundle_)->encode_prompts({sentence});
@@ -140,8 +140,8 @@ torch::Tensor DiffusionViews::contexts(const std::vector<edit::EditView>& views,
     return torch::stack(rows);
 }
 
-DiffusionViews::Batch DiffusionViews::prepare(const std::vector<edit::EditView>& views,
-                                              const edit::EditViewsRequest& input) {
+DiffusionViewEditor::Batch DiffusionViewEditor::prepare(const std::vector<edit::EditView>& views,
+                                                        const edit::EditViewsRequest& input) {
     const auto cells = bundle_->latent_size();
     Batch batch;
     std::vector<torch::Tensor> clean(views.size()), original(views.size()), behind(views.size()), masks;
@@ -153,15 +153,17 @@ DiffusionViews::Batch DiffusionViews::prepare(const std::vector<edit::EditView>&
     const auto kept = [&](const Image& image) {
         return originals_.get(key_of(image), [&] { return latents(image); });
     };
-    for_parts(static_cast<std::int64_t>(views.size()), apart_, [&](std::int64_t begin, std::int64_t end) {
-        for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v) {
-            const auto& view = views[v];
-            clean[v] = latents(view.rendered);
-            original[v] = view.rendered.data == view.original.data ? clean[v] : kept(view.original);
-            if (inpaints)
-                behind[v] = view.backdrop.picture.data.empty() ? original[v] : kept(view.backdrop.picture);
-        }
-    });
+    parallel_for_batches(
+        static_cast<std::int64_t>(views.size()), apart_, [&](std::int64_t begin, std::int64_t end) {
+            for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v) {
+                const auto& view = views[v];
+                clean[v] = latents(view.rendered);
+                original[v] = view.rendered.data == view.original.data ? clean[v] : kept(view.original);
+                if (inpaints)
+                    behind[v] =
+                        view.backdrop.picture.data.empty() ? original[v] : kept(view.backdrop.picture);
+            }
+        });
     for (const auto& view : views)
         masks.push_back(latent_mask(view.mask, cells, bundle_->device, input.anew));
     batch.clean = torch::cat(clean);
@@ -182,7 +184,7 @@ DiffusionViews::Batch DiffusionViews::prepare(const std::vector<edit::EditView>&
     return batch;
 }
 
-torch::Tensor DiffusionViews::noise(const std::vector<edit::EditView>& views, std::uint64_t seed) const {
+torch::Tensor DiffusionViewEditor::noise(const std::vector<edit::EditView>& views, std::uint64_t seed) const {
     const auto cells = static_cast<int>(bundle_->latent_size());
     const auto channels = static_cast<int>(bundle_->latent_channels());
     const double voxel = edit::noise_voxel(views, cells);
@@ -194,30 +196,31 @@ torch::Tensor DiffusionViews::noise(const std::vector<edit::EditView>& views, st
     return torch::cat(parts);
 }
 
-torch::Tensor DiffusionViews::output(const UNet& unet, const torch::Tensor& x, std::int64_t timestep,
-                                     const Conditioning& conditioning) const {
+torch::Tensor DiffusionViewEditor::output(const UNet& unet, const torch::Tensor& x, std::int64_t timestep,
+                                          const Conditioning& conditioning) const {
     const auto side = bundle_->image_size();
     const auto at_once = std::max<std::int64_t>(1, PixelsAtOnce / (side * side));
     auto result = torch::empty_like(x);
     // Whole pieces: products round differently with another number of rows.
-    for_parts((x.size(0) + at_once - 1) / at_once, apart_, [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t first = begin * at_once; first < std::min(end * at_once, x.size(0));
-             first += at_once) {
-            const auto count = std::min(at_once, x.size(0) - first);
-            auto some = conditioning;
-            some.context = conditioning.context.narrow(0, first, count);
-            if (some.picture.defined()) some.picture = conditioning.picture.narrow(0, first, count);
-            const auto t = torch::full({1}, timestep, torch::kFloat32);
-            result.narrow(0, first, count).copy_(guided_output(unet, x.narrow(0, first, count), t, some));
-        }
-    });
+    parallel_for_batches(
+        (x.size(0) + at_once - 1) / at_once, apart_, [&](std::int64_t begin, std::int64_t end) {
+            for (std::int64_t first = begin * at_once; first < std::min(end * at_once, x.size(0));
+                 first += at_once) {
+                const auto count = std::min(at_once, x.size(0) - first);
+                auto some = conditioning;
+                some.context = conditioning.context.narrow(0, first, count);
+                if (some.picture.defined()) some.picture = conditioning.picture.narrow(0, first, count);
+                const auto t = torch::full({1}, timestep, torch::kFloat32);
+                result.narrow(0, first, count).copy_(guided_output(unet, x.narrow(0, first, count), t, some));
+            }
+        });
     return result;
 }
 
-torch::Tensor DiffusionViews::output_together(const torch::Tensor& x, std::int64_t timestep,
-                                              const Conditioning& conditioning,
-                                              const std::vector<std::vector<std::int64_t>>& groups,
-                                              torch::Tensor* outline) const {
+torch::Tensor DiffusionViewEditor::output_together(const torch::Tensor& x, std::int64_t timestep,
+                                                   const Conditioning& conditioning,
+                                                   const std::vector<std::vector<std::int64_t>>& groups,
+                                                   torch::Tensor* outline) const {
     auto result = torch::empty_like(x);
     const auto scale = shapes_->unet->config().outline_scale;
     if (scale == 0) outline = nullptr;
@@ -225,26 +228,27 @@ torch::Tensor DiffusionViews::output_together(const torch::Tensor& x, std::int64
         *outline = torch::empty({x.size(0), 1, scale * x.size(2), scale * x.size(3)},
                                 x.options().dtype(torch::kFloat));
     const auto t = torch::full({1}, timestep, torch::kFloat32);
-    for_parts(static_cast<std::int64_t>(groups.size()), apart_, [&](std::int64_t begin, std::int64_t end) {
-        for (auto g = static_cast<std::size_t>(begin); g < static_cast<std::size_t>(end); ++g) {
-            const auto rows = torch::tensor(groups[g], torch::kInt64).to(x.device());
-            auto some = conditioning;
-            some.context = conditioning.context.index_select(0, rows);
-            some.views.together = static_cast<std::int64_t>(groups[g].size());
-            some.views.cameras = conditioning.views.cameras.index_select(0, rows);
-            if (some.views.inpaint.defined())
-                some.views.inpaint = conditioning.views.inpaint.index_select(0, rows);
-            torch::Tensor told;
-            some.views.outline = outline != nullptr ? &told : nullptr;
-            result.index_copy_(0, rows, guided_output(shapes_->unet, x.index_select(0, rows), t, some));
-            if (outline != nullptr) outline->index_copy_(0, rows, told.sigmoid());
-        }
-    });
+    parallel_for_batches(
+        static_cast<std::int64_t>(groups.size()), apart_, [&](std::int64_t begin, std::int64_t end) {
+            for (auto g = static_cast<std::size_t>(begin); g < static_cast<std::size_t>(end); ++g) {
+                const auto rows = torch::tensor(groups[g], torch::kInt64).to(x.device());
+                auto some = conditioning;
+                some.context = conditioning.context.index_select(0, rows);
+                some.views.together = static_cast<std::int64_t>(groups[g].size());
+                some.views.cameras = conditioning.views.cameras.index_select(0, rows);
+                if (some.views.inpaint.defined())
+                    some.views.inpaint = conditioning.views.inpaint.index_select(0, rows);
+                torch::Tensor told;
+                some.views.outline = outline != nullptr ? &told : nullptr;
+                result.index_copy_(0, rows, guided_output(shapes_->unet, x.index_select(0, rows), t, some));
+                if (outline != nullptr) outline->index_copy_(0, rows, told.sigmoid());
+            }
+        });
     return result;
 }
 
-void DiffusionViews::denoise(Batch& batch, const std::vector<edit::EditView>& views,
-                             const edit::EditViewsRequest& input, const JobControl& job) const {
+void DiffusionViewEditor::denoise(Batch& batch, const std::vector<edit::EditView>& views,
+                                  const edit::EditViewsRequest& input, const JobControl& job) const {
     const auto& schedule = bundle_->schedule;
     const auto timesteps = redraw_levels(bundle_->kind, schedule, input.strength, input.steps);
     const bool shapes = shown_scene(input);
@@ -300,8 +304,8 @@ void DiffusionViews::denoise(Batch& batch, const std::vector<edit::EditView>& vi
 
 /// Adds the decoded change to the render: losses of autoencoder and resize cancel. A picture that is made
 /// anew is taken as it is. All rounds but the last use the tiny decoder.
-edit::EditedViews DiffusionViews::finish(const Batch& batch, const std::vector<edit::EditView>& views,
-                                         const edit::EditViewsRequest& input) const {
+edit::EditedViews DiffusionViewEditor::finish(const Batch& batch, const std::vector<edit::EditView>& views,
+                                              const edit::EditViewsRequest& input) const {
     const auto codec = input.round + 1 < input.rounds ? Codec::Quick : Codec::Full;
     const bool anew = input.anew || bundle_->kind == BundleKind::InstructPix2Pix ||
                       (bundle_->kind == BundleKind::Lcm && input.strength >= LcmPlainDecode);
@@ -310,29 +314,31 @@ edit::EditedViews DiffusionViews::finish(const Batch& batch, const std::vector<e
     const bool tells = input.tells_changes && batch.behind.defined() && !batch.outline.defined();
     if (tells) targets.changes.resize(views.size());
     if (batch.outline.defined()) targets.outlines.resize(views.size());
-    for_parts(static_cast<std::int64_t>(views.size()), apart_, [&](std::int64_t begin, std::int64_t end) {
-        for (auto row = begin; row < end; ++row) {
-            auto decoded = latents_to_image(*bundle_, batch.x.narrow(0, row, 1), codec);
-            if (!anew) decoded = decoded - latents_to_image(*bundle_, batch.clean.narrow(0, row, 1), codec);
-            const Image& rendered = views[static_cast<std::size_t>(row)].rendered;
-            const auto enlarge = [&](const torch::Tensor& picture) {
-                return torch::upsample_bilinear2d(picture, {rendered.height, rendered.width}, false);
-            };
-            auto enlarged = enlarge(decoded);
-            if (tells) {
-                const auto change =
-                    (decoded.clamp(0, 1) -
-                     latents_to_image(*bundle_, batch.behind.narrow(0, row, 1), codec).clamp(0, 1))
-                        .abs();
-                targets.changes[static_cast<std::size_t>(row)] = to_image(enlarge(change.amax(1, true)));
+    parallel_for_batches(
+        static_cast<std::int64_t>(views.size()), apart_, [&](std::int64_t begin, std::int64_t end) {
+            for (auto row = begin; row < end; ++row) {
+                auto decoded = latents_to_image(*bundle_, batch.x.narrow(0, row, 1), codec);
+                if (!anew)
+                    decoded = decoded - latents_to_image(*bundle_, batch.clean.narrow(0, row, 1), codec);
+                const Image& rendered = views[static_cast<std::size_t>(row)].rendered;
+                const auto enlarge = [&](const torch::Tensor& picture) {
+                    return torch::upsample_bilinear2d(picture, {rendered.height, rendered.width}, false);
+                };
+                auto enlarged = enlarge(decoded);
+                if (tells) {
+                    const auto change =
+                        (decoded.clamp(0, 1) -
+                         latents_to_image(*bundle_, batch.behind.narrow(0, row, 1), codec).clamp(0, 1))
+                            .abs();
+                    targets.changes[static_cast<std::size_t>(row)] = to_image(enlarge(change.amax(1, true)));
+                }
+                if (batch.outline.defined())
+                    targets.outlines[static_cast<std::size_t>(row)] =
+                        to_image(enlarge(batch.outline.narrow(0, row, 1)));
+                if (!anew) enlarged = to_tensor(rendered, bundle_->device) + enlarged;
+                targets.images[static_cast<std::size_t>(row)] = to_image(enlarged.clamp(0, 1));
             }
-            if (batch.outline.defined())
-                targets.outlines[static_cast<std::size_t>(row)] =
-                    to_image(enlarge(batch.outline.narrow(0, row, 1)));
-            if (!anew) enlarged = to_tensor(rendered, bundle_->device) + enlarged;
-            targets.images[static_cast<std::size_t>(row)] = to_image(enlarged.clamp(0, 1));
-        }
-    });
+        });
     double change = 0, pixels = 0;
     for (std::size_t v = 0; v < views.size(); ++v)
         for (std::size_t i = 0; i < views[v].mask.data.size(); ++i) {
@@ -346,8 +352,8 @@ edit::EditedViews DiffusionViews::finish(const Batch& batch, const std::vector<e
 }
 
 /// The network for new objects has learned close views, too.
-edit::EditedViews DiffusionViews::edit(const std::vector<edit::EditView>& views,
-                                       const edit::EditViewsRequest& input, const JobControl& job) {
+edit::EditedViews DiffusionViewEditor::edit(const std::vector<edit::EditView>& views,
+                                            const edit::EditViewsRequest& input, const JobControl& job) {
     if (!shown_scene(input)) return redraw(views, input, job);
     std::vector<edit::ViewSection> sections;
     std::vector<edit::EditView> parts;
@@ -365,8 +371,8 @@ edit::EditedViews DiffusionViews::edit(const std::vector<edit::EditView>& views,
     return targets;
 }
 
-edit::EditedViews DiffusionViews::redraw(const std::vector<edit::EditView>& views,
-                                         const edit::EditViewsRequest& input, const JobControl& job) {
+edit::EditedViews DiffusionViewEditor::redraw(const std::vector<edit::EditView>& views,
+                                              const edit::EditViewsRequest& input, const JobControl& job) {
     return guard_torch("redrawing the views", [&] {
         const torch::NoGradGuard no_grad;
         Batch batch = prepare(views, input);

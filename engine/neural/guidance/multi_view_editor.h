@@ -23,13 +23,13 @@ std::vector<std::int64_t> redraw_timesteps(double strength, int steps, std::int6
 std::vector<std::int64_t> redraw_levels(BundleKind kind, const NoiseSchedule& schedule, double strength,
                                         int steps);
 
-class DiffusionViews final : public edit::MultiViewEditor {
+class DiffusionViewEditor final : public edit::MultiViewEditor {
 public:
     /// `shapes`: the same model with what it learned for drawing new things; null = it has learned nothing of
     /// that kind. `supports_appearance_editing`: that draws known things in another look, too.
-    DiffusionViews(std::shared_ptr<const ModelBundle> bundle, std::string prompt, SdsParameters parameters,
-                   std::shared_ptr<const ModelBundle> shapes = nullptr,
-                   bool supports_appearance_editing = false);
+    DiffusionViewEditor(std::shared_ptr<const ModelBundle> bundle, std::string prompt,
+                        SdsParameters parameters, std::shared_ptr<const ModelBundle> shapes = nullptr,
+                        bool supports_appearance_editing = false);
     edit::EditedViews edit(const std::vector<edit::EditView>& views, const edit::EditViewsRequest& input,
                            const JobControl& job) override;
     bool supports_appearance_editing() const override { return restyles_; }

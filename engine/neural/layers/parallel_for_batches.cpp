@@ -66,17 +66,17 @@ bool is_small(const UNetConfig& config) {
     return *std::max_element(widths.begin(), widths.end()) <= WidestSmallModel;
 }
 
-int part_threads() {
+int batch_threads() {
     constexpr unsigned most = 16;
     return static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, most));
 }
 
-void for_parts(std::int64_t count, bool apart,
-               const std::function<void(std::int64_t begin, std::int64_t end)>& body) {
+void parallel_for_batches(std::int64_t count, bool apart,
+                          const std::function<void(std::int64_t begin, std::int64_t end)>& body) {
     if (count <= 0) return;
     const torch::NoGradGuard no_grad;
     if (!apart) return body(0, count);
-    const auto parts = std::min<std::int64_t>(part_threads(), count);
+    const auto parts = std::min<std::int64_t>(batch_threads(), count);
     const BlasAlone blas_alone;
     std::vector<std::exception_ptr> failures(static_cast<std::size_t>(parts));
     std::vector<NetworkUse> uses(static_cast<std::size_t>(parts));

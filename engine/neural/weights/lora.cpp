@@ -183,8 +183,8 @@ void merge_lora(torch::nn::Module& network, const std::vector<LoraFactor>& facto
     const bool apart =
         layers.size() == factors.size() && (weights.empty() || weights.begin()->second.device().is_cpu());
     const std::int64_t threads =
-        apart ? part_threads() : 1;  // layers are of all sizes: each takes every n-th
-    for_parts(threads, apart, [&](std::int64_t begin, std::int64_t end) {
+        apart ? batch_threads() : 1;  // layers are of all sizes: each takes every n-th
+    parallel_for_batches(threads, apart, [&](std::int64_t begin, std::int64_t end) {
         for (auto first = begin; first < end; ++first)
             for (auto i = static_cast<std::size_t>(first); i < factors.size();
                  i += static_cast<std::size_t>(threads))

@@ -96,8 +96,8 @@ std::set<std::string> load_weights(torch::nn::Module& module, const TensorFile& 
     };
     // Reading, converting and the pages of the new weights take one thread each their time; every n-th,
     // because sizes grow with the level.
-    const std::int64_t threads = part_threads();
-    for_parts(threads, true, [&](std::int64_t begin, std::int64_t end) {
+    const std::int64_t threads = batch_threads();
+    parallel_for_batches(threads, true, [&](std::int64_t begin, std::int64_t end) {
         for (auto first = begin; first < end; ++first)
             for (auto i = static_cast<std::size_t>(first); i < parameters.size();
                  i += static_cast<std::size_t>(threads))

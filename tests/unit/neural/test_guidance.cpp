@@ -95,7 +95,7 @@ DOCTEST_TEST_CASE("attention source: a sentence is encoded once, whatever pictur
 DOCTEST_TEST_CASE("attention: words that a model of a fixed vocabulary was not trained on are not told it") {
     const TinyModel model;
     const auto bundle = load_shared(model);
-    DOCTEST_CHECK(bundle->told("A shiny red * bear, front view") == "a red * bear, front view");
+    DOCTEST_CHECK(bundle->model_prompt("A shiny red * bear, front view") == "a red * bear, front view");
     DOCTEST_CHECK(
         torch::equal(bundle->token_ids({"a very shiny red bear"}), bundle->token_ids({"a red bear"})));
     BundleAttentionSource source(bundle, {});
@@ -107,7 +107,7 @@ DOCTEST_TEST_CASE("attention: words that a model of a fixed vocabulary was not t
     DOCTEST_CHECK(maps("a blue bear") != maps("a red bear"));
     auto open = load_bundle(model.path());
     open.facts.vocabulary.clear();  // it takes any word
-    DOCTEST_CHECK(open.told("A shiny red bear") == "A shiny red bear");
+    DOCTEST_CHECK(open.model_prompt("A shiny red bear") == "A shiny red bear");
     DOCTEST_CHECK(!torch::equal(open.token_ids({"a shiny red bear"}), open.token_ids({"a red bear"})));
 }
 

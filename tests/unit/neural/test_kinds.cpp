@@ -54,7 +54,7 @@ UNetConfig channels(std::int64_t in, std::int64_t out) {
 
 std::uint64_t unet_passes(const std::shared_ptr<const ModelBundle>& bundle, const SdsParameters& parameters,
                           const edit::EditViewsRequest& input) {
-    DiffusionViews guidance(bundle, "a red bear", parameters);
+    DiffusionViewEditor guidance(bundle, "a red bear", parameters);
     const auto before = thread_use();
     const auto targets = guidance.edit(wall_views(), input, {});
     for (const auto& image : targets.images)
@@ -210,7 +210,7 @@ DOCTEST_TEST_CASE("kinds: between the steps an LCM takes fresh noise, TCD none; 
         input.seed = seed;
         SdsParameters parameters;
         parameters.delta = 0;
-        return DiffusionViews(shared(bundle), "a red bear", parameters)
+        return DiffusionViewEditor(shared(bundle), "a red bear", parameters)
             .edit(wall_views(), input, {})
             .images[0]
             .data;
@@ -228,7 +228,7 @@ DOCTEST_TEST_CASE(
     const auto bundle = shared(load_bundle(editor.path()));
     SdsParameters parameters;
     auto views = wall_views();
-    DiffusionViews guidance(bundle, "make it red", parameters);
+    DiffusionViewEditor guidance(bundle, "make it red", parameters);
     edit::EditViewsRequest input;
     input.steps = 2;
     const auto one = guidance.edit(views, input, {}).images[0].data;
@@ -288,7 +288,7 @@ DOCTEST_TEST_CASE(
     input.rounds = 2;
     const auto arithmetic = [&](int round) {
         input.round = round;
-        DiffusionViews guidance(bundle, "a red bear", {});
+        DiffusionViewEditor guidance(bundle, "a red bear", {});
         const auto before = thread_use();
         guidance.edit(wall_views(), input, {});
         const auto use = thread_use() - before;

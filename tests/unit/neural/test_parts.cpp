@@ -31,7 +31,7 @@ DOCTEST_TEST_CASE(
     for (const bool apart : {false, true}) {
         std::vector<std::atomic<int>> visits(37);
         const auto before = thread_use();
-        for_parts(37, apart, [&](std::int64_t begin, std::int64_t end) {
+        parallel_for_batches(37, apart, [&](std::int64_t begin, std::int64_t end) {
             DOCTEST_CHECK(!torch::GradMode::is_enabled());
             for (auto i = begin; i < end; ++i) {
                 ++visits[static_cast<std::size_t>(i)];
@@ -40,15 +40,16 @@ DOCTEST_TEST_CASE(
         });
         for (const auto& count : visits) DOCTEST_CHECK(count == 1);
         DOCTEST_CHECK((thread_use() - before).unet == 37);
-        DOCTEST_CHECK_THROWS_AS(for_parts(8, apart,
-                                          [](std::int64_t, std::int64_t end) {
-                                              if (end == 8) throw std::runtime_error("last");
-                                          }),
+        DOCTEST_CHECK_THROWS_AS(parallel_for_batches(8, apart,
+                                                     [](std::int64_t, std::int64_t end) {
+                                                         if (end == 8) throw std::runtime_error("last");
+                                                     }),
                                 std::runtime_error);
     }
-    for_parts(0, true, [](std::int64_t, std::int64_t) { DOCTEST_CHECK(false); });
+    parallel_for_batches(0, true, [](std::int64_t, std::int64_t) { DOCTEST_CHECK(false); });
     const int threads = torch::get_num_threads();
-    for_parts(4, true, [](std::int64_t, std::int64_t) { DOCTEST_CHECK(torch::get_num_threads() == 1); });
+    parallel_for_batches(4, true,
+                         [](std::int64_t, std::int64_t) { DOCTEST_CHECK(torch::get_num_threads() == 1); });
     DOCTEST_CHECK(torch::get_num_threads() == threads);
 }
 
@@ -86,7 +87,7 @@ DOCTEST_TEST_CASE("redrawn views: the unedited ones are encoded once for all rou
     const TinyModel model;
     const auto bundle = std::make_shared<const ModelBundle>(load_bundle(model.path()));
     auto views = wall_views();
-    DiffusionViews guidance(bundle, "a red bear", {});
+    DiffusionViewEditor guidance(bundle, "a red bear", {});
     edit::EditViewsRequest input;
     input.steps = 1;
     guidance.edit(views, input, {});

@@ -41,7 +41,7 @@ DOCTEST_TEST_CASE("redrawn views: repeatable, of the size that came in, and coun
     const auto views = wall_views();
     SdsParameters parameters;
     parameters.before_prompt = "a bear";
-    DiffusionViews guidance(bundle, "a red bear", parameters);
+    DiffusionViewEditor guidance(bundle, "a red bear", parameters);
     edit::EditViewsRequest input;
     input.steps = 3;
     input.seed = 5;
@@ -79,7 +79,7 @@ DOCTEST_TEST_CASE(
     const TinyModel model;
     const auto bundle = std::make_shared<const ModelBundle>(load_bundle(model.path()));
     const auto views = wall_views();
-    DiffusionViews guidance(bundle, "a red bear", {});
+    DiffusionViewEditor guidance(bundle, "a red bear", {});
     edit::EditViewsRequest input;
     input.steps = 2;
     input.strength = 1;
@@ -114,7 +114,7 @@ DOCTEST_TEST_CASE(
     SdsParameters parameters;
     parameters.before_prompt = "a bear";
     const auto drawn = [&] {
-        return DiffusionViews(bundle, "a red bear", parameters).edit(views, input, {}).images[0].data;
+        return DiffusionViewEditor(bundle, "a red bear", parameters).edit(views, input, {}).images[0].data;
     };
     SdsParameters::visit_fields(parameters, [&](const char* name, auto& value, const char*, auto...) {
         using Value = std::remove_reference_t<decltype(value)>;
@@ -148,7 +148,7 @@ DOCTEST_TEST_CASE(
     edit::EditViewsRequest input;
     input.steps = 2;
     const auto drawn = [&](bool with) {
-        return DiffusionViews(bundle, "a bear", {}, with ? shapes : nullptr)
+        return DiffusionViewEditor(bundle, "a bear", {}, with ? shapes : nullptr)
             .edit(views, input, {})
             .images[0]
             .data;
@@ -159,7 +159,7 @@ DOCTEST_TEST_CASE(
     // In the middle of a side it is the sentence with that side; between two it is neither.
     const auto at = [&](std::optional<double> azimuth, const std::string& prompt) {
         for (auto& view : views) view.azimuth = azimuth;
-        return DiffusionViews(bundle, prompt, {}, shapes).edit(views, input, {}).images[0].data;
+        return DiffusionViewEditor(bundle, prompt, {}, shapes).edit(views, input, {}).images[0].data;
     };
     const double sector = std::acos(-1.0) / 4;
     DOCTEST_CHECK(at(0.0, "a bear") == at(std::nullopt, "a bear, front view"));
@@ -179,7 +179,8 @@ DOCTEST_TEST_CASE(
         edit::EditViewsRequest input;
         input.steps = 2;
         input.anew = anew;
-        return DiffusionViews(bundle, "a bear", {}, std::make_shared<const ModelBundle>(std::move(shapes)))
+        return DiffusionViewEditor(bundle, "a bear", {},
+                                   std::make_shared<const ModelBundle>(std::move(shapes)))
             .edit(views, input, {})
             .images[1]
             .data;
@@ -206,7 +207,8 @@ DOCTEST_TEST_CASE(
         edit::EditViewsRequest input;
         input.steps = 2;
         input.anew = anew;
-        return DiffusionViews(bundle, "a bear", {}, std::make_shared<const ModelBundle>(std::move(shapes)))
+        return DiffusionViewEditor(bundle, "a bear", {},
+                                   std::make_shared<const ModelBundle>(std::move(shapes)))
             .edit(views, input, {})
             .images[1]
             .data;
@@ -236,11 +238,12 @@ DOCTEST_TEST_CASE(
     const auto drawn = [&](bool supports_appearance_editing, float original) {
         auto views = wall_views();
         for (auto& view : views) view.original = Image(40, 40, 3, original);
-        return DiffusionViews(bundle, "a bear", {}, scene, supports_appearance_editing)
+        return DiffusionViewEditor(bundle, "a bear", {}, scene, supports_appearance_editing)
             .edit(views, input, {});
     };
-    DOCTEST_CHECK_FALSE(DiffusionViews(bundle, "a bear", {}, nullptr, true).supports_appearance_editing());
-    DOCTEST_CHECK(DiffusionViews(bundle, "a bear", {}, scene, true).supports_appearance_editing());
+    DOCTEST_CHECK_FALSE(
+        DiffusionViewEditor(bundle, "a bear", {}, nullptr, true).supports_appearance_editing());
+    DOCTEST_CHECK(DiffusionViewEditor(bundle, "a bear", {}, scene, true).supports_appearance_editing());
     const auto plain = drawn(false, 0.2f), restyled = drawn(true, 0.2f), other = drawn(true, 0.7f);
     DOCTEST_CHECK(restyled.images[1].data != plain.images[1].data);
     DOCTEST_CHECK(restyled.images[1].data != other.images[1].data);
@@ -250,11 +253,11 @@ DOCTEST_TEST_CASE(
     auto grey = wall_views();
     for (auto& view : grey) view.original = Image(40, 40, 3, 0.2f);
     DOCTEST_CHECK(
-        DiffusionViews(bundle, "a bear", harder, scene, true).edit(grey, input, {}).images[1].data !=
+        DiffusionViewEditor(bundle, "a bear", harder, scene, true).edit(grey, input, {}).images[1].data !=
         restyled.images[1].data);
     auto views = wall_views();  // nothing may change: nothing does, whatever the autoencoder loses
     for (auto& view : views) std::fill(view.mask.data.begin(), view.mask.data.end(), std::uint8_t{0});
-    const auto kept = DiffusionViews(bundle, "a bear", {}, scene, true).edit(views, input, {});
+    const auto kept = DiffusionViewEditor(bundle, "a bear", {}, scene, true).edit(views, input, {});
     for (std::size_t i = 0; i < views[0].rendered.data.size(); ++i)
         DOCTEST_REQUIRE(std::abs(kept.images[0].data[i] - views[0].rendered.data[i]) < 1e-5f);
 }
@@ -275,7 +278,7 @@ DOCTEST_TEST_CASE(
         input.strength = 1;
         input.anew = anew;
         input.tells_changes = tells;
-        return DiffusionViews(bundle, "a bear", {}, std::make_shared<const ModelBundle>(shapes))
+        return DiffusionViewEditor(bundle, "a bear", {}, std::make_shared<const ModelBundle>(shapes))
             .edit(views, input, {})
             .changes;
     };
@@ -302,7 +305,7 @@ DOCTEST_TEST_CASE(
     input.steps = 2;
     input.tells_changes = true;
     const auto drawn = [&] {
-        return DiffusionViews(bundle, "a bear", {}, std::make_shared<const ModelBundle>(shapes))
+        return DiffusionViewEditor(bundle, "a bear", {}, std::make_shared<const ModelBundle>(shapes))
             .edit(views, input, {});
     };
     DOCTEST_CHECK(drawn().outlines.empty());  // nothing is new
@@ -379,7 +382,8 @@ DOCTEST_TEST_CASE(
 
 DOCTEST_TEST_CASE("redrawing views can be stopped") {
     const TinyModel model;
-    DiffusionViews guidance(std::make_shared<const ModelBundle>(load_bundle(model.path())), "a red bear", {});
+    DiffusionViewEditor guidance(std::make_shared<const ModelBundle>(load_bundle(model.path())), "a red bear",
+                                 {});
     std::stop_source stop;
     stop.request_stop();
     JobControl job;

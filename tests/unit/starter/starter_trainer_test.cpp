@@ -25,7 +25,7 @@ using namespace gse::training;
 const char* const ToyColours[] = {"red", "green", "blue"};
 
 /// Pairs of squares at one place in two colours.
-class ToyTwins : public StarterTwins {
+class ToyPairs : public ContrastivePairs {
 public:
     StarterPicture picture(std::uint64_t index, int size) const override {
         const int cells = size / 4, colour = colour_of(index);
@@ -64,7 +64,7 @@ private:
 /// Coloured squares on grey.
 class ToySource : public StarterSource {
 public:
-    const StarterTwins* twins() const override { return &twins_; }
+    const ContrastivePairs* contrastive_pairs() const override { return &pairs_; }
     StarterPicture picture(std::uint64_t index, int size) const override {
         const Layout layout(index, size);
         StarterPicture picture;
@@ -102,7 +102,7 @@ private:
             y = static_cast<int>(random.below(static_cast<std::uint64_t>(size / 8))) * 4;
         }
     };
-    ToyTwins twins_;
+    ToyPairs pairs_;
     std::vector<std::string> more_;
 };
 

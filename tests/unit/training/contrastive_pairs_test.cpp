@@ -5,21 +5,21 @@
 #include <string>
 
 #include "engine/edit/request/words.h"
-#include "engine/laboratory/training/starter_twins.h"
+#include "engine/laboratory/training/contrastive_pairs.h"
 
-namespace twins_test {
+namespace contrastive_pairs_test {
 
 using namespace gse;
 
 DOCTEST_TEST_CASE("false sentences of a twin differ from its true one, and are of its wording") {
-    const auto twins = training::make_starter_twins(3);
+    const auto pairs = training::make_contrastive_pairs(3);
     std::size_t told = 0;
     for (std::uint64_t index = 0; index < 120; ++index) {
-        const auto own = twins->claim(index, index, true);
-        DOCTEST_CHECK((own.facts & ~twins->facts(index)) == 0);
+        const auto own = pairs->claim(index, index, true);
+        DOCTEST_CHECK((own.facts & ~pairs->facts(index)) == 0);
         const auto words = edit::words_of(own.text);
         const std::set<std::string> mine(words.begin(), words.end());
-        for (const auto& text : twins->false_claims(index, index, true)) {
+        for (const auto& text : pairs->false_claims(index, index, true)) {
             DOCTEST_CAPTURE(own.text);
             DOCTEST_CAPTURE(text);
             DOCTEST_CHECK(text != own.text);
@@ -34,4 +34,4 @@ DOCTEST_TEST_CASE("false sentences of a twin differ from its true one, and are o
     DOCTEST_CHECK(told > 120);  // an object at least, of every picture but where the pair is held out
 }
 
-}  // namespace twins_test
+}  // namespace contrastive_pairs_test

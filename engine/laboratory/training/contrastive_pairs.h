@@ -9,6 +9,6 @@
 namespace gse::training {
 
 /// Group g is pictures 4g .. 4g+3; no combination of object, material and accessory is a held-out one.
-std::unique_ptr<StarterTwins> make_starter_twins(std::uint64_t seed);
+std::unique_ptr<ContrastivePairs> make_contrastive_pairs(std::uint64_t seed);
 
 }  // namespace gse::training

@@ -1,6 +1,6 @@
 // Groups of four pictures: a scene, one in another material, one with or without its accessory, and one with
 // another thing changed (ground, object, accessory or its colour).
-#include "engine/laboratory/training/starter_twins.h"
+#include "engine/laboratory/training/contrastive_pairs.h"
 
 #include <algorithm>
 #include <array>
@@ -170,7 +170,7 @@ StarterClaim claim_of(const SceneSpec& spec, double azimuth, std::uint64_t seed,
     return {caption.text, claimed_by(caption) | none};
 }
 
-class SyntheticTwins : public StarterTwins {
+class SyntheticTwins : public ContrastivePairs {
 public:
     explicit SyntheticTwins(std::uint64_t seed) : seed_(seed) {}
 
@@ -235,7 +235,7 @@ private:
 
 }  // namespace
 
-std::unique_ptr<StarterTwins> make_starter_twins(std::uint64_t seed) {
+std::unique_ptr<ContrastivePairs> make_contrastive_pairs(std::uint64_t seed) {
     return std::make_unique<SyntheticTwins>(seed);
 }
 
