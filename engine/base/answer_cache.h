@@ -1,4 +1,4 @@
-// Somewhere to keep answers that are dear to work out.
+// Cache of costly answers.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// Entries as files: magic, digest of all that follows, length of the question, question, answer.
+// Entries as files: magic, hash of all that follows, length of the question, question, answer.
 #include "engine/base/disk_cache.h"
 
 #include <fcntl.h>
@@ -70,7 +70,7 @@ std::optional<std::string> answer_in(std::string_view bytes, std::string_view qu
     return std::string(answer);
 }
 
-/// Whether a file of this name is the cache's own.
+/// Tells whether a file of this name is the cache's own.
 bool is_named_so(const fs::path& path, std::string_view ending) {
     const std::string name = path.filename().string();
     return name.size() > ending.size() && name.ends_with(ending);

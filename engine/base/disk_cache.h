@@ -1,5 +1,4 @@
-// Answers that are dear to work out, kept in a folder from one run of the program to the next (method.md
-// E12).
+// Cache of costly answers in a folder, from one run of the program to the next.
 #pragma once
 
 #include <atomic>
@@ -14,17 +13,17 @@
 
 namespace gse {
 
-/// One file per answer, named by the digest of its question, which it holds too. Nothing here is ever an
-/// error: a folder that cannot be read or written remembers nothing, and a file that is not whole is removed
-/// and counts as not there. Entries appear whole (written beside their place and renamed), so processes may
-/// share a folder; threads may share an object.
+/// Keeps one file per answer, named by the hash of its question, which the file holds too. Nothing here is an
+/// error: a folder that cannot be read or written keeps nothing. A file that is not whole is removed and
+/// counts as not there. Entries appear whole (written beside their place and renamed), so processes may share
+/// a folder; threads may share an object.
 class DiskCache final : public AnswerCache {
 public:
     /// Entries beyond `most_bytes` together are removed, those used least recently first. The folder is made
     /// when something is kept.
     DiskCache(std::filesystem::path folder, std::uint64_t most_bytes);
 
-    /// What was kept for this question; the entry counts as used now.
+    /// Finds the answer to this question; the entry counts as used now.
     std::optional<std::string> find(std::string_view question) override;
     /// An answer of more than largest_bytes() is not kept: it would drive out everything else.
     void keep(std::string_view question, std::string_view answer) override;
@@ -33,7 +32,7 @@ public:
     std::uint64_t largest_bytes() const { return most_ / 4; }
     /// 0 = nothing is found and nothing kept.
     std::uint64_t most_bytes() const { return most_; }
-    /// What does not fit any more is removed.
+    /// Sets the limit; entries beyond it are removed.
     void resize(std::uint64_t most_bytes);
 
 private:

@@ -93,7 +93,7 @@ std::optional<std::string> bytes_of(const edit::EditedViews& targets) {
     return bytes + images;
 }
 
-/// Of a round of so many views; nothing where the bytes are something else.
+/// Edited views of a round of so many views; nothing where the bytes are something else.
 std::optional<edit::EditedViews> targets_in(std::string_view bytes, std::size_t views) {
     std::array<std::uint32_t, 3> counts{};
     for (auto& count : counts)
@@ -239,7 +239,7 @@ void add_view(ContentHash& hash, const edit::EditView& view) {
     hash.text(view.view_words);
 }
 
-/// Everything of a round that its pictures follow from.
+/// Key of everything that the pictures of a round follow from.
 std::string question_of(const std::vector<edit::EditView>& views, const edit::EditViewsRequest& input,
                         const std::string& prompt, const neural::SdsParameters& parameters) {
     ContentHash hash;
@@ -273,7 +273,7 @@ std::string tuning_bytes(const neural::TuneReport& report, std::string_view weig
 
 }  // namespace
 
-/// Attention of a model, from its cache where the same was asked before.
+/// Attention source that takes maps from the cache where they are kept.
 class CachedAttentionSource final : public edit::AttentionSource {
 public:
     CachedAttentionSource(std::shared_ptr<const CachedModel> model,
@@ -312,7 +312,7 @@ private:
     std::unique_ptr<edit::AttentionSource> source_;  // when it is needed
 };
 
-/// What a model draws into views, from its cache where that was kept.
+/// Multi-view editor that takes edited views from the cache where they are kept.
 class CachedEditor final : public edit::MultiViewEditor {
 public:
     CachedEditor(std::shared_ptr<const CachedModel> model, std::string prompt,
@@ -500,7 +500,7 @@ neural::TunedModel CachedModel::tune(const neural::DreamBoothParameters& paramet
         const ScratchFile file;
         if (tuned.model->save_tuning(file.path(), cache_->largest_bytes()))
             cache_->keep(asked, tuning_bytes(tuned.report, read_file(file.path())));
-    } catch (const Error& error) {  // it is only not remembered
+    } catch (const Error& error) {  // it is only not kept
         log::debug("{}", error.what());
     }
     return {tuned_model(asked, [model = std::move(tuned.model)] { return model; }), std::move(tuned.report)};

@@ -1,5 +1,4 @@
-// A model that remembers beyond the end of the program what it answered, and is loaded only for what it did
-// not.
+// Model whose answers are cached on the disk; it is loaded only for those that are not.
 #pragma once
 
 #include <functional>
@@ -16,9 +15,9 @@
 
 namespace gse::pipeline {
 
-/// Answers attention maps, views drawn to find a place (EditViewsRequest::keep), text-image vectors and
-/// tunings from a cache where it can; the rest goes to the networks. Answers are the same bit by bit. Counted
-/// in network_use().cached.
+/// Takes attention maps, views drawn to find a place (EditViewsRequest::keep), text-image vectors and tunings
+/// from a cache. The networks give the rest. Answers from the cache are the networks' bit by bit;
+/// network_use().cached counts them.
 class CachedModel final : public neural::TextToImage, public std::enable_shared_from_this<CachedModel> {
 public:
     using Loader = std::function<std::shared_ptr<neural::TextToImage>()>;
@@ -57,17 +56,17 @@ public:
     void save_lora(const std::filesystem::path& path) const override { real().save_lora(path); }
     std::shared_ptr<TextToImage> load_lora(const std::filesystem::path& path, double strength) const override;
 
-    /// Whether it was loaded once: it can say what it is without being loaded.
+    /// Tells whether it was loaded once: it can say what it is without being loaded.
     bool known() const;
     /// The networks; loads them. Throws Error.
     const TextToImage& real() const;
     std::optional<ModelLoad> load() const;
     DiskCache& cache() const { return *cache_; }
-    /// What is asked of this model, as bytes: kind of the question, the model, its threads, the question.
+    /// Question to this model, as bytes: its kind, the model, its threads, `text`.
     std::string question(std::string_view kind, std::string_view text) const;
 
 private:
-    /// What can be said of a model without loading it, once it was loaded.
+    /// Facts of a model that was loaded once, which need no loading.
     struct Facts {
         std::vector<std::string> words, drawn_words;
         int image_size = 0;

@@ -1,5 +1,4 @@
-// What a model's answers follow from, as text: contents of its files, how it is loaded, the code that
-// computes.
+// Identity of a model: contents of its files, how it is loaded, the code that computes.
 #pragma once
 
 #include <filesystem>
@@ -14,12 +13,12 @@ namespace gse::pipeline {
 /// is not found then.
 constexpr int AnswersVersion = 4;
 
-/// Changes with the contents of weights, configurations, vocabularies, LoRAs, the tiny autoencoder and the
-/// networks' library, with device, precision and processor, and with `version`; of names, only the model's
-/// own counts. The contents of a file are read once as long as its size and times stay (remembered in
-/// `cache`). Throws Error (NotFound, Unreadable).
+/// Hash over the contents of weights, configurations, vocabularies, LoRAs, tiny autoencoder and networks'
+/// library. Device, precision, processor, `version` and the model's own name count, too. Contents of a file
+/// are read once as long as its size and times stay; `cache` keeps their hash. Throws Error (NotFound,
+/// Unreadable).
 std::string model_identity(const JobParameters& job, AnswerCache& cache, int version = AnswersVersion);
-/// The same of a segmenter's weights: a file or a folder.
+/// Identity of a segmenter's weights: a file or a folder.
 std::string segmenter_identity(const std::filesystem::path& weights, const std::string& device,
                                AnswerCache& cache, int version = AnswersVersion);
 

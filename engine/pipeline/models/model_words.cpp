@@ -1,4 +1,4 @@
-// What a model's files say about words.
+// Words of a model, by its files.
 #include "engine/pipeline/models/model_words.h"
 
 #include <memory>

@@ -1,4 +1,4 @@
-// What a model's files say about it, above all about words; no network is loaded.
+// Facts of a model by its files, above all its words; no network is loaded.
 #pragma once
 
 #include <filesystem>
@@ -19,8 +19,8 @@ std::vector<std::string> model_words(const std::filesystem::path& folder);
 /// it is dyed in (edit::dye_words()); empty for an open vocabulary.
 std::vector<std::string> drawn_words(const std::filesystem::path& folder);
 
-/// How many words of a sentence the model's text encoder reads; all of them where that is not known. Words
-/// that a model of a fixed vocabulary is not told take no room. Reads the model's tokenizer when it is
+/// Counts the words of a sentence that the model's text encoder reads; all of them where that is not known.
+/// Words that a model of a fixed vocabulary is not told take no room. Reads the model's tokenizer when it is
 /// another model than last time.
 std::size_t words_read(const std::filesystem::path& model, const std::vector<std::string>& words);
 

@@ -18,8 +18,7 @@ std::filesystem::path neural_library();
 void set_network_threads(int count);
 int network_threads();
 
-/// What the calling thread has asked of the networks; nothing while they are not loaded, which this does not
-/// change.
+/// Counts what the calling thread has asked of the networks. Loads nothing: zero while they are not loaded.
 neural::NetworkUse network_use();
 /// The calling thread was given an answer from the disk that networks would have given.
 void count_cached_answer();

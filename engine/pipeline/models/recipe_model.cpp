@@ -47,13 +47,13 @@ std::shared_ptr<neural::TextToImage> open_recipe_model(const JobParameters& job,
 }
 
 std::optional<ModelLoad> load_of(const neural::TextToImage& model) {
-    const auto* remembering = dynamic_cast<const CachedModel*>(&model);
-    return remembering != nullptr ? remembering->load() : std::nullopt;
+    const auto* cached = dynamic_cast<const CachedModel*>(&model);
+    return cached != nullptr ? cached->load() : std::nullopt;
 }
 
 const neural::TextToImage& uncached(const neural::TextToImage& model) {
-    const auto* remembering = dynamic_cast<const CachedModel*>(&model);
-    return remembering != nullptr ? remembering->real() : model;
+    const auto* cached = dynamic_cast<const CachedModel*>(&model);
+    return cached != nullptr ? cached->real() : model;
 }
 
 CacheSettings load_cache_settings() {

@@ -21,19 +21,18 @@ std::shared_ptr<neural::TextToImage> load_recipe_model(const JobParameters& job)
 /// Sets how many threads the networks take from here on, loaded or not.
 void use_threads(const JobParameters& job);
 
-/// The same model, whose attention maps, comparisons of pictures with sentences, class pictures and tunings
-/// are kept in `cache`, under the contents of all files it is made of (model_identity.h). A model that was
-/// loaded before is not loaded until something is asked that the cache does not hold. Null:
-/// load_recipe_model(). Throws Error.
+/// Opens the model of a job with a cache (CachedModel), under the contents of all files that it is made of
+/// (model_identity.h). A model that was loaded before is loaded again only for an answer that the cache does
+/// not hold. Without `cache` it is load_recipe_model(). Throws Error.
 std::shared_ptr<neural::TextToImage> open_recipe_model(const JobParameters& job,
                                                        std::shared_ptr<DiskCache> cache);
 
-/// What loading a model took; memory of the process in MB, or -1 where it is not known.
+/// Cost of loading a model; memory of the process in MB, or -1 where it is not known.
 struct ModelLoad {
     double seconds = 0, before_mb = -1, after_mb = -1;
 };
 
-/// Of a model of open_recipe_model() that has been loaded by now; nothing for others.
+/// Cost of loading a model of open_recipe_model() that has been loaded by now; nothing for others.
 std::optional<ModelLoad> load_of(const neural::TextToImage& model);
 
 /// The networks themselves: for questions that are never asked twice. Loads them.

@@ -1,4 +1,4 @@
-// What cuts masks out of pictures: the segmenters of a job, which remember.
+// Segmenters of a job, whose masks are cached.
 #pragma once
 
 #include <memory>
@@ -16,12 +16,12 @@ struct Segmenters {
         words;  // CLIPSeg, whose masks `clicks` makes sharper where it is there
 };
 
-/// Those whose weights the job names. Their masks are kept in `cache` (may be null): what is known is
-/// answered without loading the weights, which are shared by all who have them open. Throws Error for weights
+/// Opens the segmenters whose weights the job names. `cache` (may be null) keeps their masks; those are
+/// answered without loading the weights. All who have them open share the weights. Throws Error for weights
 /// that cannot be used.
 Segmenters open_segmenters(const JobParameters& job, const std::shared_ptr<DiskCache>& cache);
 
-/// The one behind it, for pictures that are not seen twice.
+/// Segmenter behind the cache, for pictures that are not seen twice.
 edit::Segmenter& uncached(edit::Segmenter& segmenter);
 
 /// Masks of `words` whose box `clicks` fills with nearly the same are what it makes of that box. Both outlive

@@ -1,4 +1,4 @@
-// Models that remember on the disk: the same answers bit by bit, without networks, for the same question
+// Models with a cache on the disk: answers bit by bit, without networks, for the same question
 // only.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
@@ -22,7 +22,7 @@
 #include "engine/pipeline/run/edit_job.h"
 #include "tests/test_paths.h"
 
-namespace remembering_model_test {
+namespace cached_model_test {
 
 namespace {
 
@@ -149,7 +149,7 @@ std::uint64_t passes(const neural::NetworkUse& use) { return use.unet + use.enco
 }  // namespace
 
 DOCTEST_TEST_CASE(
-    "remembering model: what it is and what it answered is known after a restart without loading it") {
+    "cached model: what it is and what it answered is known after a restart without loading it") {
     const test::ScratchFolder folder;
     Asked asked;
     const Image picture(8, 6, 3, 0.5f);
@@ -193,7 +193,7 @@ DOCTEST_TEST_CASE(
 }
 
 DOCTEST_TEST_CASE(
-    "remembering model: everything that an attention map follows from is part of the question") {
+    "cached model: everything that an attention map follows from is part of the question") {
     const test::ScratchFolder folder;
     Asked asked;
     Image picture(8, 8, 3, 0.5f), other = picture, wide(16, 4, 3, 0.5f);
@@ -248,7 +248,7 @@ DOCTEST_TEST_CASE(
     DOCTEST_CHECK(ask({picture, "a sick bear", {"bear"}}));  // what is not finite is not kept
 }
 
-DOCTEST_TEST_CASE("remembering model: views drawn to find a place are kept, by all that they follow from") {
+DOCTEST_TEST_CASE("cached model: views drawn to find a place are kept, by all that they follow from") {
     const test::ScratchFolder folder;
     Asked asked;
     std::vector<edit::EditView> views(2);
@@ -303,7 +303,7 @@ DOCTEST_TEST_CASE("remembering model: views drawn to find a place are kept, by a
 }
 
 DOCTEST_TEST_CASE(
-    "remembering model: damaged entries are asked anew; a model that cannot be loaded says so every time") {
+    "cached model: damaged entries are asked anew; a model that cannot be loaded says so every time") {
     const test::ScratchFolder folder;
     Asked asked;
     const Image picture(4, 4, 3, 0.5f);
@@ -482,4 +482,4 @@ DOCTEST_TEST_CASE(
 }
 #endif
 
-}  // namespace remembering_model_test
+}  // namespace cached_model_test
