@@ -14,7 +14,9 @@ DESKTOP_KEYS = {"Type": "Application", "Name": None, "Comment": None, "Exec": No
                 "MimeType": None, "Terminal": "false"}
 LISTS = {"Categories", "MimeType", "Keywords"}
 PROJECT = "*.gsep"
-PLACES = {"gseditpro.desktop": "desktop", "gseditpro-mime.xml": "desktop", "gseditpro.svg": "packaging"}
+LABORATORY = ["gseditpro-lab", "gse_starter"]
+PLACES = {"gseditpro.desktop": "desktop", "gseditpro-mime.xml": "desktop", "gseditpro.svg": "packaging",
+          "GseInstall.cmake": "packaging/cmake"}
 
 
 def desktop_entry(path):
@@ -94,7 +96,16 @@ def check_icon(root):
             yield f"{path.name}: there is no \"{name}\""
 
 
+def check_installed(root):
+    """The laboratory is built with the tests and stays in the build folder."""
+    path = root / "packaging/cmake/GseInstall.cmake"
+    for target in LABORATORY:
+        if target in path.read_text():
+            yield f"{path.name}: {target} is installed"
+
+
 def check(root):
+    yield from check_installed(root)
     yield from check_desktop(root / "desktop/gseditpro.desktop")
     yield from check_types(root)
     yield from check_icon(root)
@@ -109,6 +120,8 @@ def self_test(folders):
         "gseditpro-mime.xml": [("</mime-info>", ""), ('<glob pattern="*.sog" weight="60"/>', ""), ('"*.gsep"', '"*.gse"'),
                                ("<comment>GSEditPro project</comment>", ""), ("model/x-ksplat", "model/x-k"),
                                ("shared-mime-info\"", "other\"")],
+        "GseInstall.cmake": [("TARGETS gseditpro RUNTIME", "TARGETS gseditpro gseditpro-lab RUNTIME"),
+                             ("gse_media gse_neural_plugin", "gse_media gse_neural_plugin gse_starter_plugin")],
         "gseditpro.svg": [("</svg>", ""), ('id="fur"', 'id="hair"'), ("viewBox", "box")],
     }
     missed = 0
@@ -117,7 +130,7 @@ def self_test(folders):
             with tempfile.TemporaryDirectory() as folder:
                 copy = pathlib.Path(folder)
                 for part, place in PLACES.items():
-                    (copy / place).mkdir(exist_ok=True)
+                    (copy / place).mkdir(parents=True, exist_ok=True)
                     text = (folders[place] / part).read_text()
                     (copy / place / part).write_text(text.replace(before, after) if part == name else text)
                 try:
@@ -136,7 +149,7 @@ def check_places(folders):
     with tempfile.TemporaryDirectory() as folder:
         root = pathlib.Path(folder)
         for name, place in PLACES.items():
-            (root / place).mkdir(exist_ok=True)
+            (root / place).mkdir(parents=True, exist_ok=True)
             (root / place / name).write_text((folders[place] / name).read_text())
         return list(check(root))
 
@@ -144,7 +157,7 @@ def check_places(folders):
 if __name__ == "__main__":
     test = sys.argv[1] == "--self-test"
     source, build = map(pathlib.Path, sys.argv[2:4] if test else sys.argv[1:3])
-    folders = {"packaging": source / "packaging", "desktop": build / "desktop"}
+    folders = {"packaging": source / "packaging", "packaging/cmake": source / "packaging/cmake", "desktop": build / "desktop"}
     if test:
         sys.exit(1 if self_test(folders) else 0)
     violations = check_places(folders)
