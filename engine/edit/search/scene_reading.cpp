@@ -15,7 +15,8 @@ constexpr double FitSlack = 0.05;
 
 /// By how much pictures must fit better without a known word for that to be new rather than one that the
 /// encoder is not told: in 20 scenes to which something was added it was 0.045 and more in 19; where it was
-/// there already, of 10, it was less in 8 (`gseditpro-lab eval --edits 10 --kinds add`, `dye`, seeds 55 and 56).
+/// there already, of 10, it was less in 8 (`gseditpro-lab eval --edits 10 --kinds add`, `dye`, seeds 55 and
+/// 56).
 constexpr double Doubt = 0.04;
 
 /// How well a sentence fits the pictures of each distance.

@@ -22,7 +22,8 @@ struct AllBenchParameters {
     double scale_most_side = 1024;
 
     template <class Self, class F> static void visit_fields(Self& self, F&& f) {
-        f("subjects", self.subjects, "Subjects to measure: some of raster stability preview locate edit scale.");
+        f("subjects", self.subjects,
+          "Subjects to measure: some of raster stability preview locate edit scale.");
         f("seed", self.seed, "Seed of scenes and suites.");
         f("locate_scenes", self.locate_scenes, "Scenes of `bench locate` here.", Range{1, 10000});
         f("edits", self.edits, "Edits of `bench edit` here.", Range{1, 10000});

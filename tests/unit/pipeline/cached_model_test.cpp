@@ -192,8 +192,7 @@ DOCTEST_TEST_CASE(
     DOCTEST_CHECK((asked.loads == 2 && asked.maps == 2 && asked.pictures == 2 && asked.sentences == 2));
 }
 
-DOCTEST_TEST_CASE(
-    "cached model: everything that an attention map follows from is part of the question") {
+DOCTEST_TEST_CASE("cached model: everything that an attention map follows from is part of the question") {
     const test::ScratchFolder folder;
     Asked asked;
     Image picture(8, 8, 3, 0.5f), other = picture, wide(16, 4, 3, 0.5f);
