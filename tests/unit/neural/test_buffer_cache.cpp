@@ -27,7 +27,7 @@ bool keeps() {
     tensor_of(2 * LeastKeptBuffer);
     release_buffers();
     if (buffer_use().fresh > before) return true;
-    test::skip("a sanitizer allocates here");
+    gse::test::skip("a sanitizer allocates here");
     return false;
 }
 
@@ -60,7 +60,7 @@ DOCTEST_TEST_CASE("a large tensor asks for huge pages") {
     const auto tensor = tensor_of(2 * LeastKeptBuffer);
     const auto flags = mapping_flags(static_cast<const char*>(tensor.data_ptr()) + LeastKeptBuffer);
     if (flags.empty() || !has_huge_pages()) {
-        test::skip("the system has no huge pages, or does not show them");
+        gse::test::skip("the system has no huge pages, or does not show them");
         return;
     }
     DOCTEST_CHECK_MESSAGE(flags.find(" hg ") != std::string::npos, flags);
