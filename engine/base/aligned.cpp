@@ -1,4 +1,4 @@
-// Memory by the line, in huge pages where there is much of it.
+// Allocation at cache lines, in huge pages for large blocks.
 #include "engine/base/aligned.h"
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Arrays for what is walked through from end to end: they begin at a cache line, and large ones lie in huge
-// pages where the system has some, so that fewer addresses have to be looked up.
+// Arrays for data that is walked through from end to end. They begin at a cache line. Large ones lie in huge
+// pages if the system has some, which saves address look-ups.
 #pragma once
 
 #include <cstddef>
@@ -10,11 +10,10 @@ namespace gse {
 
 inline constexpr std::size_t CacheLine = 64;  // bytes
 
-/// Asks for huge pages where whole ones fit into memory that was not written to yet. Where the system has
-/// none, nothing happens.
+/// Asks for huge pages for memory that was not written to yet. Does nothing if the system has none.
 void prefer_huge_pages(void* memory, std::size_t bytes) noexcept;
 
-/// `bytes` at a multiple of CacheLine, uninitialised; free_lines() gives them back and is told the same
+/// Allocates `bytes` at a multiple of CacheLine, uninitialised. free_lines() releases them and needs the same
 /// number. Throws std::bad_alloc.
 void* allocate_lines(std::size_t bytes);
 void free_lines(void* memory, std::size_t bytes) noexcept;

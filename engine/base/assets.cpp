@@ -1,4 +1,4 @@
-// /proc/self/exe.
+// Folder of the running program, from /proc/self/exe.
 #include "engine/base/assets.h"
 
 namespace gse {

@@ -1,4 +1,4 @@
-// Checks for our own bugs: they print both values and abort; user errors throw gse::Error instead.
+// Checks for our own bugs. They print both values and abort. User errors throw gse::Error instead.
 #pragma once
 
 #include <fmt/core.h>

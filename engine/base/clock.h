@@ -1,4 +1,4 @@
-// Clocks: what has gone by, and what the processor spent.
+// Clocks of elapsed time and of processor time.
 #pragma once
 
 #include <time.h>
@@ -16,14 +16,14 @@ inline double seconds_since(std::chrono::steady_clock::time_point then) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - then).count();
 }
 
-/// Processor seconds of all threads since the process began: says nothing of what else the machine does.
+/// Processor seconds of all threads since the process began. Other programs on the machine do not count.
 inline double processor_seconds() {
     timespec now{};
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// The same of the calling thread alone.
+/// Processor seconds of the calling thread alone.
 inline double thread_seconds() {
     timespec now{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);

@@ -1,4 +1,4 @@
-// A program started beside this one.
+// Starts a program beside this one.
 #include "engine/base/desktop.h"
 
 #include <spawn.h>

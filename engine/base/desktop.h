@@ -1,4 +1,4 @@
-// What the program asks of the desktop around it.
+// Requests to the desktop around the program.
 #pragma once
 
 #include <filesystem>
@@ -6,7 +6,7 @@
 namespace gse {
 
 /// Shows the folder that holds `file` in the file manager (xdg-open). Returns at once. Throws Error
-/// (NotFound) where there is no such program, or no such folder.
+/// (NotFound) without such a program or folder.
 void show_folder_of(const std::filesystem::path& file);
 
 }  // namespace gse

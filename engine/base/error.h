@@ -1,4 +1,5 @@
-// The one exception type for mistakes of the world and the user: what failed, what to do, path last.
+// The one exception type for mistakes of the world and the user. It says what failed, what to do, and the
+// path last.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +8,7 @@
 
 namespace gse {
 
-/// Kind of failure; the program's exit code is derived from it (app/), the window shows the message.
+/// Kind of failure. The program's exit code follows from it (app/); the window shows the message.
 enum class ErrorCode {
     InvalidArgument,  // the user asked for something that cannot be done
     NotFound,         // a file, folder or word is not there
@@ -20,8 +21,8 @@ enum class ErrorCode {
     Foreign,          // another library threw
 };
 
-/// World or user error. `message` says what failed, `hint` what to do (may be empty), `path` where (may be
-/// empty). what() is "message; hint: path" on one line.
+/// World or user error. `message` says what failed, `hint` what to do (may be empty), `path` names the file
+/// (may be empty). what() is "message; hint: path" on one line.
 class Error : public std::runtime_error {
 public:
     Error(ErrorCode code, std::string message, std::string hint = {}, std::filesystem::path path = {});
@@ -38,7 +39,7 @@ private:
     std::filesystem::path path_;
 };
 
-/// Adds the path to errors of `body` that name none: readers know only bytes.
+/// Adds the path to errors of `body` that name none. Readers know only bytes.
 template <class F> auto with_path(const std::filesystem::path& path, F&& body) {
     try {
         return body();

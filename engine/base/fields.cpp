@@ -1,4 +1,4 @@
-// Numbers of settings: whatever does not fit is refused by the setting's name.
+// Checks of settings. A value that does not fit is refused by the setting's name.
 #include "engine/base/fields.h"
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ std::string range_text(const Range* range) {
                 fmt::format("the setting \"{}\" must be {}, not {}", name, wanted, found));
 }
 
-/// A value as a message shows it, cut where it is long.
+/// A value as a message shows it, cut if it is long.
 std::string shown(const Json& json) {
     constexpr std::size_t longest = 40;
     if (json.is_structured()) return json.is_array() ? "a list" : "an object";
@@ -37,7 +37,7 @@ double number(const char* name, const Json& json, const Range* range) {
     return value;
 }
 
-/// A whole number, whichever way it is written (12 or 12.0), that T holds.
+/// A whole number that T holds, written either way (12 or 12.0).
 template <class T> T whole(const char* name, const Json& json, const Range* range) {
     const double value = number(name, json, range);
     using Limits = std::numeric_limits<T>;

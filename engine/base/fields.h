@@ -31,8 +31,8 @@ template <class P> nlohmann::ordered_json fields_to_json(const P& parameters) {
     return json;
 }
 
-/// Sets `value` from JSON. Throws Error that names the setting: wrong type, not a whole number, not finite,
-/// out of its range.
+/// Sets `value` from JSON. Throws Error that names the setting for a wrong type, a number that is not whole
+/// or not finite, or one out of range.
 void read_field(const char* name, bool& value, const nlohmann::ordered_json& json);
 void read_field(const char* name, int& value, const nlohmann::ordered_json& json,
                 const Range* range = nullptr);
@@ -49,7 +49,7 @@ void read_field(const char* name, std::vector<std::string>& value, const nlohman
 void check_field(const char* name, double value, const Range* range);
 void check_field(const char* name, float value, const Range* range);
 
-/// Checks every number of the struct, wherever it came from.
+/// Checks every number of the struct, whoever set it.
 template <class P> void check_fields(const P& parameters) {
     P::visit_fields(parameters, [&](const char* name, const auto& value, const char*, const auto&... range) {
         if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(value)>>) {
@@ -63,7 +63,7 @@ template <class P> void check_fields(const P& parameters) {
 }
 
 /// Sets the fields named in `json`; absent ones keep their value. Throws Error for an unknown name, a wrong
-/// type or a number that is not finite or out of its range; then nothing is set.
+/// type, or a number that is not finite or out of range. Nothing is set then.
 template <class P> void fields_from_json(P& parameters, const nlohmann::ordered_json& json) {
     if (!json.is_object())
         throw Error(ErrorCode::InvalidArgument, "the settings are not an object of names and values");

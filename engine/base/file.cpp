@@ -1,4 +1,4 @@
-// POSIX reads; the writes are in pending_file.cpp.
+// Reads by POSIX calls. Writes are in pending_file.cpp.
 #include "engine/base/file.h"
 
 #include <fcntl.h>

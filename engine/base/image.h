@@ -8,7 +8,7 @@
 
 namespace gse {
 
-/// Float image [height, width, channels], interleaved; colours are display values in [0,1] unless said
+/// Float image [height, width, channels], interleaved. Colours are display values in [0,1] unless said
 /// otherwise.
 struct Image {
     int width = 0;
@@ -33,7 +33,7 @@ struct Image {
                     static_cast<std::size_t>(c)];
     }
     float at(int x, int y, int c) const { return const_cast<Image*>(this)->at(x, y, c); }
-    /// Sets the size without releasing memory (no allocation when the size has been seen before).
+    /// Sets the size. Memory is kept, so a size that was seen before allocates nothing.
     void resize(int width_px, int height_px, int channel_count) {
         width = width_px;
         height = height_px;

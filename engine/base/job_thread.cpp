@@ -41,8 +41,8 @@ std::size_t MainQueue::run() {
 
 namespace {
 
-/// Linux gives every thread its own nice value, and threads inherit it from the one that starts them. Ten of
-/// them leave a tenth of a contended processor.
+/// Lowers the priority of the calling thread. Linux gives every thread its own nice value, and threads
+/// inherit it from their creator. Ten leaves a tenth of a contended processor.
 void yield_to_others() {
     constexpr int patience = 10;
     setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), patience);

@@ -1,5 +1,4 @@
-// One background job at a time: progress to look at, pause, cancel; what it leaves is handed to the main
-// thread.
+// One background job at a time, with progress, pause and cancel. Its result is handed to the main thread.
 #pragma once
 
 #include <atomic>
@@ -23,7 +22,7 @@ class MainQueue {
 public:
     void set_wake(std::function<void()> wake);
     void post(std::function<void()> closure);
-    /// Runs everything posted so far; main thread only. Returns how many.
+    /// Runs everything posted so far. Main thread only. Returns how many closures ran.
     std::size_t run();
 
 private:
@@ -32,7 +31,7 @@ private:
     std::function<void()> wake_;
 };
 
-/// What a frame shows of a job.
+/// Progress of a job, as a frame shows it.
 struct JobStatus {
     bool running = false, paused = false, can_pause = false;
     std::string title, stage, outcome, error;
@@ -41,11 +40,11 @@ struct JobStatus {
     double eta_seconds = -1;  // of the stage; negative = unknown
 };
 
-/// A thread of its own for jobs of one kind.
+/// Thread of its own for jobs of one kind.
 class JobThread {
 public:
     using Work = std::function<void(const JobControl&)>;
-    /// Called on the main thread when the work is over; `error` is null when it went well.
+    /// Called on the main thread when the work is over. `error` is null after success.
     using Done = std::function<void(const Error* error)>;
 
     struct Job {
@@ -55,19 +54,20 @@ public:
         bool can_pause = false;
     };
 
-    /// Patient jobs, and the threads they start, leave the processor to the window and to what the user waits
-    /// for.
+    /// Priority of jobs. Patient ones, and the threads they start, leave the processor to the window and to
+    /// urgent work.
     enum class Priority { Normal, Patient };
     explicit JobThread(MainQueue& queue, Priority priority = Priority::Normal);
     ~JobThread();
     JobThread(const JobThread&) = delete;
     JobThread& operator=(const JobThread&) = delete;
 
-    /// Starts a job; false when one is running, or what the last one leaves has not been handed over yet.
+    /// Starts a job. Returns false when one is running, or when the last one's result was not handed over
+    /// yet.
     bool start(Job job);
     void pause(bool paused);
     void cancel();
-    /// Until what the job leaves has been handed to the main thread: it ends in MainQueue::run().
+    /// True until the job's result has been handed to the main thread, which ends in MainQueue::run().
     bool running() const;
     JobStatus status() const;
 

@@ -1,4 +1,4 @@
-// Depth and place in a JSON text, found without parsing it.
+// Depth of a JSON text and the place of an error, found without parsing.
 #include "engine/base/json.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Marks of writers, and the locks that tell whether they live.
+// Marks of writers, and the locks that show whether they live.
 #include "engine/base/leftover.h"
 
 #include <fcntl.h>
@@ -17,7 +17,7 @@
 namespace gse {
 namespace {
 
-/// Changes with every start of the machine; 0 where the system does not tell.
+/// Number that changes with every start of the machine; 0 if the system does not tell.
 std::uint32_t boot_number() {
     static const std::uint32_t number = [] {
         std::ifstream stream("/proc/sys/kernel/random/boot_id");
@@ -34,7 +34,7 @@ struct Mark {
     unsigned boot = 0;
 };
 
-/// Marks of earlier versions have no boot number.
+/// Parses a mark. Marks of earlier versions have no boot number.
 bool parse_mark(std::string_view text, Mark& mark) {
     const std::string copy(text);
     long number = 0;

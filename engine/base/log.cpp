@@ -1,4 +1,4 @@
-// spdlog behind a small face, so that no header of ours needs it.
+// The log on top of spdlog, which no other header needs.
 #include "engine/base/log.h"
 
 #include <spdlog/sinks/stdout_color_sinks.h>

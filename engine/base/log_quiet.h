@@ -1,9 +1,9 @@
-// Work that is measured, and not asked for, says nothing.
+// Silence for measured work that the user did not ask for.
 #pragma once
 
 namespace gse::log {
 
-/// While one lives, what its thread logs below Level::Error is dropped. They may be nested.
+/// Drops messages below Level::Error of its thread while it lives. May be nested.
 class Quiet {
 public:
     Quiet();

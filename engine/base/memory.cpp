@@ -1,5 +1,4 @@
-// What Linux says about memory: the machine's, the control groups' (both versions) and the process's own
-// limits.
+// Memory limits from Linux: the machine's, the control groups' (both versions) and the process's own.
 #include "engine/base/memory.h"
 
 #include <fmt/format.h>
@@ -24,7 +23,7 @@ constexpr const char* Hint = "close other programs, or use fewer and smaller pic
 
 thread_local std::size_t refused_bytes = 0;
 
-/// The number behind `key` in a file of "key number" lines; `missing` when there is none.
+/// Number behind `key` in a file of "key number" lines, or `missing`.
 std::uint64_t number_of(const std::filesystem::path& file, std::string_view key, std::uint64_t missing) {
     std::ifstream stream(file);
     for (std::string line; std::getline(stream, line);) {
@@ -55,7 +54,7 @@ struct GroupFiles {
 constexpr GroupFiles Version1{"memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file "};
 constexpr GroupFiles Version2{"memory.max", "memory.current", "inactive_file "};
 
-/// The least that a group and those above it leave; "max" is no number, so it counts as no limit.
+/// The least that a group and those above it leave. "max" is no number and counts as no limit.
 std::uint64_t group_memory(const std::filesystem::path& root, std::filesystem::path group,
                            const GroupFiles& files) {
     std::uint64_t least = Unlimited;
@@ -86,7 +85,7 @@ std::uint64_t control_groups() {
     return least;
 }
 
-/// What the limits of `ulimit -v` and `ulimit -d` leave.
+/// Bytes left by the limits of `ulimit -v` and `ulimit -d`.
 std::uint64_t process_limits() {
     std::uint64_t least = Unlimited;
     const auto page = static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));

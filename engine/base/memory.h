@@ -1,5 +1,4 @@
-// Memory before it is asked for: what this process can still get, and the sentences for when that is not
-// enough.
+// Free memory of the process, and the errors for too little of it.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +10,7 @@
 
 namespace gse {
 
-/// What the work needs is not free. A type of its own, so that a long run can tell it and keep what it has
-/// reached.
+/// Memory that the work needs is not free. A long run catches this type to keep its results so far.
 class OutOfMemory : public Error {
 public:
     explicit OutOfMemory(const std::string& message);
@@ -22,18 +20,17 @@ public:
 /// leave.
 std::uint64_t free_memory();
 
-/// Throws OutOfMemory when `bytes` are not free; `purpose` begins the sentence ("the scene of 5000000
-/// splats"). Small requests are not looked at: they cost nothing to try.
+/// Throws OutOfMemory when `bytes` are not free. `purpose` begins the sentence ("the scene of 5000000
+/// splats"). Small requests are not checked; trying them costs nothing.
 void require_memory(std::uint64_t bytes, std::string_view purpose);
 
-/// "1.5 GB"; three digits at most.
+/// Size as text of at most three digits: "1.5 GB".
 std::string memory_text(std::uint64_t bytes);
 
-/// The error for an allocation of `bytes` that failed; 0 = of unknown size.
+/// Error for an allocation of `bytes` that failed; 0 = of unknown size.
 OutOfMemory out_of_memory(std::uint64_t bytes);
 
-/// The error for the std::bad_alloc that this thread has just caught, with the size that note_refused() was
-/// told.
+/// Error for the std::bad_alloc that this thread has just caught, with the size that note_refused() was told.
 OutOfMemory out_of_memory();
 
 /// Called by the program's operator new before it throws.

@@ -1,4 +1,4 @@
-// JSON of text that may not be UTF-8: file names come back as they were, other text gets replacement
+// Paths in JSON. File names that are not UTF-8 come back as they were; other text gets replacement
 // characters.
 #pragma once
 
@@ -11,11 +11,11 @@ namespace gse {
 
 bool is_utf8(std::string_view text);
 
-/// The text itself when it is UTF-8 (and does not begin with "file:"), else "file:" and its bytes
+/// The text itself when it is UTF-8 and does not begin with "file:". Otherwise "file:" and its bytes
 /// percent-encoded.
 std::string text_of_path(const std::string& path);
 
-/// The way back; also takes "file:///..." as other programs write it.
+/// Inverse of text_of_path(). Also takes "file:///..." as other programs write it.
 std::string path_of_text(const std::string& text);
 
 }  // namespace gse

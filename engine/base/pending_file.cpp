@@ -1,4 +1,4 @@
-// Temporary file, lock, checked writes, sync, rename.
+// Steps of a safe write: temporary file, lock, checked writes, sync, rename.
 #include "engine/base/pending_file.h"
 
 #include <fcntl.h>
@@ -34,8 +34,8 @@ fs::path folder_of(const fs::path& path) {
     return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
-/// Once per folder and process: looking through a folder for every frame of a film would cost more than the
-/// frames.
+/// Removes leftovers once per folder and process. Looking through a folder for every frame of a film would be
+/// slow.
 void tidy_once(const fs::path& folder) {
     static std::mutex mutex;
     static std::set<fs::path> seen;
@@ -47,7 +47,8 @@ void tidy_once(const fs::path& folder) {
     remove_stale_temporaries(folder);
 }
 
-/// 0, or errno; places that cannot sync (some network and virtual file systems) count as done.
+/// Syncs a descriptor. Returns 0 or errno. Places that cannot sync (some network and virtual file systems)
+/// count as done.
 int sync_and_close(int descriptor) {
     int code = fsync(descriptor) != 0 ? errno : 0;
     if (code == EINVAL || code == ENOTSUP || code == EROFS) code = 0;

@@ -1,4 +1,4 @@
-// dlopen.
+// Plug-ins through dlopen.
 #include "engine/base/plugin.h"
 
 #include <dlfcn.h>

@@ -1,5 +1,5 @@
-// Libraries of the program that are only loaded when they are needed: starting it would take longer than what
-// most commands do.
+// Libraries of the program that are loaded when they are needed. Loading them takes longer than most
+// commands.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@ struct PluginName {
     const char* needs;     // said where it cannot be loaded: what it needs
 };
 
-/// The library beside the program, above it (tests: up to two folders) or in ../lib/gseditpro; empty where
+/// Path of a library beside the program, above it (tests: up to two folders) or in ../lib/gseditpro. Empty if
 /// there is none.
 std::filesystem::path find_plugin(const char* file);
 

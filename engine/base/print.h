@@ -1,5 +1,5 @@
-// Output of the commands: what comes from files is escaped, so that no name or comment reaches a terminal as
-// an order.
+// Output of the commands. Text from files is escaped, so that no name or comment reaches a terminal as an
+// order.
 #pragma once
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@
 
 namespace gse {
 
-/// Text as printable() gives it, everything else as it is.
+/// Text as printable() gives it. Every other value stays as it is.
 template <class T> auto shown(const T& value) {
     if constexpr (std::is_same_v<T, std::filesystem::path>) return printable(value.string());
     else if constexpr (std::is_convertible_v<const T&, std::string_view>)
@@ -30,7 +30,7 @@ void print(fmt::format_string<decltype(shown(std::declval<const Args&>()))...> f
     fmt::print(format, shown(args)...);
 }
 
-/// The value and a line end, in ASCII.
+/// Prints the value in ASCII and a line end.
 template <class Json> void print_json(const Json& json, int indent = 2) {
     fmt::print("{}\n", json_text(json, indent, true));
 }

@@ -1,4 +1,4 @@
-// UTF-8 decoding with escapes for all that is not plain text.
+// UTF-8 decoding, with escapes for everything but plain text.
 #include "engine/base/printable.h"
 
 #include <fmt/format.h>
@@ -9,7 +9,7 @@
 namespace gse {
 namespace {
 
-/// A code point and the bytes it takes; 0 bytes where the text is not UTF-8.
+/// A code point and its length in bytes; 0 bytes when the text is not UTF-8.
 struct Decoded {
     std::uint32_t code = 0;
     std::size_t bytes = 0;

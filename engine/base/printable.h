@@ -1,5 +1,4 @@
-// Text from files made fit to be shown: a terminal obeys control characters, so none of them is printed as it
-// is.
+// Text from files made fit to be shown. A terminal obeys control characters, so none is printed as it is.
 #pragma once
 
 #include <string>
@@ -7,8 +6,8 @@
 
 namespace gse {
 
-/// `text` with control characters, bytes that are not UTF-8 and marks that turn the writing direction as
-/// escapes (\x1b, \u202e). Line ends and tabs stay where `lines` says so.
+/// `text` with escapes (\x1b, \u202e) for control characters, bytes that are not UTF-8, and marks that turn
+/// the writing direction. Line ends and tabs stay with `lines`.
 std::string printable(std::string_view text, bool lines = false);
 
 }  // namespace gse

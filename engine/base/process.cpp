@@ -19,7 +19,7 @@ extern "C" void on_interrupt(int) {
     if (interrupts.fetch_add(1) > 0) _exit(130);
 }
 
-/// Turns the signal's counter into a stop request (a handler itself may not lock).
+/// Turns the signal's counter into a stop request. A handler itself may not lock.
 class InterruptWatch {
 public:
     InterruptWatch() {

@@ -1,20 +1,19 @@
-// What the program does with its own process: interrupts, writes that fail, the right BLAS kernels.
+// Setup of the program's own process: interrupts, failing writes, BLAS kernels.
 #pragma once
 
 #include <stop_token>
 
 namespace gse {
 
-/// A token that Ctrl-C (SIGINT) or SIGTERM turns on; a second Ctrl-C ends the program at once.
+/// Token that Ctrl-C (SIGINT) or SIGTERM turns on. A second Ctrl-C ends the program at once.
 std::stop_token interrupt_token();
 
-/// Writes to a closed pipe or beyond the limit for file sizes give an error instead of ending the program;
-/// closed standard streams are stood in for.
+/// Makes writes to a closed pipe or beyond the limit for file sizes return an error instead of ending the
+/// program. Stands in for closed standard streams.
 void let_writes_fail();
 
-/// OpenBLAS before 0.3.26 does not know AMD's AVX-512 processors and falls back to half-width kernels; the
-/// core type can only be chosen before the library is loaded, so the program restarts itself once with
-/// OPENBLAS_CORETYPE set.
+/// Restarts the program once with OPENBLAS_CORETYPE set, for AMD's AVX-512 processors. OpenBLAS before 0.3.26
+/// does not know them and uses half-width kernels. The core type must be chosen before the library is loaded.
 void prefer_fast_blas(char** argv);
 
 }  // namespace gse

@@ -1,4 +1,4 @@
-// What the running process uses: memory and time.
+// Memory and time that the running process uses.
 #pragma once
 
 namespace gse {
@@ -6,14 +6,14 @@ namespace gse {
 /// Largest resident memory so far, in MiB.
 double peak_rss_mb();
 
-/// Seconds since the process started (to a hundredth), restarts by exec included.
+/// Seconds since the process started (to a hundredth). Restarts by exec are included.
 double process_seconds();
 
-/// Memory of this process now, in MB.
+/// Current memory of this process, in MB.
 double current_rss_mb();
 
-/// The most memory since it was made. Where the kernel lets nobody set its mark back, since the process
-/// began.
+/// Highest memory since this object was made. Since the start of the process if the kernel does not reset its
+/// mark.
 class PeakMemory {
 public:
     PeakMemory();

@@ -1,4 +1,4 @@
-// How long work tells how far it is, and learns that it should stop.
+// Progress reports of long work, and its stop token.
 #pragma once
 
 #include <functional>
@@ -7,10 +7,10 @@
 
 namespace gse {
 
-/// Called with the name of the stage, the step done and the number of steps (0 = unknown).
+/// Callback that receives the name of the stage, the step done and the number of steps (0 = unknown).
 using ProgressCallback = std::function<void(std::string_view stage, int step, int total)>;
 
-/// What a long call is handed: where to report, and the token it checks every step. Both may be empty.
+/// Control of a long call: a callback for reports, and a token to check every step. Both may be empty.
 struct JobControl {
     ProgressCallback progress;
     std::stop_token stop;

@@ -1,4 +1,4 @@
-// Seeded random numbers that are the same on every machine and do not depend on the standard library.
+// Seeded random numbers, equal on every machine and independent of the standard library.
 #pragma once
 
 #include <cmath>
@@ -6,7 +6,7 @@
 
 namespace gse {
 
-/// SplitMix64: one 64-bit state, good enough to seed and to sample; copy it to fork a stream.
+/// SplitMix64: one 64-bit state, good enough to seed and to sample. A copy forks the stream.
 class Random {
     __extension__ using Wide = unsigned __int128;
 

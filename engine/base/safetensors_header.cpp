@@ -1,4 +1,4 @@
-// Layout: length of the header as 64 bits little-endian, then the header as JSON, then the data.
+// Layout of the file: length of the header as 64 bits little-endian, the header as JSON, the data.
 #include "engine/base/safetensors_header.h"
 
 #include <fstream>

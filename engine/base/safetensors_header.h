@@ -1,4 +1,4 @@
-// The header of a .safetensors file: names, types and shapes of its tensors, without reading any of them.
+// Header of a .safetensors file: names, types and shapes of its tensors, without reading any of them.
 #pragma once
 
 #include <filesystem>
@@ -6,7 +6,7 @@
 
 namespace gse {
 
-/// A discarded value when the file is none, cannot be read or is damaged.
+/// The header as JSON. A discarded value when the file is no such file, cannot be read or is damaged.
 nlohmann::json safetensors_header(const std::filesystem::path& path);
 
 }  // namespace gse

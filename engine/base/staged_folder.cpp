@@ -1,4 +1,4 @@
-// Staging, checks before the work, and the ways a folder of results gets its name.
+// Staging, checks before the work, and the ways in which a folder of results gets its name.
 #include "engine/base/staged_folder.h"
 
 #include <fcntl.h>
@@ -51,8 +51,8 @@ void remove_left_overs(const fs::path& folder, const std::string& prefix) {
     }
 }
 
-/// Regular files below `folder`, relative, sorted; those of hidden partial folders are left out. False when
-/// there is anything else than files and folders.
+/// Lists regular files below `folder`, relative and sorted, without hidden partial folders. Returns false
+/// when there is anything but files and folders.
 bool list_files(const fs::path& folder, const std::string& hidden, std::vector<std::string>& files) {
     std::error_code failure;
     bool plain = true;
@@ -72,7 +72,7 @@ bool list_files(const fs::path& folder, const std::string& hidden, std::vector<s
     return plain && !failure;
 }
 
-/// 64 bits of FNV-1a over the whole file.
+/// 64-bit FNV-1a hash of the whole file.
 std::string fingerprint_of(const fs::path& path) {
     std::ifstream stream(path, std::ios::binary);
     std::string piece(std::size_t{1} << 20, '\0');
@@ -103,7 +103,7 @@ void sync_tree(const fs::path& folder) {
     sync_folder(folder);
 }
 
-/// The folder itself when it is missing, or the first of its parents that is; empty when it is there.
+/// The folder itself when it is missing, or the topmost of its missing parents. Empty when it is there.
 fs::path first_missing(const fs::path& folder) {
     std::error_code failure;
     fs::path missing;
@@ -113,7 +113,7 @@ fs::path first_missing(const fs::path& folder) {
     return missing;
 }
 
-/// Names from a report are a stranger's: only those below the folder count.
+/// True for names below the folder. A report's names are a stranger's.
 bool is_below(const fs::path& name) {
     return !name.empty() && name.is_relative() && name == name.lexically_normal() && *name.begin() != "..";
 }
@@ -125,13 +125,13 @@ void take_over_mode(const fs::path& from, const fs::path& to) {
     static_cast<void>(chmod(to.c_str(), status.st_mode & FolderModeBits));
 }
 
-/// A file moved to its place; `exchanged`: the old one lies where the new one was.
+/// A file moved to its place. With `exchanged`, the old file lies at the place of the new one.
 struct Move {
     fs::path from, to;
     bool exchanged = false;
 };
 
-/// Keeps the old file where the new one was, if the system can. Returns 0 or errno.
+/// Swaps the new file with the old one, if the system can. Returns 0 or errno.
 int move_into_place(Move& move) {
     std::error_code failure;
     fs::create_directories(move.to.parent_path(), failure);
@@ -141,7 +141,7 @@ int move_into_place(Move& move) {
     return std::rename(move.from.c_str(), move.to.c_str()) == 0 ? 0 : errno;
 }
 
-/// True when all is as it was.
+/// Undoes the moves. Returns true when everything is as it was.
 bool move_back(const std::vector<Move>& moves) {
     bool all = true;
     for (auto move = moves.rbegin(); move != moves.rend(); ++move) {

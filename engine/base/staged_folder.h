@@ -1,4 +1,4 @@
-// A folder of results that belong together: seen whole or not at all.
+// Folder of results that belong together: seen whole or not at all.
 #pragma once
 
 #include <cstdint>
@@ -10,38 +10,37 @@
 
 namespace gse {
 
-/// What a command leaves in its folder.
+/// Results that a command leaves in its folder.
 struct FolderContents {
-    /// JSON file whose "files" (from listing()) names the others; it is written last.
+    /// JSON file whose "files" (from listing()) names the others. It is written last.
     std::string report;
-    /// Files and folders that will be written. One that is there and would be lost is refused before the
-    /// work.
+    /// Files and folders that will be written. Existing ones that would be lost are refused before the work.
     std::vector<std::string> names;
 };
 
-/// Results are written to path(), a hidden folder inside the target (beside it when there is no target yet),
-/// and appear under their names only with commit(). What killed runs left there is removed. If the object
-/// dies before, so does path(), unless keep_on_failure() was called.
+/// Folder for results that appear under their names only with commit(). Until then they lie in path(), a
+/// hidden folder inside the target (beside it if there is no target yet). Leftovers of killed runs are
+/// removed. Without commit() the destructor removes path(), unless keep_on_failure() was called.
 class StagedFolder {
 public:
-    /// Throws Error (Unwritable) when the target cannot be written, or when one of the names is there as a
-    /// link, is read-only, or does not come from an earlier run (there is no report).
+    /// Throws Error (Unwritable) when the target cannot be written. A name that is a link, read-only or not
+    /// from an earlier run (there is no report) is refused, too.
     StagedFolder(const std::filesystem::path& target, FolderContents contents);
     ~StagedFolder();
     StagedFolder(const StagedFolder&) = delete;
     StagedFolder& operator=(const StagedFolder&) = delete;
 
     const std::filesystem::path& path() const { return staging_; }
-    /// Throws Error (Unwritable) when the disk has less room than that.
+    /// Throws Error (Unwritable) when the disk has less room than `bytes`.
     void require_space(std::uint64_t bytes) const;
-    /// From here on the work is too dear to be thrown away: what is in path() when the object dies without a
-    /// commit is kept under a name beside the target, and a warning says so.
+    /// Keeps unfinished results from here on. Without a commit, the destructor moves path() to a name beside
+    /// the target, and a warning says so.
     void keep_on_failure() { keep_ = true; }
     /// Bytes and fingerprint of every file in path(), for the report.
     nlohmann::ordered_json listing() const;
-    /// Puts everything in place: in one step where there was nothing or only files of an earlier run and the
-    /// system can swap folders; else file by file, the report last. Files of others in the target stay.
-    /// Throws Error (Unwritable); the results are kept then, and the message says where.
+    /// Puts everything in place. One step suffices for a new target, or for files of an earlier run if the
+    /// system can swap folders. Otherwise file by file, the report last. Other files in the target stay.
+    /// Throws Error (Unwritable); the results are kept then, and the message names their place.
     void commit();
 
 private:

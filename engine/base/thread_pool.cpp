@@ -1,4 +1,4 @@
-// Sleeping workers woken by a generation counter; chunks are claimed from an atomic cursor.
+// Sleeping workers woken by a generation counter. Chunks are claimed from an atomic cursor.
 #include "engine/base/thread_pool.h"
 
 #include <algorithm>

@@ -13,7 +13,7 @@ namespace {
 
 using Change = std::array<double, 3>;
 
-/// Mean of after - before inside the mask; nothing when the mask is empty.
+/// Mean of after - before inside the mask. Nothing when the mask is empty.
 std::optional<Change> mean_change(const Image& before, const Image& after, const Mask& mask) {
     GSE_CHECK(before.channels == 3 && after.channels == 3);
     GSE_CHECK(before.data.size() == after.data.size() && mask.data.size() == before.pixel_count());

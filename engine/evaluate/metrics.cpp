@@ -1,4 +1,4 @@
-// Plain double-precision implementations; nothing here is in a hot loop.
+// Plain double-precision implementations. Nothing here is in a hot loop.
 #include "engine/evaluate/metrics.h"
 
 #include <algorithm>
@@ -66,7 +66,7 @@ void check_same_size(const Image& a, const Image& b, const Region& region) {
     GSE_CHECK(region.mask == nullptr || region.mask->data.size() == a.pixel_count());
 }
 
-/// Mean over the region of value(pixel, channel); 0 for an empty region.
+/// Mean over the region of value(pixel, channel). 0 for an empty region.
 template <class F> double region_mean(const Image& image, const Region& region, F&& value) {
     double sum = 0;
     std::size_t count = 0;
@@ -149,7 +149,7 @@ struct RowPair {
     }
 };
 
-/// Difference of two values; what is not finite counts as wholly different, never as equal.
+/// Difference of two values. A value that is not finite counts as wholly different, never as equal.
 double value_difference(const Image& a, const Image& b, std::size_t i) {
     const double difference = static_cast<double>(a.data[i]) - b.data[i];
     return std::isfinite(difference) ? difference : 1;

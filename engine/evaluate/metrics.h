@@ -18,26 +18,26 @@ struct Overlap {
     double f1 = 1;
 };
 
-/// Rows: nonzero = in the set. `weights` (empty = all 1) makes a row count as much as it is seen, e.g. the
-/// sum of alpha T over all views (method 6.2), so that a huge faint splat does not weigh like a surface one.
+/// Overlap of rows: nonzero = in the set. `weights` (empty = all 1) makes a row count as much as it is seen,
+/// e.g. by the sum of alpha T over all views. A huge faint splat then weighs less than a surface one
+/// (METHOD.md, Metrics).
 Overlap row_overlap(std::span<const std::uint8_t> predicted, std::span<const std::uint8_t> truth,
                     std::span<const double> weights = {});
 
-/// Pixels of two masks of the same size.
+/// Overlap of the set pixels of two masks of equal size.
 Overlap mask_overlap(const Mask& predicted, const Mask& truth);
 
-/// F1 of the two outlines: an outline pixel counts as matched when the other outline is at most
-/// `tolerance_px` away.
+/// F1 of two outlines. An outline pixel counts as matched when the other outline is at most `tolerance_px`
+/// away.
 double boundary_f(const Mask& predicted, const Mask& truth, double tolerance_px = 2);
 
-/// Tolerance of an outline, as a share of the picture's diagonal: what is used for video segmentation (DAVIS
-/// 2016).
+/// Tolerance of an outline, as a share of the picture's diagonal: that of video segmentation (DAVIS 2016).
 inline constexpr double BoundaryToleranceShare = 0.008;
 
-/// That share in pixels, at least 1: small pictures have no finer outline.
+/// That share in pixels, at least 1. Small pictures have no finer outline.
 double boundary_tolerance_px(int width, int height);
 
-/// Which pixels a picture measure looks at: those where the mask equals `inside`; all of them without a mask.
+/// Pixels that a picture measure covers: those with mask == `inside`, or all without a mask.
 struct Region {
     const Mask* mask = nullptr;
     bool inside = true;
@@ -57,20 +57,20 @@ double mean_absolute_error(const Image& a, const Image& b, const Region& region 
 /// padding).
 double ssim(const Image& a, const Image& b, const Region& region = {});
 
-/// A colour difference that a display of 8 bits shows beyond rounding (method 6.3).
+/// Colour difference that a display of 8 bits shows beyond rounding.
 inline constexpr double LeakTolerance = 2.0 / 255;
 
-/// Share of the region's pixels whose largest channel difference exceeds `threshold`; 0 for an empty region.
+/// Share of the region's pixels whose largest channel difference exceeds `threshold`. 0 for an empty region.
 double leak_rate(const Image& a, const Image& b, const Region& region, double threshold = LeakTolerance);
 
-/// 1 where the largest channel difference exceeds `threshold`.
+/// Byte per pixel: 1 if the largest channel difference exceeds `threshold`.
 Mask changed_pixels(const Image& a, const Image& b, double threshold);
 
-/// |mean colour of a - mean colour of b| over the region (Euclidean), the colour error of a recolouring.
+/// Euclidean distance of the mean colours of a and b over the region: the colour error of a recolouring.
 double mean_colour_error(const Image& a, const Image& b, const Region& region = {});
 
-/// Number of rows with equal index whose bits differ in any attribute, among rows with counted[row] != 0.
-/// Both sets must have the same SH degree; rows beyond the shorter set count as different.
+/// Number of rows of equal index whose bits differ in any attribute, among rows with counted[row] != 0. Both
+/// sets must have one SH degree. Rows beyond the shorter set count as different.
 std::size_t changed_rows(const GaussianSet& before, const GaussianSet& after,
                          std::span<const std::uint8_t> counted);
 

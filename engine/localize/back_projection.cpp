@@ -46,7 +46,7 @@ std::size_t VoteCache::Vote::bytes() const {
     return row.size() * RowBytes + mask.data.size() * sizeof mask.data[0];
 }
 
-/// What the view says of every row, in masked_ and total_; returns how many rows it shows.
+/// Vote of the view on every row, in masked_ and total_. Returns how many rows it shows.
 std::size_t VoteCache::cast(const GaussianSpans& gaussians, const MaskedView& view,
                             const raster::Settings& settings, raster::Rasterizer& rasterizer) {
     masked_.assign(gaussians.size, 0);
@@ -56,7 +56,7 @@ std::size_t VoteCache::cast(const GaussianSpans& gaussians, const MaskedView& vi
         std::count_if(total_.begin(), total_.end(), [](double weight) { return weight != 0; }));
 }
 
-/// Keeps what was cast for the rows that are shown, in place of what the camera's view said before.
+/// Keeps the votes for the rows that are shown, in place of earlier ones of the camera's view.
 void VoteCache::keep(const MaskedView& view, std::size_t shown, Vote* old) {
     if (old != nullptr) bytes_ -= old->bytes();
     Vote vote;

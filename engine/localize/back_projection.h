@@ -1,4 +1,4 @@
-// From one mask per view to one weight per Gaussian (GSEditPro 3.2; method S5, variant B).
+// From one mask per view to one weight per Gaussian (METHOD.md, Label voting).
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace gse::localize {
 
-/// What the views say about every row.
+/// Votes of the views on every row.
 struct LabelWeights {
     std::vector<float> weight;     // [N] sum(alpha T M) / sum(alpha T) over the views used, in [0,1]
     std::vector<double> evidence;  // [N] sum(alpha T) in pixels
@@ -21,15 +21,15 @@ struct LabelWeights {
     int views_used = 0;
 };
 
-/// One view's vote; a failed view (nothing found in it) does not vote.
+/// One view's vote. A failed view (nothing found in it) does not vote.
 struct MaskedView {
     Camera camera;
     Image mask;  // [H,W,1] in [0,1], at the camera's size
     bool failed = false;
 };
 
-/// Votes of views, kept (as far as their memory allows) for as long as scene and settings are the same: of a
-/// view that comes again with the same mask nothing is rendered. The weights are the same to the last bit.
+/// Votes of views, kept for as long as scene and settings stay, as far as their memory allows. A view that
+/// comes again with an equal mask is not rendered again. Weights are equal to the last bit.
 class VoteCache {
 public:
     static constexpr std::size_t MostBytes = std::size_t{512} << 20;
@@ -58,12 +58,12 @@ private:
     std::vector<double> masked_, total_;  // of one view
 };
 
-/// The same once. Throws Error when more than half of the views failed or none is left.
+/// Weights from a single call. Throws Error when more than half of the views failed or none is left.
 LabelWeights back_project(const GaussianSpans& gaussians, std::span<const MaskedView> views,
                           const raster::Settings& settings, raster::Rasterizer& rasterizer);
 
-/// Rows with weight > tau that were seen (evidence > least_evidence_px) or whose neighbours decided become
-/// the label; the weights stay for display.
+/// Rows with weight > tau become the label if they were seen (evidence > least_evidence_px) or their
+/// neighbours decided. The weights stay for display.
 Label label_from_weights(const std::string& name, const LabelWeights& weights, double tau,
                          double least_evidence_px);
 

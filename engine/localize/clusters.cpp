@@ -208,7 +208,7 @@ Mask resize_mask(const Mask& mask, int width, int height) {
 
 namespace {
 
-/// For one output coordinate: the input cells it covers and their weights (area down, linear up).
+/// Input cells that one output coordinate covers, with their weights (area down, linear up).
 struct Taps {
     int first = 0;
     std::vector<double> weights;

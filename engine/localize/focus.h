@@ -1,4 +1,4 @@
-// Moves the cameras in on a labelled region, so that a small model sees it large (method X7).
+// Moves the cameras in on a labelled region, so that a small model sees it large.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace gse::localize {
 
-/// How far a region fills the picture.
+/// Share of the picture that a region fills.
 struct FocusParameters {
     double fill = 0.62;    // share of the half field of view that the region's radius takes
     double trim = 0.03;    // share of the labelled rows cut off at either end of every axis
@@ -16,8 +16,8 @@ struct FocusParameters {
     double least_change = 0.75;  // a new radius above this share of the old one is not worth new pictures
 };
 
-/// Orbit around the rows with bits[row] != 0: centre and radius from their trimmed bounds, the rest from
-/// `base`. Without a visible labelled row `base` comes back unchanged.
+/// Orbit around the rows with bits[row] != 0. Centre and radius come from their trimmed bounds, the rest from
+/// `base`. Returns `base` without a visible labelled row.
 OrbitParameters focus_orbit(const GaussianSet& set, std::span<const std::uint8_t> bits,
                             const OrbitParameters& base, const FocusParameters& parameters = {});
 

@@ -28,7 +28,7 @@ struct Box {
     std::array<double, 3> low, high;
 };
 
-/// Box of the labelled rows with its margin; nothing when none is labelled.
+/// Box of the labelled rows with its margin. Nothing when none is labelled.
 bool labelled_box(const GaussianSpans& gaussians, const CutParameters& parameters,
                   const LabelWeights& weights, Box& box) {
     box.low.fill(std::numeric_limits<double>::max());
@@ -56,7 +56,7 @@ bool known(const LabelWeights& weights, const CutParameters& parameters, std::si
            (!weights.inferred.empty() && weights.inferred[row] != 0);
 }
 
-/// The rows inside the box that have an opinion and a colour.
+/// Rows inside the box that have an opinion and a colour.
 RowPoints taking_part(const GaussianSpans& gaussians, const CutParameters& parameters,
                       const LabelWeights& weights, const Box& box) {
     RowPoints rows;
@@ -73,7 +73,7 @@ RowPoints taking_part(const GaussianSpans& gaussians, const CutParameters& param
     return rows;
 }
 
-/// The colour of every row [M,3], side by side.
+/// Colour of every row [M,3], side by side.
 std::vector<float> colours_of(const GaussianSpans& gaussians, const RowPoints& rows) {
     const auto stride = static_cast<std::size_t>(sh_coefficient_count(gaussians.sh_degree)) * 3;
     std::vector<float> colours;
@@ -83,7 +83,7 @@ std::vector<float> colours_of(const GaussianSpans& gaussians, const RowPoints& r
     return colours;
 }
 
-/// -log p for "labelled" and "not labelled", each times the trust in the row.
+/// Costs -log p for "labelled" and "not labelled", each times the trust in the row.
 std::pair<double, double> row_costs(const LabelWeights& weights, const CutParameters& parameters,
                                     double mean_evidence, std::size_t row) {
     const double w = weights.weight[row], tau = std::clamp(parameters.tau, 1e-3, 1 - 1e-3);
@@ -98,7 +98,7 @@ std::pair<double, double> row_costs(const LabelWeights& weights, const CutParame
 constexpr std::uint32_t NoRow = std::numeric_limits<std::uint32_t>::max();
 constexpr double NoEdge = -1;  // cost of a pair that is met from its other row, or does not take part
 
-/// The energy's numbers for the rows that take part.
+/// Terms of the energy for the rows that take part.
 struct Problem {
     RowPoints rows;
     std::vector<std::pair<double, double>> row_costs;  // [M] of "labelled" and of "not labelled"
@@ -125,8 +125,8 @@ struct Problem {
         const auto near = nearest_to(i);
         return std::find(near.begin(), near.end(), other) != near.end();
     }
-    /// There is an edge for every pair of which one is among the other's nearest; it costs half where only
-    /// one is.
+    /// Edges of the graph: one for every pair with one among the other's nearest. It costs half if only one
+    /// is.
     double edge_cost(std::size_t i, std::uint32_t j) const {
         const bool mutual = is_near(j, static_cast<std::uint32_t>(i));
         if (mutual && j < i) return NoEdge;
@@ -157,14 +157,14 @@ void set_edge_costs(Problem& problem, std::span<const std::uint8_t> inside, Thre
     else some(0, problem.rows.row.size(), 0);
 }
 
-/// Whether a sphere around a row lies in the box.
+/// True when a sphere around a row lies in the box.
 bool encloses(const Box& box, const float* centre, double radius) {
     for (std::size_t axis = 0; axis < 3; ++axis)
         if (centre[axis] - radius < box.low[axis] || centre[axis] + radius > box.high[axis]) return false;
     return true;
 }
 
-/// Sets the nearest rows and the mean over them of the squared difference of the colours.
+/// Sets the nearest rows and their mean squared difference of colours.
 void find_nearest(Problem& problem, const Box& box, ThreadPool* threads) {
     const RowTree tree(3, problem.rows, nanoflann::KDTreeSingleIndexAdaptorParams(RowTreeLeaf));
     const std::size_t count = problem.rows.row.size();
@@ -229,7 +229,7 @@ double label_energy(const GaussianSpans& gaussians, const CutParameters& paramet
 
 namespace {
 
-/// The minimum cut of the rows `inside` [M] and the edges between them: 1 where the label is.
+/// Minimum cut of the rows `inside` [M] and the edges between them: 1 for labelled rows.
 std::vector<std::uint8_t> cut_inside(const Problem& problem, std::span<const std::uint8_t> inside) {
     constexpr int NoVertex = -1;
     std::vector<int> vertex(inside.size(), NoVertex);
@@ -252,7 +252,7 @@ std::vector<std::uint8_t> cut_inside(const Problem& problem, std::span<const std
     return label;
 }
 
-/// Adds the rows that are `steps` edges or fewer away; false where that is none.
+/// Adds the rows that are `steps` edges or fewer away. Returns false if there is none.
 bool grow(const Problem& problem, int steps, std::vector<std::uint8_t>& inside) {
     bool any = false;
     for (int step = 0; step < steps; ++step) {
@@ -269,7 +269,7 @@ bool grow(const Problem& problem, int steps, std::vector<std::uint8_t>& inside) 
     return any;
 }
 
-/// Whether a labelled row has an edge to one outside.
+/// True when a labelled row has an edge to a row outside.
 bool leaves(const Problem& problem, std::span<const std::uint8_t> inside,
             std::span<const std::uint8_t> label) {
     for (std::size_t i = 0; i < inside.size(); ++i)
@@ -280,10 +280,9 @@ bool leaves(const Problem& problem, std::span<const std::uint8_t> inside,
     return false;
 }
 
-/// The minimum cut of everything, of which mostly a part has to be cut: that around the rows that prefer the
-/// label. What it leaves out prefers to stay without, and where no labelled row of the part has an edge to
-/// it, nothing could cost less: without its edges to the rest the part's energy is the least of all labels of
-/// the part, and the rest has its least by itself.
+/// Minimum cut of all rows, mostly from a part: the rows around those that prefer the label. Rows left out
+/// prefer no label. If no labelled row of the part has an edge to them, the cut of the part is a minimum of
+/// the whole. Its energy is then the least of all labels of the part, and so is that of the rest.
 std::vector<std::uint8_t> cut_around_preferring(Problem& problem, int reach, ThreadPool* threads) {
     std::vector<std::uint8_t> inside(problem.rows.row.size());
     for (std::size_t i = 0; i < inside.size(); ++i)
@@ -308,7 +307,7 @@ struct Components {
     void unite(std::uint32_t a, std::uint32_t b) { parent[root(a)] = root(b); }
 };
 
-/// What is known of a component of the rows without the label, at the number of its root.
+/// Facts of a component of the rows without the label, at the number of its root.
 struct Component {
     std::uint32_t rows = 0;
     bool beside_label = false;

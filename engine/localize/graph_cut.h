@@ -1,5 +1,5 @@
-// One label for splats that belong together: a minimum cut over neighbouring splats, where a cut costs less
-// between unlike colours. It closes the holes and takes off the crumbs that coarse maps leave.
+// One label for splats that belong together: a minimum cut over neighbouring splats. A cut costs less between
+// unlike colours. It closes holes and removes the crumbs of coarse maps.
 #pragma once
 
 #include <span>
@@ -21,18 +21,24 @@ struct CutParameters {
     double island_share = 0;  // of the labelled rows: islands of no more take the label; 0 = none does
 };
 
-/// Moves the weight of rows to the other side of `tau` so that label_energy() becomes least, exactly (Boykov
-/// and Jolly 2001, with the contrast term of GrabCut, on a graph of splats in place of pixels). Rows that
-/// neither a view saw nor a neighbour spoke for keep what they have. Then islands take the label, where that
-/// is asked for: rows without it that are joined to other rows without it by no pair of mutual neighbours, so
-/// that they would hang in the air if the labelled ones were gone. Returns how many rows changed sides. The
-/// same for any number of threads (null = one); without OpenCV nothing is done.
+/// Moves the weight of rows to the other side of `tau` so that label_energy() becomes least, exactly. The
+/// graph cut is that of Boykov and Jolly (2001) with the contrast term of GrabCut, on splats in place of
+/// pixels. Rows with no vote of a view or a neighbour keep theirs.
+///
+/// Then islands take the label, if asked for. An island is a group of rows without it that no pair of mutual
+/// neighbours joins to other such rows. It would hang in the air without the labelled rows.
+///
+/// Returns how many rows changed sides. Independent of the number of threads (null = one). Does nothing
+/// without OpenCV.
 std::size_t cut_label(const GaussianSpans& gaussians, const CutParameters& parameters, LabelWeights& weights,
                       ThreadPool* threads = nullptr);
 
-/// E(label) = sum over rows of -log p(label | weight) * trust in the row + smoothness * sum over pairs of
-/// neighbours with different labels of exp(-|colour difference|^2 / mean of it), in nats; label [N], the rows
-/// that take part count.
+/// Energy of a label [N], in nats, over the rows that take part:
+///
+///   E(label) = sum over rows of -log p(label | weight) * trust
+///              + smoothness * sum over pairs of neighbours with different labels of exp(-d^2 / mean d^2)
+///
+/// d is the colour difference of a pair.
 double label_energy(const GaussianSpans& gaussians, const CutParameters& parameters,
                     const LabelWeights& weights, std::span<const std::uint8_t> label);
 

@@ -1,4 +1,4 @@
-// Point prompts for a segmenter from an attention map (GSEditPro 3.2; method A8, A9).
+// Point prompts for a segmenter from an attention map (METHOD.md, Masks in a view).
 #pragma once
 
 #include <vector>
@@ -21,13 +21,13 @@ struct PointParameters {
     double negative_margin = 4.0 / 64;   // distance from the region, of the map's width
 };
 
-/// Highest values inside `region` with mutual distance (non-maximum suppression), then lowest values away
-/// from it. Ties go to the pixel farther from the chosen positives, then to raster order. Fewer points where
-/// there is no room.
+/// Clicks: highest values inside `region` with mutual distance (non-maximum suppression), then lowest values
+/// away from it. Ties go to the pixel farther from the chosen positives, then to raster order. Fewer points
+/// if there is no room.
 std::vector<Point> choose_points(const Image& map, const Mask& region,
                                  const PointParameters& parameters = {});
 
-/// Share of the map's mass inside `region` that `mask` captures (A8); 0 when the region holds none.
+/// Share of the map's mass inside `region` that `mask` captures. 0 when the region holds none.
 double captured_mass(const Image& map, const Mask& region, const Mask& mask);
 
 }  // namespace gse::localize

@@ -1,4 +1,4 @@
-// Labels for splats that no view sees (undersides, insides): they take the opinion of the nearest splats that
+// Labels for splats that no view sees (undersides, insides). They take the opinion of the nearest splats that
 // are seen.
 #pragma once
 
@@ -15,9 +15,9 @@ struct SpreadParameters {
     double tau = 0.5;  // what counts as labelled
 };
 
-/// Sets the weight of every unseen row to the mean weight of its nearest seen neighbours, weighted by their
-/// evidence over distance, and marks it in `inferred`. Rows with a position that is not finite, or out of
-/// reach, keep what they have. The same for any number of threads (null = one); O(N log N).
+/// Sets the weight of every unseen row to the mean weight of its nearest seen neighbours, by evidence over
+/// distance. Marks it in `inferred`. Rows out of reach, or with a position that is not finite, keep theirs.
+/// Independent of the number of threads (null = one); O(N log N).
 void propagate_labels_knn(const GaussianSpans& gaussians, const SpreadParameters& parameters,
                           LabelWeights& weights, ThreadPool* threads = nullptr);
 

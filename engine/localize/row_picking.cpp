@@ -1,4 +1,4 @@
-// What is known, and what has to be chosen anew.
+// Cached values of a property, and the choices that are out of date.
 #include "engine/localize/row_picking.h"
 
 #include "engine/base/check.h"

@@ -1,4 +1,4 @@
-// Rows chosen by a property while an artist moves a slider: the values are measured once, the rows follow at
+// Rows chosen by a property while an artist moves a slider. The values are measured once; the rows follow at
 // once.
 #pragma once
 
@@ -16,20 +16,19 @@ public:
     using Values = std::shared_ptr<const std::vector<float>>;
 
     void choose(const RowChoice& choice) { choice_ = choice; }
-    /// What the rows were chosen by.
+    /// Choice from which the rows follow.
     const RowChoice& chosen() const { return done_; }
     const RowChoice& wanted() const { return choice_; }
-    /// Whether the values of this set's rows have to be measured before the choice means anything.
+    /// True when the values of this set's rows must be measured before a choice.
     bool wants_values(const GaussianSet& set) const;
     /// Values of `choice`'s property, measured of `set`.
     void take(const GaussianSet& set, const RowChoice& choice, Values values);
-    /// Chooses anew where the choice or what limits it has changed: `label` (for choices within it) and
-    /// `hidden` ([N] or empty), which is never chosen. True when rows() is another one. Values must have been
-    /// taken.
+    /// Chooses anew if the choice or its limits have changed. `label` limits choices within it. `hidden` ([N]
+    /// or empty) is never chosen. Returns true when rows() has changed. Values must have been taken.
     bool update(const Rows& label, std::span<const std::uint8_t> hidden);
-    /// Update anew whatever is known.
+    /// Forces the next update() to choose anew.
     void forget_rows() { rows_ = nullptr; }
-    /// Null until they are chosen.
+    /// Chosen rows; null before the first choice.
     const Rows& rows() const { return rows_; }
     const Values& values() const { return values_; }
 

@@ -1,5 +1,5 @@
-// Rows by what they are: faint, large, of one colour, far from all others. Every property is a value in [0,1]
-// per row, so that one slider over one histogram chooses rows by any of them.
+// Rows by a property: faint, large, of one colour, far from all others. Every property is a value in [0,1]
+// per row, so that one slider over one histogram serves all.
 #pragma once
 
 #include <array>
@@ -23,26 +23,26 @@ enum class RowProperty : std::uint8_t {
                // removal, Rusu et al. 2008)
 };
 
-/// Where sizes, colour differences and isolation end: beyond it values are 1. Sizes and isolation are on a
-/// logarithmic scale.
+/// Ends of the scales of sizes, colour differences and isolation: beyond it values are 1. Sizes and isolation
+/// are on a logarithmic scale.
 constexpr double LeastSize = 1e-4, MostSize = 1, MostDifference = 100, LeastIsolation = 0.25,
                  MostIsolation = 64;
 
-/// [N] in [0,1]; NaN for rows whose values are not finite (they are never chosen). `colour`: sRGB in [0,1],
-/// for Colour alone. Isolation takes time (a k-d tree over all rows); `threads` may be null.
+/// Values [N] in [0,1]; NaN for rows whose values are not finite (they are never chosen). `colour` is sRGB in
+/// [0,1], for Colour alone. Isolation takes time (a k-d tree over all rows). `threads` may be null.
 std::vector<float> row_values(const GaussianSet& set, RowProperty property,
                               const std::array<float, 3>& colour, ThreadPool* threads);
 
-/// Mean base colour of the rows whose byte is set, sRGB in [0,1]; mid grey where there is none.
+/// Mean base colour of the rows whose byte is set, sRGB in [0,1]. Mid grey if there is none.
 std::array<float, 3> mean_colour(const GaussianSet& set, std::span<const std::uint8_t> rows);
 
-/// What a value in [0,1] stands for: opacity, share of the extent, colour difference, times the usual
-/// distance.
+/// Amount that a value in [0,1] stands for: opacity, share of the extent, colour difference, or times the
+/// usual distance.
 double property_amount(RowProperty property, double value);
 /// The value of an amount, clamped to [0,1].
 double property_value(RowProperty property, double amount);
 
-/// [N] 1 where least <= value <= most; `within` (a byte per row, or empty) limits it.
+/// Byte per row [N]: 1 if least <= value <= most. `within` (a byte per row, or empty) limits it.
 std::vector<std::uint8_t> rows_between(std::span<const float> values, float least, float most,
                                        std::span<const std::uint8_t> within = {});
 
@@ -57,11 +57,12 @@ struct RowChoice {
     bool operator==(const RowChoice&) const = default;
 };
 
-/// [N] 1 for rows that are meant; `values` are those of the choice's property.
+/// Byte per row [N]: 1 for chosen rows. `values` are those of the choice's property.
 std::vector<std::uint8_t> chosen_rows(const RowChoice& choice, std::span<const float> values,
                                       std::span<const std::uint8_t> within);
 
-/// "opacity below 0.10", "size above 3.2 %", "colour within 12", "above 4.0 times the usual distance".
+/// Choice in words: "opacity below 0.10", "size above 3.2 %", "colour within 12", "above 4.0 times the usual
+/// distance".
 std::string choice_text(const RowChoice& choice);
 
 }  // namespace gse::localize

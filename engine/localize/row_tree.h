@@ -1,4 +1,4 @@
-// k-d tree over some rows of a set (nanoflann), asked for many points at once; private to this room.
+// k-d tree over some rows of a set (nanoflann), asked for many points at once. Private to this room.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 
 namespace gse::localize {
 
-/// Rows of a set as nanoflann wants them.
+/// Rows of a set in nanoflann's interface.
 struct RowPoints {
     std::vector<float> position;     // [M,3]
     std::vector<std::uint32_t> row;  // [M]
@@ -34,8 +34,7 @@ using RowTree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor
                                                     3, std::uint32_t>;
 constexpr std::size_t RowTreeLeaf = 16;
 
-/// The same rows along a space-filling curve: those that follow each other are near each other, and so is in
-/// memory what belongs to them.
+/// The rows along a space-filling curve. Neighbours in it are near each other, in space and in memory.
 inline RowPoints along_curve(const GaussianSpans& gaussians, const RowPoints& rows) {
     RowPoints sorted;
     sorted.row.reserve(rows.row.size());
@@ -44,9 +43,9 @@ inline RowPoints along_curve(const GaussianSpans& gaussians, const RowPoints& ro
     return sorted;
 }
 
-/// The nearest rows of the tree to every point [M,3], none as far away as `reach`: calls take(point, numbers,
-/// squared distances), nearest first, once for each, from any thread of the pool (null = this one). Fast
-/// where points that follow each other are near each other.
+/// Calls take(point, numbers, squared distances) once for every point of [M,3], with the nearest rows of the
+/// tree, nearest first. Rows as far away as `reach` are left out. Calls come from any thread of the pool
+/// (null = this one). Fast if consecutive points are near each other.
 inline void nearest_of_all(
     const RowTree& tree, std::span<const float> points, std::size_t wanted, ThreadPool* threads,
     const std::function<void(std::size_t, std::span<const std::uint32_t>, std::span<const float>)>& take,

@@ -1,4 +1,4 @@
-// Pinhole camera: OpenCV axes (right, down, forward), world to camera, the first pixel's centre at (0.5,
+// Pinhole camera. OpenCV axes (right, down, forward), world to camera. The first pixel's centre is at (0.5,
 // 0.5).
 #pragma once
 
@@ -6,7 +6,7 @@
 
 namespace gse {
 
-/// p_camera = rotation * p_world + translation; pixel = (fx x/z + cx, fy y/z + cy).
+/// Camera with p_camera = rotation * p_world + translation and pixel = (fx x/z + cx, fy y/z + cy).
 struct Camera {
     int width = 0;
     int height = 0;
@@ -21,7 +21,7 @@ struct Camera {
     /// Unit viewing direction in the world.
     Vec3 forward() const { return rotation.row(2); }
 
-    /// Same view at another image size (field of view in x kept relative to the width).
+    /// This view at another image size. The field of view in x keeps its relation to the width.
     Camera resized(int new_width, int new_height) const;
 
     /// Camera at `eye` looking at `target`; `up` is the world's up direction. fov_x in radians.
@@ -29,7 +29,7 @@ struct Camera {
                           int height);
 };
 
-/// A circle of cameras around a centre.
+/// Circle of cameras around a centre.
 struct OrbitParameters {
     Vec3 centre{};
     Vec3 up{0, -1, 0};  // world up (COLMAP worlds have -y up)

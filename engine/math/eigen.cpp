@@ -1,4 +1,4 @@
-// Jacobi rotations until the rest is zero in double.
+// Jacobi rotations until the off-diagonal entries are zero in double.
 #include "engine/math/eigen.h"
 
 #include <algorithm>

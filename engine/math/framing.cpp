@@ -1,4 +1,4 @@
-// How far away a camera has to be.
+// Distances at which a camera sees all of a box.
 #include "engine/math/framing.h"
 
 #include <algorithm>

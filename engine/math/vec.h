@@ -1,5 +1,5 @@
-// Vectors, matrices and quaternions of the host side: glm's, in double precision. The one file that includes
-// glm (tests/lint), so that its settings are the same everywhere.
+// Vectors, matrices and quaternions of the host side: glm's, in double precision. No other file includes glm
+// (tests/lint), so that its settings are equal everywhere.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 namespace gse {
 
 using Vec3 = glm::dvec3;
-/// Rotation quaternion; the constructor takes w first as in 3DGS files, the product a * b turns first by b.
+/// Rotation quaternion. The constructor takes w first, as 3DGS files do. The product a * b turns first by b.
 using Quat = glm::dquat;
 
 using glm::cross;
@@ -28,7 +28,7 @@ inline Vec3 normalized(const Vec3& a) {
     return size > 0 ? a / size : Vec3{};
 }
 
-/// 3x3 matrix indexed (row, column), as formulas and files are; glm's own index is the column. Zero without
+/// 3x3 matrix indexed (row, column), as in formulas and files. glm's own index is the column. Zero without
 /// values.
 struct Mat3 {
     glm::dmat3 columns{0.0};
@@ -39,7 +39,7 @@ struct Mat3 {
     static Mat3 from_columns(const Vec3& a, const Vec3& b, const Vec3& c) {
         return Mat3(glm::dmat3(a, b, c));
     }
-    /// Nine numbers row by row, and back.
+    /// Conversion from nine numbers row by row, and back.
     static Mat3 from_rows(const std::array<double, 9>& n) {
         return from_columns({n[0], n[3], n[6]}, {n[1], n[4], n[7]}, {n[2], n[5], n[8]});
     }

@@ -1,11 +1,11 @@
-// A place on a camera path.
+// Key of a camera path.
 #pragma once
 
 #include "engine/scene/scene.h"
 
 namespace gse {
 
-/// How the walk from a key to the next begins and ends; the numbers are those of path files.
+/// Course of time between a key and the next. The numbers are those of path files.
 enum class Easing { Linear = 0, In = 1, Out = 2, InOut = 3 };
 
 /// One camera on the artist's path.

@@ -19,7 +19,7 @@ constexpr double Middle = 0.5;
 
 Mat3 scaled(double r, double g, double b) { return Mat3::from_rows({r, 0, 0, 0, g, 0, 0, 0, b}); }
 
-/// grey + share * (colour - grey)
+/// Grey + share * (colour - grey), as a map.
 Mat3 saturation_matrix(double share) {
     const double rest = 1 - share;
     return Mat3::from_rows({Luma.x * rest + share, Luma.y * rest, Luma.z * rest, Luma.x * rest,

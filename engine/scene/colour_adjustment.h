@@ -1,5 +1,5 @@
-// Colours of some rows changed by hand, as picture editors have it: one affine map of the colour, so that it
-// holds from every side.
+// Colours of some rows changed by hand with the controls of picture editors. One affine map of the colour, so
+// that it holds from every side.
 #pragma once
 
 #include <cstdint>
@@ -33,7 +33,7 @@ struct ColourAdjustment {
     bool operator==(const ColourAdjustment&) const = default;
 };
 
-/// colour -> linear * colour + offset, colours of displays in [0,1].
+/// Map colour -> linear * colour + offset, for display colours in [0,1].
 struct ColourMap {
     Mat3 linear = Mat3::identity();
     Vec3 offset{0, 0, 0};
@@ -43,13 +43,13 @@ struct ColourMap {
 /// feColorMatrix (W3C Filter Effects Module Level 1, 9.6), which leave the luma as it is.
 ColourMap colour_map(const ColourAdjustment& adjustment);
 
-/// The set with the rows whose byte is set adjusted: the map holds for the colour in every direction, as
-/// spherical harmonics are linear. Rows that hold values that are not finite, and all others, stay as they
-/// are, bit for bit. Throws Error (InvalidArgument) for numbers out of range.
+/// The set with the rows adjusted whose byte is set. Spherical harmonics are linear, so the map holds in
+/// every direction. Other rows, and rows with values that are not finite, stay bit for bit. Throws Error
+/// (InvalidArgument) for numbers out of range.
 GaussianSet adjusted(const GaussianSet& set, std::span<const std::uint8_t> rows,
                      const ColourAdjustment& adjustment);
 
-/// What differs from "as it is": "hue 30, saturation 1.2".
+/// Settings that differ from their defaults: "hue 30, saturation 1.2".
 std::string adjustment_text(const ColourAdjustment& adjustment);
 
 }  // namespace gse

@@ -1,4 +1,4 @@
-// Differences of Gaussian sets by row identity; arrays that an edit does not touch stay shared.
+// Differences of Gaussian sets by row identity. Arrays that an edit does not touch stay shared.
 #include "engine/scene/delta.h"
 
 #include <array>
@@ -24,8 +24,8 @@ std::array<std::vector<float>*, ColumnCount> columns_of(GaussianData& data) {
     return {&data.position, &data.log_scale, &data.rotation, &data.opacity_logit, &data.sh};
 }
 
-/// Bits of `a`[a_stride] and `b`[b_stride] agree where both have values, and the longer one goes on with
-/// zeros.
+/// True when `a`[a_stride] and `b`[b_stride] agree bit for bit as far as both reach, and the longer one goes
+/// on with zeros.
 bool same_widened(const float* a, std::size_t a_stride, const float* b, std::size_t b_stride) {
     const std::size_t common = std::min(a_stride, b_stride);
     if (std::memcmp(a, b, common * sizeof(float)) != 0) return false;
@@ -50,7 +50,7 @@ GaussianData gather(const GaussianSpans& set, std::span<const std::size_t> rows)
     return data;
 }
 
-/// One attribute of a set under change: shared until the first change.
+/// One attribute of a set that changes: shared until the first change.
 struct Column {
     GaussianSet::Buffer shared;
     std::vector<float> own;
@@ -71,7 +71,7 @@ struct Column {
     }
 };
 
-/// A set that deltas are applied to one after the other.
+/// Set to which deltas are applied one after the other.
 class ChangingSet {
 public:
     ChangingSet(const GaussianSet& set, std::span<const RowId> ids)

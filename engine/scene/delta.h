@@ -1,5 +1,5 @@
-// An edit as the difference between two sets of Gaussians: changed, removed and added rows, by identity, so
-// that edits of a stack can be switched on and off on their own.
+// An edit as the difference between two sets of Gaussians: changed, removed and added rows, by identity.
+// Edits of a stack can be switched on and off on their own.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace gse {
 
-/// Identity of a row for the whole life of a document: rows of the base are 0..N-1, rows that edit `e` added
+/// Identity of a row for the whole life of a document. Rows of the base are 0..N-1; rows that edit `e` added
 /// are (e << 32) | index.
 using RowId = std::uint64_t;
 constexpr int EditIdShift = 32;
@@ -28,27 +28,28 @@ struct SceneDelta {
     std::size_t byte_size() const;
 };
 
-/// The difference. base_to_new[row] is the row of `after` that `before`'s row became, -1 = removed; rows of
-/// `after` that no row maps to are new and get identities of edit `edit_id`. Bit-identical rows do not enter.
+/// Difference of two sets. base_to_new[row] is the row of `after` that `before`'s row became, -1 = removed.
+/// Rows of `after` that no row maps to are new and get identities of edit `edit_id`. Rows that are equal bit
+/// for bit do not enter.
 SceneDelta make_delta(const GaussianSet& before, std::span<const RowId> before_ids, const GaussianSet& after,
                       std::span<const std::int64_t> base_to_new, std::uint64_t edit_id);
 
-/// Applies it; rows it names that are not there (their edit is switched off) are passed over. Order: the rows
-/// that stay, in their order, then the added ones. Both SH degrees must agree (a delta of a lower degree is
-/// widened with zeros).
+/// Applies the delta. Rows it names that are not there (their edit is switched off) are passed over. The rows
+/// that stay keep their order; added ones follow. Both SH degrees must agree; a delta of a lower degree is
+/// widened with zeros.
 std::pair<GaussianSet, std::vector<RowId>> apply_delta(const GaussianSet& set, std::span<const RowId> ids,
                                                        const SceneDelta& delta);
 
-/// Every attribute agrees bit for bit; of two SH degrees the higher one must go on with zeros.
+/// True when every attribute agrees bit for bit. Of two SH degrees the higher one must go on with zeros.
 bool same_row(const GaussianSpans& a, std::size_t a_row, const GaussianSpans& b, std::size_t b_row);
 
-/// Several at once, oldest first: the same result, but each array is copied at most once where no rows come
-/// or go.
+/// Applies several deltas, oldest first, with the result of single calls. Each array is copied at most once
+/// while no rows come or go.
 std::pair<GaussianSet, std::vector<RowId>> apply_deltas(const GaussianSet& set, std::span<const RowId> ids,
                                                         std::span<const SceneDelta* const> deltas);
 
-/// Calls visit(row, k) for every row whose identity is wanted[k], rows ascending. `wanted` must ascend; `ids`
-/// may be in any order (long ascending stretches are fast).
+/// Calls visit(row, k) for every row whose identity is wanted[k], rows ascending. `wanted` must ascend. `ids`
+/// may be in any order; long ascending stretches are fast.
 template <class F> void locate_rows(std::span<const RowId> ids, std::span<const RowId> wanted, F&& visit) {
     std::size_t begin = 0;
     while (begin < ids.size() && !wanted.empty()) {

@@ -23,7 +23,7 @@ SharedIds base_ids(std::size_t count) {
     return std::make_shared<const std::vector<RowId>>(std::move(ids));
 }
 
-/// What an edit of the stack does.
+/// Delta of an edit of the stack, at its strength.
 struct Change {
     const SceneDelta* delta = nullptr;
     double strength = 1;
@@ -37,7 +37,7 @@ std::vector<Change> enabled_changes(const std::vector<EditNode>& stack) {
     return changes;
 }
 
-/// Applies them one after the other; those at full strength that follow each other at once.
+/// Applies edits one after the other. Neighbours at full strength are applied at once.
 std::pair<GaussianSet, std::vector<RowId>> apply_changes(const GaussianSet& set, std::span<const RowId> ids,
                                                          std::span<const Change> changes) {
     std::pair<GaussianSet, std::vector<RowId>> now{set, {ids.begin(), ids.end()}};
@@ -59,8 +59,8 @@ std::pair<GaussianSet, std::vector<RowId>> apply_changes(const GaussianSet& set,
     return now;
 }
 
-/// Sets `current` and `row_ids` of `state` from its base and stack. `near` is a whole state: where its stack
-/// begins the same way over the same base, its result is where this one starts.
+/// Sets `current` and `row_ids` of `state` from its base and stack. `near` is a whole state. If its stack
+/// begins alike over the same base, work starts from its result.
 void rebuild_rows(DocumentState& state, const DocumentState& near) {
     const auto wanted = enabled_changes(state.stack);
     const auto done = enabled_changes(near.stack);
@@ -80,7 +80,7 @@ void rebuild_rows(DocumentState& state, const DocumentState& near) {
         ids == *start_ids ? start_ids : std::make_shared<const std::vector<RowId>>(std::move(ids));
 }
 
-/// For every new row the old row of the same identity, or NoRow.
+/// Old row of equal identity for every new row, or NoRow.
 std::vector<std::uint32_t> old_rows(std::span<const RowId> old_ids, std::span<const RowId> new_ids) {
     std::vector<std::uint32_t> rows(new_ids.size(), NoRow);
     std::size_t begin = 0;
@@ -95,7 +95,7 @@ std::vector<std::uint32_t> old_rows(std::span<const RowId> old_ids, std::span<co
     return rows;
 }
 
-/// What a row of a label holds.
+/// Values that a row of a label holds.
 struct LabelValue {
     RowId id = 0;
     float weight = 0;
@@ -195,7 +195,7 @@ private:
     std::vector<std::uint64_t> edits_;
 };
 
-/// A file's label: bits that its weights do not give under the threshold become corrections by hand.
+/// Label of a file. Bits that its weights do not give under the threshold become corrections by hand.
 NamedLabel named(const Label& label, std::size_t count) {
     NamedLabel result;
     result.name = label.name;
@@ -224,7 +224,7 @@ void check_whole(const DocumentState& state) {
         if (label.bits != nullptr) GSE_CHECK_EQ(label.bits->size(), state.current.size());
 }
 
-/// Which arrays the steps hold and how often.
+/// Arrays that the steps hold, with the number of their uses.
 class Ledger {
 public:
     void add(const DocumentState& state) {

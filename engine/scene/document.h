@@ -1,5 +1,5 @@
-// What an artist works on: base scene, stack of edits as deltas, labels and views, with undo. States are
-// values that share their arrays, so a step of undo costs what it changed.
+// The document that an artist works on: base scene, stack of edits as deltas, labels and views, with undo.
+// States are values that share their arrays, so a step of undo costs only its changes.
 #pragma once
 
 #include <cstdint>
@@ -13,16 +13,15 @@
 
 namespace gse {
 
-/// What a label said of rows that are not there at present (their edit is off), so that they come back
-/// labelled.
+/// Label values of rows that are absent at present (their edit is off). They come back labelled.
 struct AbsentRows {
     std::vector<RowId> ids;           // ascending
     std::vector<float> weight;        // [ids]
     std::vector<std::int8_t> manual;  // [ids]
 };
 
-/// A named label an artist sees and corrects. bits[row] = manual[row] != 0 ? manual[row] > 0 : weight[row] >
-/// threshold.
+/// A named label that an artist sees and corrects. bits[row] = manual[row] != 0 ? manual[row] > 0 :
+/// weight[row] > threshold.
 struct NamedLabel {
     std::string name;
     float threshold = 0.5f;
@@ -40,7 +39,7 @@ struct NamedLabel {
     std::shared_ptr<const AbsentRows> absent;               // may be null
 };
 
-/// Fills `bits` from weight, manual and threshold; a channel that is null counts as zeros.
+/// Fills `bits` from weight, manual and threshold. A channel that is null counts as zeros.
 NamedLabel with_bits(NamedLabel label);
 
 /// One edit of the stack.
@@ -57,7 +56,7 @@ struct EditNode {
     std::size_t changed_outside_label = 0;
 };
 
-/// One state of the document; copying it copies pointers.
+/// One state of the document. A copy copies pointers.
 struct DocumentState {
     GaussianSet base;  // as loaded
     SceneInfo info;
@@ -69,8 +68,7 @@ struct DocumentState {
     std::vector<View> views;
 };
 
-/// Calls visit(address, bytes) for every array the state holds; arrays shared between states have one
-/// address.
+/// Calls visit(address, bytes) for every array the state holds. Arrays that states share have one address.
 template <class F> void visit_arrays(const DocumentState& state, F&& visit) {
     for (const GaussianSet* set : {&state.base, &state.current}) {
         const GaussianBuffers arrays = set->buffers();
@@ -99,19 +97,18 @@ template <class F> void visit_arrays(const DocumentState& state, F&& visit) {
     }
 }
 
-/// The state of a freshly loaded scene (labels that the file carried become named labels).
+/// State of a freshly loaded scene. Labels that the file carried become named labels.
 DocumentState initial_state(const Scene& scene, std::vector<View> views);
 
 /// Identity for an edit to be pushed on this stack.
 std::uint64_t next_edit_id(const DocumentState& state);
 
-/// The same state with `current`, `row_ids` and the labels recomputed for another stack; labels follow their
-/// rows.
+/// State with `current`, `row_ids` and the labels recomputed for another stack. Labels follow their rows.
 DocumentState with_stack(const DocumentState& state, std::vector<EditNode> stack);
 
-/// Undo and redo over named states, bounded by entries and bytes (arrays shared with a neighbour count once).
-/// When bytes run out, states away from the current one first give up their `current`, which the base and the
-/// stack give again bit for bit; then the oldest are forgotten.
+/// Undo and redo over named states, bounded by entries and bytes. Arrays shared with a neighbour count once.
+/// When bytes run out, states away from the current one first give up their `current`, which base and stack
+/// give again bit for bit. Then the oldest are forgotten.
 class Document {
 public:
     struct Limits {
@@ -124,25 +121,25 @@ public:
 
     const DocumentState& state() const { return states_[position_].state; }
     bool empty() const { return states_.empty(); }
-    /// Makes `state` the current one under `name`; what could be redone is dropped. Steps of the same
-    /// non-empty `merge_key` that follow each other (a slider being dragged, a brush stroke) become one.
+    /// Makes `state` the current one under `name`. States that could be redone are dropped. Consecutive steps
+    /// of equal non-empty `merge_key` (a slider being dragged, a brush stroke) become one.
     void apply(std::string name, DocumentState state, const std::string& merge_key = {});
     bool can_undo() const { return position_ > 0; }
     bool can_redo() const { return position_ + 1 < states_.size(); }
     void undo();
     void redo();
-    /// Names from the oldest; names()[position()] led to the current state.
+    /// Names from the oldest. names()[position()] led to the current state.
     std::vector<std::string> names() const;
     std::size_t position() const { return position_; }
-    /// Any state that undo or redo leads to, whole; the document stays where it is.
+    /// State that undo or redo leads to, whole. The document stays at its place.
     DocumentState state_at(std::size_t position) const;
-    /// Its number, see revision(): positions move when the oldest states are forgotten.
+    /// Number of a state, see revision(). Positions move when the oldest states are forgotten.
     std::uint64_t revision_at(std::size_t position) const;
     void go_to(std::size_t position);
     /// Bytes held by undo and redo beyond the current state.
     std::size_t undo_bytes() const;
-    /// A number of the current state, new for every applied one; compared with the value at the last save it
-    /// tells whether there is work unsaved (undo back to the saved state and there is none).
+    /// Number of the current state, new for every applied one. Work is unsaved when it differs from the
+    /// number at the last save. Undo back to the saved state restores the number.
     std::uint64_t revision() const { return revision_; }
 
 private:

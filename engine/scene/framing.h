@@ -1,4 +1,4 @@
-// What is to be seen of a scene or of a part of it.
+// Bounds of a scene, or of a part of it, for pictures of it.
 #pragma once
 
 #include <span>
@@ -8,13 +8,11 @@
 
 namespace gse {
 
-/// The box that shows what matters of the rows with bits[row] != 0 (all if `bits` is empty): visible splats
-/// with their extent, floaters and the outermost ones left out. An empty box at the origin where there are
-/// none.
+/// Box of the rows with bits[row] != 0 (all if `bits` is empty): visible splats with their extent. Floaters
+/// and outermost splats are left out. An empty box at the origin if there are none.
 Bounds framing_bounds(const GaussianSet& set, std::span<const std::uint8_t> bits = {});
 
-/// Standard deviation along the largest axis of the middle one of some splats, by their log-scales, which are
-/// reordered.
+/// Median over some splats of the standard deviation along the largest axis. `log_scales` are reordered.
 double middle_size(std::vector<float>& log_scales);
 
 }  // namespace gse

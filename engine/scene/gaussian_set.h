@@ -1,5 +1,5 @@
-// The scene: an immutable structure of arrays, each attribute shared on its own so that an edit copies what
-// it changes.
+// The scene: an immutable structure of arrays. Each attribute is shared on its own, so that an edit copies
+// only its changes.
 #pragma once
 
 #include <atomic>
@@ -13,8 +13,8 @@
 
 namespace gse {
 
-/// Plain mutable arrays of N Gaussians, as readers, generators and the edit loop fill them. Raw
-/// (pre-activation) values exactly as in a 3DGS file.
+/// Plain mutable arrays of N Gaussians, for readers, generators and the edit loop. Raw (pre-activation)
+/// values as in a 3DGS file.
 struct GaussianData {
     int sh_degree = 0;
     std::vector<float> position;       // [N,3] world units
@@ -27,16 +27,16 @@ struct GaussianData {
     std::size_t sh_stride() const { return static_cast<std::size_t>(sh_coefficient_count(sh_degree)) * 3; }
     /// Sets every array to n rows (new rows are zero).
     void resize(std::size_t n);
-    /// Appends row `row` of `other` (same SH degree).
+    /// Appends row `row` of `other`, which must have this SH degree.
     void append_row(const GaussianData& other, std::size_t row);
 };
 
-/// What is remembered of coefficients that never change: whether all are numbers of a size that gives every
-/// direction a finite colour.
+/// Cached check of coefficients that never change: all are numbers of a size that gives every direction a
+/// finite colour.
 enum class ColoursKnown : signed char { NotYet, Finite, NotAll };
 using ColourMemo = std::atomic<ColoursKnown>;
 
-/// Read-only view of N Gaussians for the rasterizer; whoever made it keeps the arrays alive.
+/// Read-only view of N Gaussians for the rasterizer. Its maker keeps the arrays alive.
 struct GaussianSpans {
     std::size_t size = 0;
     int sh_degree = 0;
@@ -59,9 +59,9 @@ public:
     using Buffer = GaussianBuffers::Buffer;
 
     GaussianSet();
-    /// Takes the arrays over; aborts if their lengths disagree.
+    /// Takes the arrays over. Aborts if their lengths disagree.
     explicit GaussianSet(GaussianData data);
-    /// Shares these arrays (none may be null); aborts if their lengths disagree.
+    /// Shares these arrays (none may be null). Aborts if their lengths disagree.
     explicit GaussianSet(GaussianBuffers buffers);
 
     std::size_t size() const { return opacity_logit_->size(); }
@@ -77,7 +77,7 @@ public:
     GaussianBuffers buffers() const {
         return {sh_degree_, position_, log_scale_, rotation_, opacity_logit_, sh_};
     }
-    /// The very same arrays, not only the same values.
+    /// True when both sets share all arrays. Equal values in other arrays do not count.
     bool shares_all_with(const GaussianSet& other) const {
         return sh_degree_ == other.sh_degree_ && position_ == other.position_ &&
                log_scale_ == other.log_scale_ && rotation_ == other.rotation_ &&
@@ -85,7 +85,7 @@ public:
     }
     /// Deep copy for changing.
     GaussianData to_data() const;
-    /// Rows for which keep[row] != 0, in order.
+    /// Rows with keep[row] != 0, in order.
     GaussianSet filtered(std::span<const unsigned char> keep) const;
     /// Bytes of all attributes.
     std::size_t byte_size() const;

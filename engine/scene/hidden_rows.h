@@ -1,4 +1,4 @@
-// Rows that an artist does not want to see for a while: display only, the scene keeps them.
+// Rows that an artist hides for a while. Display only: the scene keeps them.
 #pragma once
 
 #include <cstddef>
@@ -10,30 +10,30 @@
 
 namespace gse {
 
-/// Hidden rows by identity: they stay hidden as edits come and go, and rows that an edit adds are seen.
+/// Hidden rows by identity. They stay hidden as edits come and go; rows that an edit adds are visible.
 class HiddenRows {
 public:
     bool empty() const { return ids_.empty(); }
-    /// Hides rows whose byte in `rows` [ids] is set, beside what is hidden already.
+    /// Hides rows whose byte in `rows` [ids] is set, beside those hidden already.
     void hide(std::span<const RowId> ids, std::span<const std::uint8_t> rows);
-    /// Hides all rows but these, which are seen again; rows that are not among `ids` are as they were.
+    /// Hides all rows but these, which become visible. Rows that are not among `ids` stay as they were.
     void isolate(std::span<const RowId> ids, std::span<const std::uint8_t> rows);
     void show_all() { ids_.clear(); }
-    /// [ids] 1 for hidden rows.
+    /// Byte per row [ids]: 1 for hidden rows.
     std::vector<std::uint8_t> rows(std::span<const RowId> ids) const;
 
 private:
     std::vector<RowId> ids_;  // ascending, each once
 };
 
-/// The set with these rows invisible (an opacity logit of -infinity); all other arrays are shared. `hidden`
-/// [N].
+/// The set with the rows of `hidden` [N] invisible (an opacity logit of -infinity). All other arrays are
+/// shared.
 GaussianSet with_hidden(const GaussianSet& set, std::span<const std::uint8_t> hidden);
 
-/// Of values per row, those of rows that are not hidden.
+/// Values of the rows that are not hidden, out of `values` per row.
 std::vector<float> seen_values(std::span<const float> values, std::span<const std::uint8_t> hidden);
 
-/// The set without them; shares all arrays where none is hidden.
+/// The set without the hidden rows. Shares all arrays if none is hidden.
 GaussianSet without_hidden(const GaussianSet& set, std::span<const std::uint8_t> hidden);
 
 }  // namespace gse

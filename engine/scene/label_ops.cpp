@@ -96,17 +96,17 @@ private:
     Mask mask_;
 };
 
-/// A 3D point in cells of the neighbour search.
+/// Point in cells of the neighbour search.
 struct Cell {
     std::int64_t x = 0, y = 0, z = 0;
 };
 
-/// Rows in cubic cells, to ask whether any lies within the radius of a point.
+/// Rows in cubic cells. Answers whether any lies within the radius of a point.
 class CellIndex {
 public:
     CellIndex(std::span<const float> position, double radius) : position_(position), radius_(radius) {}
 
-    /// Takes these rows in (finite ones).
+    /// Takes in these rows, as far as they are finite.
     void build(const std::vector<std::uint32_t>& rows) {
         std::size_t slots = 16;
         while (slots < rows.size() * 2) slots *= 2;
@@ -198,7 +198,7 @@ double spacing_at(std::span<const float> position, std::size_t row) {
     return std::sqrt(static_cast<double>(best.back()));
 }
 
-/// One step: rows of side `from` within the radius of a row of the other side go over.
+/// One step: rows of side `from` within the radius of a row of the other side change sides.
 void grow_once(std::span<const float> position, double radius, std::vector<std::uint8_t>& bits,
                std::uint8_t from) {
     std::array<double, 3> low, high;

@@ -1,4 +1,4 @@
-// Values per row.
+// Values per row, carried from one state to another.
 #include "engine/scene/row_values.h"
 
 #include <algorithm>

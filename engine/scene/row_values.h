@@ -1,4 +1,4 @@
-// A value per row, and rows of one state in another.
+// Values per row, and rows of one state in another.
 #pragma once
 
 #include <cstdint>
@@ -8,14 +8,14 @@
 
 namespace gse {
 
-/// How far each row is from the base: 1 = a clear change of colour, place, size or opacity, or a new row.
+/// Distance of each row from the base: 1 = a clear change of colour, place, size or opacity, or a new row.
 std::vector<float> changed_values(const DocumentState& state);
 
-/// Values of rows of a set carried to another one of `rows` rows; those that are new get `fresh`.
+/// Values of a set's rows carried to another set of `rows` rows. New rows get `fresh`.
 std::vector<float> carried(const std::vector<float>& values, const std::vector<std::int64_t>& base_to_new,
                            std::size_t rows, float fresh);
 
-/// Where each row of `before` is in `after`, by identity; -1 = nowhere.
+/// Place in `after` of each row of `before`, by identity; -1 = none.
 std::vector<std::int64_t> row_map(const std::vector<RowId>& before, const std::vector<RowId>& after);
 
 }  // namespace gse

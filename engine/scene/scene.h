@@ -1,4 +1,4 @@
-// A loaded scene: the Gaussians, what the file said about them, labels, and the viewpoints.
+// A loaded scene: the Gaussians, facts of its file, labels, and viewpoints.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,8 @@ struct View {
     bool distorted = false;
 };
 
-/// One named label over the rows of a set: a weight in [0,1] and, after thresholding, a bit per row.
-/// Changing the threshold recomputes the bits, never the weights.
+/// One named label over the rows of a set: a weight in [0,1] and, after thresholding, a bit per row. Another
+/// threshold recomputes the bits, never the weights.
 struct Label {
     std::string name;
     std::shared_ptr<const std::vector<float>> weight;       // [N]
@@ -34,7 +34,7 @@ struct LabelSet {
 /// bits[row] = weight[row] > threshold.
 Label make_label(std::string name, std::vector<float> weight, float threshold);
 
-/// What the file (or the generator) said beside the Gaussians.
+/// Facts of the file (or the generator) beside the Gaussians.
 struct SceneInfo {
     std::string format;                 // name of a scene format ("spz"), or "synthetic"
     Vec3 up{0, -1, 0};                  // world up; 3DGS scenes follow COLMAP, -y up
@@ -49,7 +49,7 @@ struct Scene {
     LabelSet labels;
 };
 
-/// Counts of what may be wrong with a scene; printed by `info`, shown by the window.
+/// Counts of possible defects of a scene. Printed by `info`, shown by the window.
 struct SceneStatistics {
     std::size_t count = 0;
     std::size_t nan_rows = 0;  // any NaN in any attribute
@@ -67,21 +67,21 @@ struct SceneStatistics {
 
 SceneStatistics compute_statistics(const GaussianSet& set);
 
-/// Orbit that frames the robust bounds of the scene; `up` is the world's up direction.
+/// Orbit that frames the robust bounds of the scene. `up` is the world's up direction.
 OrbitParameters fit_orbit(const SceneStatistics& statistics, const Vec3& up);
 
 /// `count` views evenly spaced on the orbit, at two alternating elevations so that tops are seen.
 std::vector<View> orbit_views(const OrbitParameters& orbit, int count, int width, int height);
 
-/// [N] 1 for rows that can be drawn, 0 for those with a NaN, an infinity that means nothing or an absurd
+/// Byte per row [N]: 1 for rows that can be drawn, 0 for rows with a NaN, a meaningless infinity or an absurd
 /// value.
 std::vector<std::uint8_t> usable_rows(const GaussianSet& set);
 
-/// Drops rows that cannot be drawn (NaN, illegal infinities, absurd values); returns the kept rows.
+/// The rows that can be drawn: no NaN, no illegal infinity, no absurd value.
 GaussianSet drop_unusable(const GaussianSet& set);
 
-/// The same rows with those that cannot be drawn made invisible and finite: what pictures, losses and figures
-/// are made from, while the scene keeps what came in. Shares all arrays where every row can be drawn.
+/// The set with rows that cannot be drawn made invisible and finite. Pictures, losses and figures use it; the
+/// scene keeps its own values. Shares all arrays if every row can be drawn.
 GaussianSet drawable(const GaussianSet& set);
 
 }  // namespace gse

@@ -1,5 +1,4 @@
-// What may be wrong with a scene, in two passes: find the odd rows and the bounds, then measure sizes against
-// them.
+// Defects of a scene, in two passes: find the odd rows and the bounds, then measure sizes against them.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -33,8 +32,8 @@ Oddity oddity(std::span<const float> values, float largest = LargestValue) {
     return result;
 }
 
-/// Infinite opacity logits (0 or 1 exactly) and log-scales of -inf (a flat axis) have a meaning; others have
-/// none.
+/// True for infinities with a meaning: opacity logits of 0 or 1 exactly, and log-scales of -inf (a flat
+/// axis).
 Oddity row_oddity(const GaussianSpans& set, std::size_t row, std::size_t sh_stride) {
     Oddity result = worse(oddity(set.position.subspan(row * 3, 3)), oddity(set.rotation.subspan(row * 4, 4)));
     result = worse(result, oddity(set.sh.subspan(row * sh_stride, sh_stride), LargestColour));
@@ -69,7 +68,7 @@ Quantiles quantiles(std::vector<float>& values) {
     return {low, at(HighQuantile)};
 }
 
-/// Fills both bounds; `visible` are the positions [M,3] of visible rows, `finite` those of all finite rows.
+/// Fills both bounds. `visible` are the positions [M,3] of visible rows, `finite` those of all finite rows.
 void set_bounds(SceneStatistics& statistics, const std::vector<float>& finite,
                 const std::vector<float>& visible) {
     if (finite.empty()) return;

@@ -1,4 +1,4 @@
-// Blends the rows of a delta with those it replaces.
+// Blends the rows of a delta with the rows they replace.
 #include "engine/scene/strength.h"
 
 #include <algorithm>
@@ -18,8 +18,8 @@ constexpr double ClampedLogit = -100;  // of rows that are hardly there: finite 
 
 double opacity_of(double logit) { return 1 / (1 + std::exp(-logit)); }
 
-/// Logit of the opacity at `share` of the way from `from` to `to`; both opacity and what shines through are
-/// mixed, so that neither vanishes in rounding.
+/// Logit of the opacity at `share` of the way from `from` to `to`. Opacity and transmittance are both mixed,
+/// so that neither vanishes in rounding.
 float mixed_logit(double from, double to, double share) {
     const double opaque = (1 - share) * opacity_of(from) + share * opacity_of(to);
     const double clear = (1 - share) * opacity_of(-from) + share * opacity_of(-to);
@@ -57,7 +57,7 @@ void mix_rotation(const float* from, float* to, double share) {
     for (std::size_t i = 0; i < 4; ++i) to[i] = static_cast<float>(b[i] / std::sqrt(length));
 }
 
-/// A coefficient beyond `to`, seen from `from`, within [low,high]; one that lay beyond them already goes no
+/// Coefficient beyond `to`, seen from `from`, within [low,high]. One that lay beyond them already goes no
 /// further.
 float beyond(float from, float to, double strength, double low, double high) {
     if (from == to) return to;
@@ -89,7 +89,7 @@ GaussianData row_of(const GaussianSpans& set, std::size_t row, int degree) {
     return data;
 }
 
-/// `row` is what it became; afterwards what it is at the strength.
+/// Sets `row`, the changed row, to its values at the strength.
 void mix_row(const GaussianSpans& before, std::size_t from, GaussianData& row, double strength) {
     const std::size_t stride = static_cast<std::size_t>(sh_coefficient_count(before.sh_degree)) * 3;
     mix_colour(&before.sh[from * stride], stride, row.sh.data(), row.sh.size(), strength);
@@ -105,7 +105,7 @@ void mix_row(const GaussianSpans& before, std::size_t from, GaussianData& row, d
 
 constexpr std::size_t Absent = std::numeric_limits<std::size_t>::max();
 
-/// A row that the delta changes, or one that it removes and that comes back.
+/// A row that the delta changes, or a removed one that comes back.
 struct Entry {
     RowId id = 0;
     bool removed = false;

@@ -1,4 +1,4 @@
-// Procedural patterns of surfaces, in the space of a thing that is one unit high.
+// Procedural patterns of surfaces, in the space of an object that is one unit high.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace gse {
 
-/// A pattern of two colours, or of colours of its own. Thing space: y up, the middle of its foot at the
+/// Pattern of two colours, or of colours of its own. Object space: y up, the middle of its foot at the
 /// origin, about one unit high.
 struct SurfacePattern {
     enum class Kind {
@@ -32,16 +32,16 @@ struct SurfacePattern {
     Vec3 offset{};                  // where natural surfaces are cut out of their noise
 };
 
-/// Words for them: "striped", "marble", ...
+/// Words for patterns: "striped", "marble", ...
 const std::vector<std::string>& pattern_words();
 
-/// The pattern that a word of pattern_words() names; none for others.
+/// Pattern that a word of pattern_words() names; none for others.
 std::optional<SurfacePattern> pattern_named(const std::string& word);
 
-/// Whether it is made of `first` and `second`; others have colours of their own.
+/// True when the pattern is made of `first` and `second`. Others have colours of their own.
 bool takes_colours(SurfacePattern::Kind kind);
 
-/// Display colour in [0,1] at a point of thing space.
+/// Display colour in [0,1] at a point of object space.
 Vec3 colour_at(const SurfacePattern& pattern, const Vec3& point);
 
 }  // namespace gse

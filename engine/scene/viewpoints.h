@@ -1,4 +1,4 @@
-// Viewpoints of a scene: how many it takes, and one view shown in a picture of another shape.
+// Viewpoints of a scene: how many it takes, and a view in a picture of another shape.
 #pragma once
 
 #include <cstddef>
@@ -7,10 +7,11 @@
 
 namespace gse {
 
-/// Fewer stored views than this cannot tell front from back: an edit looks from an orbit of its own then.
+/// Least number of stored views that tell front from back. With fewer, an edit looks from an orbit of its
+/// own.
 constexpr std::size_t LeastViewpoints = 3;
 
-/// The same view in a picture of another shape: what was visible stays visible.
+/// The view in a picture of another shape. Everything visible stays visible.
 Camera fitted(const Camera& from, int width, int height);
 
 }  // namespace gse
