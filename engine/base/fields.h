@@ -1,9 +1,13 @@
 // One list of fields per parameter struct serves command line, project file, log and window.
 //
-// A struct P offers   template <class Self, class F> static void visit_fields(Self& self, F&& f)
-// that calls          f("name", self.member, "What it does.", Range{low, high})   once per member;
-// the range is left out where there is none. Members are bool, int, std::uint64_t, float, double, std::string
-// or a list of texts (std::vector<std::string>).
+// A struct P offers this function, which calls f once per member:
+//
+//   template <class Self, class F> static void visit_fields(Self& self, F&& f) {
+//       f("name", self.member, "Purpose of the member.", Range{low, high});
+//   }
+//
+// The range may be left out. Members are bool, int, std::uint64_t, float, double, std::string or a list of
+// texts (std::vector<std::string>).
 #pragma once
 
 #include <cstdint>

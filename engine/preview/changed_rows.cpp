@@ -1,4 +1,4 @@
-// Compares blocks first: most of them are equal.
+// Compares blocks first, since most of them are equal.
 #include "engine/preview/changed_rows.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What can be shown of splats, and how.
+// Display modes of splats.
 #pragma once
 
 #include <array>
@@ -6,7 +6,7 @@
 
 namespace gse::preview {
 
-/// How splats are shown; the order is that of ui::DisplayMode.
+/// Display mode; the order is that of ui::DisplayMode.
 enum class Mode : std::uint32_t {
     Beauty,
     Centres,

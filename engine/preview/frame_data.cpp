@@ -17,7 +17,7 @@ constexpr std::uint64_t MatrixBudget = 8u << 20;  // entries
 
 float to_float(double value) { return static_cast<float>(value); }
 
-/// Low and high limit of x/z, as gsplat clamps it: it follows the principal point.
+/// Low and high limit of x/z, clamped as in gsplat. It follows the principal point.
 std::array<float, 2> ratio_limits(double size, double focal, double centre) {
     const double margin = FrustumMargin * 0.5 * size / focal;
     return {to_float(-(centre / focal + margin)), to_float((size - centre) / focal + margin)};

@@ -1,4 +1,4 @@
-// Camera and display -> the numbers the shaders read.
+// Numbers that the shaders read, from camera and display.
 #pragma once
 
 #include "engine/preview/splat_renderer.h"
@@ -7,7 +7,7 @@
 
 namespace gse::preview {
 
-/// What a frame follows of the scene.
+/// Properties of the scene that a frame depends on.
 struct SceneFacts {
     Vec3 middle;            // for the scale of the depth colours
     double near_plane = 0;  // where the display leaves it open
@@ -15,7 +15,7 @@ struct SceneFacts {
 
 shaders::FrameData frame_data(const FrameRequest& request, const Division& division, const SceneFacts& facts);
 
-/// Division of the work for a scene and a picture's size; `few_threads`: of a CPU.
+/// Division of the work for a scene and a picture's size. `few_threads`: the device is a CPU.
 Division divide(const vulkan::DeviceInfo& info, bool few_threads, bool portable, std::size_t rows,
                 std::uint64_t pixels);
 

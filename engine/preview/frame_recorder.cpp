@@ -1,4 +1,4 @@
-// The order of the passes and what has to be finished between them.
+// Order of the passes, and the barriers between them.
 #include "engine/preview/frame_recorder.h"
 
 #include <algorithm>

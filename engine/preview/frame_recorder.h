@@ -12,7 +12,7 @@
 
 namespace gse::preview {
 
-/// Everything that decides what is recorded.
+/// All inputs of a recording.
 struct FramePlan {
     shaders::FrameData data;
     Division division;
@@ -30,7 +30,7 @@ public:
     PassClock& operator=(const PassClock&) = delete;
     void start(vk::CommandBuffer commands);
     void mark(vk::CommandBuffer commands, const char* name);
-    /// Of the last picture recorded; call it when that has been executed, it does not wait.
+    /// Times of the last picture recorded. Call it after its execution; it does not wait.
     std::vector<std::pair<std::string, double>> read();
 
 private:

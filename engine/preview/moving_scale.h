@@ -1,4 +1,4 @@
-// How much the resolution drops while the camera moves.
+// Drop of the resolution while the camera moves.
 #pragma once
 
 #include <algorithm>
@@ -6,8 +6,9 @@
 
 namespace gse::preview {
 
-/// Follows the time frames take: part of it does not depend on the picture's size and other work comes and
-/// goes, so no formula knows the right size. Few sizes, so that pictures keep their memory.
+/// Share of the full size that follows the measured time of frames. No formula knows the right size: part of
+/// the time does not depend on it, and other work comes and goes. Few sizes, so that pictures keep their
+/// memory.
 class MovingScale {
 public:
     static constexpr double FrameMs = 50;  // a frame may take this long while the camera moves
@@ -17,7 +18,7 @@ public:
     /// Share of the full width and height.
     double scale() const { return std::exp2(-0.25 * level_); }
 
-    /// A frame at `share` of the full size took `ms`.
+    /// Notes that a frame at `share` of the full size took `ms`.
     void learn(double ms, double share) {
         if (!(ms > 0)) return;
         const int measured = static_cast<int>(std::lround(-4 * std::log2(std::clamp(share, 0.01, 1.0))));

@@ -16,7 +16,7 @@ constexpr std::size_t RowsAtOnce = 16;
 
 float mix(float a, float b, float t) { return a + (b - a) * t; }
 
-/// 8 bits as a UNORM image stores them; NaN gives 0.
+/// 8 bits as a UNORM image stores them. NaN gives 0.
 std::uint8_t to_byte(float value) {
     const float clamped = value > 0.0f ? (value < 1.0f ? value : 1.0f) : 0.0f;
     return static_cast<std::uint8_t>(clamped * 255.0f + 0.5f);
@@ -26,7 +26,7 @@ bool tints(const Display& display) {
     return display.tint_strength > 0 && (display.mode <= Mode::Ellipsoids || display.mode == Mode::Labels);
 }
 
-/// The common case, simple enough for the compiler to vectorise.
+/// Common case, simple enough for the compiler to vectorise.
 void resolve_plain(const float* colour, const float* alpha, std::size_t count, const Rgb& background,
                    std::uint8_t* out) {
     for (std::size_t i = 0; i < count; ++i) {

@@ -1,5 +1,5 @@
-// The sums of a pixel -> the colour shown, on the CPU: for pictures made by engine/raster. The same formulas
-// as shaders/resolve.glsl; a test holds both together.
+// Sums of a pixel -> the shown colour, on the CPU, for pictures made by engine/raster. The formulas are those
+// of shaders/resolve.glsl; a test holds both together.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 namespace gse::preview {
 
 /// Sums over the splats of a pixel, not normalised, without a background: colour [H,W,3]
-/// (raster::Settings::background = 0), alpha [H,W,1], depth and value [H,W,1] or null where the mode does not
-/// need them.
+/// (raster::Settings::background = 0), alpha [H,W,1]. Depth and value are [H,W,1], or null if the mode does
+/// not need them.
 struct LightSums {
     const Image* colour = nullptr;
     const Image* alpha = nullptr;
@@ -21,7 +21,7 @@ struct LightSums {
     const Image* value = nullptr;  // tints and maps
 };
 
-/// Whether the picture needs `value` (raster::Rasterizer::forward_values) or `depth`.
+/// True when the picture needs `value` (raster::Rasterizer::forward_values) or `depth`.
 bool needs_value(const Display& display);
 bool needs_depth(const Display& display);
 
@@ -31,10 +31,10 @@ struct PixelSums {
 };
 std::array<float, 4> resolve_pixel(const PixelSums& sums, const Display& display, float depth_scale);
 
-/// The false colour of t in 0..1.
+/// False colour of t in 0..1.
 std::array<float, 3> map_colour(float t);
 
-/// RGBA8, row by row. Centres, rings and ellipsoids look like beauty here: they need another blend.
+/// RGBA8, row by row. Centres, rings and ellipsoids look like beauty here, since they need another blend.
 void resolve(const LightSums& sums, const Display& display, float depth_scale, ThreadPool& pool,
              std::vector<std::uint8_t>& rgba);
 

@@ -1,5 +1,5 @@
-// The scene on the device: chunks of rows, filled slice by slice while the old scene is still shown; arrays
-// that did not change are shared with it, and where only some rows did, only those are sent.
+// The scene on the device: chunks of rows, filled slice by slice while the old scene is still shown.
+// Unchanged arrays are shared with the old scene. If only some rows changed, only those are sent.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +12,8 @@
 
 namespace gse::preview {
 
-/// Writes into device buffers: directly where they are mapped, through staging memory and recorded copies
-/// where not.
+/// Writes into device buffers: directly into mapped ones, through staging memory and recorded copies into
+/// others.
 class Uploader {
 public:
     Uploader(vulkan::Device& device, bool always_stage) : device_(device), always_stage_(always_stage) {}
@@ -21,7 +21,7 @@ public:
     /// Memory for `bytes` at `offset` of `target`, to be filled before flush().
     std::byte* reserve(const std::shared_ptr<vulkan::Buffer>& target, std::uint64_t offset,
                        std::uint64_t bytes);
-    /// Bytes for parts of a buffer that frames under way may still read: written when they are done.
+    /// Bytes for parts of a buffer that frames under way may still read. Written when they are done.
     void replace(const std::shared_ptr<vulkan::Buffer>& target, std::span<const std::byte> bytes,
                  std::vector<vk::BufferCopy> parts);
     /// Records the copies that are due.
@@ -53,9 +53,10 @@ public:
     SceneStore(vulkan::Device& device, bool always_stage)
         : device_(device), uploader_(device, always_stage) {}
 
-    /// Begins to upload `set`; what is shown changes when it is complete. Replaces an upload under way.
+    /// Begins to upload `set`. The shown scene changes when it is complete. Replaces an upload under way.
     void begin(const GaussianSet& set);
-    /// Works for about `milliseconds`; true when the shown scene has changed. Call flush() afterwards.
+    /// Works for about `milliseconds`. Returns true when the shown scene has changed. Call flush()
+    /// afterwards.
     bool advance(double milliseconds);
     bool busy() const { return static_cast<bool>(pending_); }
     /// One number per row of the shown scene, or none.
@@ -69,7 +70,7 @@ public:
     std::uint64_t sent_bytes() const { return uploader_.sent_bytes(); }
 
 private:
-    /// Packed rows that will take the place of others in a buffer.
+    /// Packed rows that replace others in a buffer.
     struct Patch {
         std::vector<std::byte> bytes;
         std::vector<vk::BufferCopy> parts;

@@ -1,4 +1,4 @@
-// The renderer: what is shown, what has changed, and reading back.
+// The renderer: the shown state, changes of it, and reading back.
 #include "engine/preview/splat_renderer.h"
 
 #include <algorithm>
@@ -156,7 +156,7 @@ void SplatRenderer::State::record(vk::CommandBuffer commands, const FrameRequest
     stale = false;
 }
 
-/// Takes what has come back from earlier frames.
+/// Takes results of earlier frames that have arrived.
 void SplatRenderer::State::receive() {
     if (device.finished(control_back.ticket)) {
         control_back.ticket.reset();

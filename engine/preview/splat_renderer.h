@@ -1,10 +1,13 @@
-// Draws Gaussians with Vulkan compute: the image formation of engine/raster, several ways of showing it, only
-// when something has changed. Belongs to the thread of its device.
+// Draws Gaussians with Vulkan compute, by the image formation of engine/raster and in several display modes.
+// Draws only when something has changed. Belongs to the thread of its device.
 //
 //   SplatRenderer renderer(device);
-//   renderer.upload(set);                          // slice by slice in render(); the old scene is shown
-//   meanwhile each frame: renderer.render(window.commands(), request);   // records nothing when nothing
-//   changed ImGui::Image(id of renderer.view())            // add the view again when revision() changes
+//   renderer.upload(set);  // slice by slice in render(), while the old scene is shown
+//
+// and in each frame:
+//
+//   renderer.render(window.commands(), request);  // records nothing when nothing changed
+//   ImGui::Image(id of renderer.view());          // add the view again when revision() changes
 #pragma once
 
 #include <vulkan/vulkan_core.h>
@@ -33,7 +36,7 @@ struct FrameRequest {
     bool want_depth = false;  // depth() is wanted for this picture
 };
 
-/// What the newest finished picture cost and left out; known some frames after it was recorded.
+/// Cost and omissions of the newest finished picture. Known some frames after it was recorded.
 struct FrameStatistics {
     std::uint32_t visible = 0;
     std::uint64_t pairs = 0;            // tile-splat pairs
@@ -62,22 +65,22 @@ public:
     SplatRenderer(const SplatRenderer&) = delete;
     SplatRenderer& operator=(const SplatRenderer&) = delete;
 
-    /// Begins an upload; only arrays that are other objects than those shown are sent, and of them, where the
-    /// number of rows stays and most rows do, only the rows that differ. Replaces an upload under way.
+    /// Begins an upload, and replaces one under way. Only arrays that are other objects than the shown ones
+    /// are sent. If most rows stay, only the rows that differ are sent.
     void upload(const GaussianSet& set);
-    /// One number per row for labels, maps and tints; null = none. Waits for an upload of that size if one is
-    /// under way.
+    /// One number per row for labels, maps and tints; null = none. Waits for an upload of that size under
+    /// way.
     void set_values(std::shared_ptr<const std::vector<float>> values);
     bool uploading() const;
     void finish_upload();  // waits
 
-    /// Records what is needed to show `request`, if it is not shown already; true when it recorded something.
-    /// Goes on with an upload for about `upload_ms`.
+    /// Records the commands to show `request`, if it is not shown already. Returns true when it recorded
+    /// something. Goes on with an upload for about `upload_ms`.
     bool render(VkCommandBuffer commands, const FrameRequest& request, double upload_ms = 4);
-    /// The next render() starts from nothing.
+    /// Makes the next render() start from nothing.
     void invalidate();
-    /// The last picture left something out because it met more pairs than expected: render again (it does not
-    /// skip).
+    /// True when the last picture left something out because it met more pairs than expected. Render again;
+    /// it does not skip.
     bool incomplete();
 
     VkImageView view() const;  // RGBA8, layout eShaderReadOnlyOptimal
@@ -90,7 +93,7 @@ public:
     std::uint64_t sent_bytes() const;  // of scenes and values, to the device, so far
     FrameStatistics statistics();
 
-    /// Newest depth that has arrived: [H,W,1] mean camera z of what is seen, weighted by alpha T; 0 where
+    /// Newest depth that has arrived: [H,W,1] mean camera z of the visible splats, weighted by alpha T. 0 if
     /// alpha is under 0.3. Null at first.
     std::shared_ptr<const Image> depth();
 
@@ -99,7 +102,7 @@ public:
     Image draw(const FrameRequest& request);
     /// Sums per pixel before any colour mapping: [H,W,6] red, green, blue, alpha, depth, value.
     Image draw_light(const FrameRequest& request);
-    /// The splat that contributes most at a pixel of the picture shown.
+    /// Splat that contributes most at a pixel of the shown picture.
     std::optional<Pick> pick(int x, int y);
 
 private:

@@ -15,7 +15,7 @@ constexpr std::array<const char*, Workspace::SlotCount> Names{"frame",    "recor
                                                               "sorted x", "sorted y",  "matrix",    "blocks",
                                                               "control",  "pairs",     "depths",    "light"};
 
-/// Which buffer the texel-buffer bindings 13... show.
+/// Buffer of each texel-buffer binding 13...
 constexpr std::array<Workspace::Slot, 7> TexelSlots{
     Workspace::RecordsA, Workspace::RecordsB, Workspace::Keys, Workspace::SortedX,
     Workspace::SortedY,  Workspace::Matrix,   Workspace::Pairs};

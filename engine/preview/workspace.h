@@ -1,5 +1,5 @@
-// Working memory of a frame: records, sort and tile lists, pictures. Grows as needed, never shrinks, no
-// allocation once warm.
+// Working memory of a frame: records, sort and tile lists, pictures. Grows as needed, never shrinks, and
+// allocates nothing once warm.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace gse::preview {
 
-/// How the passes divide their work; depends on the device and the picture's size.
+/// Division of the work between the passes. Depends on the device and the picture's size.
 struct Division {
     std::uint32_t tile = 8;    // pixels a side
     std::uint32_t group = 64;  // invocations of the passes whose invocations own a stretch each
@@ -34,7 +34,7 @@ public:
     Workspace(vulkan::Device& device, Passes& passes);
     ~Workspace();
 
-    /// Makes room; true when the picture is another image than before.
+    /// Makes room. Returns true when the picture is another image than before.
     bool reserve(const WorkspaceSize& size);
     std::uint64_t pair_capacity() const { return pair_capacity_; }
     std::uint64_t largest_pair_capacity() const;

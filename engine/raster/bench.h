@@ -1,5 +1,5 @@
-// Times the rasterizer and measures its error against the plain double version, so that speed can be shown
-// beside error.
+// Times the rasterizer and measures its error against the plain double version, so that speed stands beside
+// error.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Noise and differences.
+// Noise pictures and relative differences.
 #include "engine/raster/bench_tools.h"
 
 #include <cmath>

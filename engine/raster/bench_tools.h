@@ -1,4 +1,4 @@
-// What the rasterizer's benches share: a picture's gradient, a difference.
+// Tools of the rasterizer's benches: a picture's gradient, a difference.
 #pragma once
 
 #include <span>
@@ -7,10 +7,11 @@
 
 namespace gse::raster {
 
-/// A gradient image like a loss would send: noise of unit size.
+/// A gradient image like that of a loss: noise of unit size.
 Image noise_image(int width, int height);
 
-/// |found - expected| / |expected|, both as Euclidean lengths; not divided where nothing is expected.
+/// Relative difference |found - expected| / |expected| of Euclidean lengths. Not divided if `expected` is
+/// zero.
 double relative_error(std::span<const float> found, std::span<const float> expected);
 
 }  // namespace gse::raster

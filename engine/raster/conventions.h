@@ -1,4 +1,4 @@
-// Numbers of the image formation that every version of the rasterizer shares (goldens_raster/README.md).
+// Numbers of the image formation that every version of the rasterizer shares.
 #pragma once
 
 namespace gse::raster {

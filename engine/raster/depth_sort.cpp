@@ -1,4 +1,4 @@
-// Least-significant-digit radix sort; every part of the input keeps its order, so ties stay as they were.
+// Least-significant-digit radix sort. Every part of the input keeps its order, so ties stay in place.
 #include "engine/raster/depth_sort.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ void DepthSort::count_digits(std::size_t part) {
     for (std::size_t i = part_begin(part); i < end; ++i) ++counts[from_[i].key >> shift_ & (Buckets - 1)];
 }
 
-/// Counts -> first places; false when one bucket holds everything and the pass would change nothing.
+/// Counts -> first places. Returns false when one bucket holds everything and the pass would change nothing.
 bool DepthSort::prefix_sums() {
     std::uint32_t place = 0;
     for (std::size_t bucket = 0; bucket < Buckets; ++bucket) {

@@ -1,5 +1,4 @@
-// Stable radix sort of 32-bit keys with their indices: three passes of 11 bits, in parallel when there is
-// enough to do.
+// Stable radix sort of 32-bit keys with their indices: three passes of 11 bits, in parallel for many items.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +20,7 @@ public:
     /// Room for `count` items, to be filled by the caller.
     std::vector<Item>& items(std::size_t count);
 
-    /// Sorts the first `count` items; returns their indices in order (valid until the next call).
+    /// Sorts the first `count` items. Returns their indices in order (valid until the next call).
     const std::vector<std::uint32_t>& sort(std::size_t count);
 
 private:

@@ -12,7 +12,7 @@
 namespace gse::raster {
 namespace {
 
-/// Grows, never shrinks: what was allocated once stays.
+/// Makes room. Memory grows and never shrinks.
 template <class Values> void at_least(Values& values, std::size_t count) {
     if (values.size() < count) values.resize(count);
 }
@@ -52,7 +52,7 @@ void Frame::prepare(const GaussianSpans& gaussians, const Camera& camera, const 
     fill_tiles();
 }
 
-/// Looks at every coefficient at most once for as long as it is remembered.
+/// True when all coefficients are finite. Looks at each at most once for as long as the answer is cached.
 bool Frame::has_finite_colours(const GaussianSpans& gaussians) {
     constexpr float largest =
         1e30f;  // a colour is the sum of 16 coefficients, none counting more than 3 times
@@ -89,7 +89,7 @@ void Frame::project_chunk(std::size_t chunk) {
     chunk_unusable_[chunk] = job.unusable;
 }
 
-/// While the chunk's records are still in the cache.
+/// Counts the tiles while the chunk's records are still in the cache.
 void Frame::bin_chunk(std::size_t chunk, unsigned worker) {
     std::vector<TilePair>& pairs = pairs_[chunk];
     BinJob job{};
@@ -156,7 +156,7 @@ void Frame::fill_tiles() {
 }
 
 /// Calls body(record, its range, its pairs) for places of the depth order from `begin` to `end`, which may be
-/// the lower one. What a record points to is asked for some records before.
+/// the lower one. Memory of a record is prefetched some records before.
 template <class Body> void Frame::for_places(std::size_t begin, std::size_t end, const Body& body) const {
     constexpr std::size_t far_ahead = 48, ahead = 20;
     const std::size_t count = begin < end ? end - begin : begin - end;

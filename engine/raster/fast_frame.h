@@ -14,8 +14,8 @@
 
 namespace gse::raster {
 
-/// More than this is not found in a cache again: it is written straight to memory, and its lines need not be
-/// fetched before.
+/// Bytes beyond which an array does not stay in a cache. It is written straight to memory, without fetching
+/// its lines.
 inline constexpr std::size_t CachedBytes = std::size_t{32} << 20;
 
 /// Slot of partial gradients of one (tile, Gaussian).
@@ -27,13 +27,13 @@ class Frame {
 public:
     Frame(const Kernels& kernels, ThreadPool& pool);
 
-    /// Projects, sorts and bins. `values`, if not empty, replaces the colours (in the red channel). Colours
-    /// that are not wanted are left out where all are known to be finite: what is drawn is the same.
+    /// Use of the colours of a view. Unwanted ones are left out if all are known to be finite. The drawn
+    /// Gaussians are equal in both cases.
     enum class Colours { Wanted, Unwanted };
     void prepare(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings,
                  std::span<const float> values = {}, Colours colours = Colours::Wanted);
 
-    /// Blends every tile into lights(); calls finish(tile, scratch) on the thread that did it.
+    /// Blends every tile into lights(). Calls finish(tile, scratch) on its thread.
     using TileDone = void (*)(void* context, std::size_t tile, const BlendScratch& scratch);
     void blend(TileDone finish, void* context);
 
@@ -71,13 +71,13 @@ public:
         return (pair_count() - first_slot_) * sizeof(PartialSlot) > CachedBytes;
     }
 
-    /// Rows are handled in chunks; a chunk's records lie densely at its first row's place.
+    /// Places of a chunk's records. Rows are handled in chunks; a chunk's records lie densely at its first
+    /// row's place.
     static constexpr std::size_t ChunkRows = 1024;
     std::size_t chunk_count() const { return (rows_ + ChunkRows - 1) / ChunkRows; }
     /// The chunk's records from first_active() on.
     std::span<const Record> active_records(std::size_t chunk) const;
-    /// The pairs of a record; places are in its chunk's, and slot_shift(chunk) makes slots of them (modulo
-    /// 2^32).
+    /// Pairs of a record. Places are in its chunk's; slot_shift(chunk) makes slots of them (modulo 2^32).
     const PairRange* ranges(const Record* record) const {
         return ranges_.data() + (record - records_.data());
     }

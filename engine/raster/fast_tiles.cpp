@@ -39,7 +39,7 @@ bool is_whole(const TileArea& tile) {
     return tile.x + TileSize <= tile.width && tile.y + TileSize <= tile.height;
 }
 
-/// for_pixels, four at once, of a tile that is inside the picture.
+/// for_pixels(), four at once, for a tile inside the picture.
 template <class Body> void for_quads(const TileArea& tile, Body&& body) {
     for (std::size_t y = 0; y < TileSize; ++y) {
         const std::size_t line =
@@ -49,7 +49,7 @@ template <class Body> void for_quads(const TileArea& tile, Body&& body) {
     }
 }
 
-/// Whether the coefficients' gradients are too many for the caches, and each row's are whole cache lines.
+/// True when the coefficients' gradients exceed the caches, and each row's are whole cache lines.
 bool is_past_caches(const Frame& frame, const Gradients& output) {
     constexpr std::size_t line_floats = CacheLine / sizeof(float);
     const std::size_t stride = frame.source().sh_stride;

@@ -1,5 +1,4 @@
-// What the fast rasterizer and its view sessions do with the pixels of a tile and with the gradients of a
-// chunk of rows.
+// Pixels of a tile and gradients of a chunk of rows, shared by the fast rasterizer and its view sessions.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +21,7 @@ inline TileArea tile_area(const Frame& frame, std::size_t tile) {
     return {frame.tile_x(tile), frame.tile_y(tile), frame.width(), frame.height()};
 }
 
-/// Calls body(local, pixel) for the pixels of a tile that are inside the image; local is in block order.
+/// Calls body(local, pixel) for the pixels of a tile that are inside the image. `local` is in block order.
 template <class Body> void for_pixels(const TileArea& tile, Body&& body) {
     const int columns = std::min(TileSize, tile.width - tile.x),
               rows = std::min(TileSize, tile.height - tile.y);
@@ -35,7 +34,7 @@ template <class Body> void for_pixels(const TileArea& tile, Body&& body) {
     }
 }
 
-/// The derivative of the loss by the picture; `alpha` may be null.
+/// Derivative of the loss by the picture. `alpha` may be null.
 struct PictureSlope {
     const Image* colour = nullptr;
     const Image* alpha = nullptr;
@@ -49,15 +48,15 @@ void resize_output(int width, int height, ForwardOutput& output);
 void write_tile(const TileArea& tile, std::uint32_t blocks, const TileLight& light,
                 const BlendScratch& scratch, const std::array<float, 3>& background, ForwardOutput& output);
 
-/// Fills what the backward kernel reads of a tile: slopes, and the light weighted with them.
+/// Fills the inputs of the backward kernel for a tile: slopes, and the light weighted with them.
 void load_slopes(const TileArea& tile, const TileLight& light, const PictureSlope& slope,
                  BackwardScratch& scratch);
 
-/// Gives every array of the gradients its size; nothing is cleared.
+/// Gives every array of the gradients its size. Nothing is cleared.
 void resize_gradients(std::size_t rows, std::size_t sh_stride, Gradients& output);
 
-/// Gradients of the rows of one chunk from `first_row` on, whose partial sums are in the frame's slots; zeros
-/// for those that were not drawn. Index 0 of the output belongs to `first_row`.
+/// Gradients of the rows of one chunk from `first_row` on, from the partial sums in the frame's slots. Rows
+/// that were not drawn get zeros. Index 0 of the output belongs to `first_row`.
 void write_gradients(const Kernels& kernels, Frame& frame, std::size_t chunk, std::size_t first_row,
                      Gradients& output);
 

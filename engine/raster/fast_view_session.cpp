@@ -1,12 +1,11 @@
-// Continuing a prepared view. The same kernels see the same entries in the same order as when every row is
-// prepared, less what cannot matter, so every bit of the result is the same. In forward and backward, blocks
-// of 4x4 pixels that no changing row reaches are left out altogether.
+// Continuation of a prepared view. The kernels see the entries of a full preparation in their order, less
+// those without effect. Every bit of the result is equal. In forward and backward, blocks of 4x4 pixels that
+// no changing row reaches are left out altogether.
 //
 // Runs of fixed rows before the first and behind the last changing row of a tile are walked, not kept as
-// composited pixels (method E4). What lies behind depends on where the transmittance is cut, so it would not
-// be exact; in the gradient, what lies before would be rounded otherwise. For nothing, both would save an
-// iteration at most 4 of the 17 hundredths of the full work that it costs with 5 % of 500k rows changing at
-// 512x512 (the exact one of them, the front in forward(), at most 1), and take 7 KB a tile.
+// composited pixels. Pixels behind depend on the place where the transmittance is cut, so keeping them would
+// not be exact. In the gradient, pixels before would be rounded otherwise. The gain would be small for 7 KB a
+// tile (SKIPS.md, E4).
 #include "engine/raster/fast_view_session.h"
 
 #include <algorithm>
@@ -75,7 +74,7 @@ void FastViewSession::forward(std::size_t view, const GaussianSpans& gaussians, 
     }
 }
 
-/// False when the view has to be rendered in full.
+/// Returns false when the view has to be rendered in full.
 bool FastViewSession::continue_view(View& view, const GaussianSpans& gaussians, const Camera& camera,
                                     const Settings& settings) {
     Settings settled = with_depth_range(settings, gaussians, camera);
@@ -132,7 +131,7 @@ void FastViewSession::find_live_tiles() {
     }
 }
 
-/// Merges both depth orders; at equal depth the fixed rows, whose numbers are smaller, come first. Also lays
+/// Merges both depth orders. At equal depth the fixed rows, whose numbers are smaller, come first. Also lays
 /// out the lists.
 void FastViewSession::place_records() {
     grow_to(places_, frame_.row_count());
@@ -152,8 +151,7 @@ void FastViewSession::place_records() {
     grow_to(lights_, live_.size());
 }
 
-/// The tile's list of both, front to back, without the fixed rows that share no block with a row that
-/// changes.
+/// Merged list of the tile, front to back. Fixed rows that share no block with a changing row are left out.
 void FastViewSession::merge(LiveTile& live) {
     const auto split = static_cast<std::uint32_t>(cache_->records().size());
     const auto changing = frame_.entries(live.tile);

@@ -1,5 +1,5 @@
-// The view session of the fast rasterizer: fixed rows from caches, the others projected, merged in by depth,
-// and blended in the blocks that they reach.
+// View session of the fast rasterizer. Fixed rows come from caches. The others are projected, merged in by
+// depth, and blended in the blocks that they reach.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace gse::raster {
 
-/// What the session shares with its rasterizer; all of it must outlive it.
+/// Parts that the session shares with its rasterizer, which must outlive it.
 struct FastParts {
     Rasterizer& rasterizer;  // for the pictures that are rendered in full
     const Kernels& kernels;
@@ -36,7 +36,7 @@ private:
         bool full =
             false;  // rendered in full until forget(): too large for the budget, or prepared too often
     };
-    /// A tile that a row which changes reaches.
+    /// Tile that a changing row reaches.
     struct LiveTile {
         std::uint32_t tile = 0;
         std::uint32_t blocks = 0;  // that are reached

@@ -1,5 +1,5 @@
-// The innermost loops and memory, timed on all threads at once: threads that share a core or a memory bus
-// slow each other down, and so they do in the rasterizer.
+// Timing of the innermost loops and of memory, on all threads at once. Threads that share a core or a memory
+// bus slow each other down, as in the rasterizer.
 #include "engine/raster/floor_bench.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
-// The least time that forward and backward could take on this machine: the innermost loops alone with
-// everything in the first cache, the handling of lists with a record fetched per tile and Gaussian from where
-// a scene's records lie, and memory bandwidth, times the work that was counted.
+// Least time that forward and backward could take on this machine, from the work that was counted. It adds
+// the innermost loops alone with everything in the first cache, the handling of lists, and memory bandwidth.
+// Lists fetch a record per tile and Gaussian from where a scene's records lie.
 #pragma once
 
 #include <array>
@@ -13,11 +13,11 @@ namespace gse::raster {
 
 struct Kernels;
 
-/// Blocks per (tile, Gaussian) for which the backward loop is timed; its sums are added up once per (tile,
+/// Blocks per (tile, Gaussian) for which the backward loop is timed. Its sums are added up once per (tile,
 /// Gaussian).
 inline constexpr std::array<int, 5> FloorBlocks{1, 2, 4, 8, 16};
 
-/// Nanoseconds of one thread while all of them run, and what they read from memory together.
+/// Nanoseconds of one thread while all of them run, and their common reads from memory.
 struct KernelFloor {
     double forward_ns = 0;                                 // per 4x4 block and Gaussian
     std::array<double, FloorBlocks.size()> backward_ns{};  // the same, by FloorBlocks
@@ -35,7 +35,7 @@ struct FloorWork {
     unsigned threads = 1;
 };
 
-/// Milliseconds, the work shared evenly among the threads.
+/// Milliseconds, with the work shared evenly among the threads.
 struct FloorStep {
     double forward_blend = 0, backward_blend = 0;
     double lists = 0;           // block masks and a scene's records, forward and backward
@@ -49,10 +49,10 @@ FloorStep floor_step(const KernelFloor& kernel, const FloorWork& work);
 /// Times the loops, each for some milliseconds on all threads at once.
 class FloorBench {
 public:
-    /// `records`: rows that are drawn, each of which has one.
+    /// `records` is the number of drawn rows, each with one record.
     FloorBench(const Kernels& kernels, ThreadPool& pool, std::size_t records);
     ~FloorBench();
-    /// Measures once more; what was least stays.
+    /// Measures once more. The least times stay.
     void measure();
     const KernelFloor& least() const { return least_; }
 

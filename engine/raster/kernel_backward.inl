@@ -1,14 +1,14 @@
-// Kernel part 5: the derivative of one tile's blending with respect to its records, and the weights of
-// contributions. Both walk the tile's list in forward order and write one slot of sums per (tile, Gaussian);
-// slots are added up later in a fixed order, so no result depends on which thread had which tile.
+// Kernel part 5: derivative of one tile's blending with respect to its records, and the weights of
+// contributions. Both walk the tile's list in forward order and write one slot of sums per (tile, Gaussian).
+// Slots are added up later in a fixed order, so no result depends on the thread of a tile.
 
-/// Sums over pixels of g and w times what PartialSum names (g = dL/d ln alpha, w = alpha T).
+/// Sums over pixels of g and w times the factors in PartialSum (g = dL/d ln alpha, w = alpha T).
 struct Sums {
     F s[10];
 };
 
-/// One register of pixels of one active Gaussian. Remaining-light form of the
-/// derivative: dL/dalpha = T (c.v) - R / (1 - alpha) with R the gradient-weighted light behind the pair.
+/// One register of pixels of one active Gaussian. Remaining-light form of the derivative: dL/dalpha = T (c.v)
+/// - R / (1 - alpha). R is the gradient-weighted light behind the pair.
 GSE_INLINE void backward_pixels(const Record& r, int pixel, const PixelGrid& grid, BackwardScratch& scratch,
                                 Sums& sums, M& blended) {
     const Sample s = sample(r, load(grid.x + pixel), load(grid.y + pixel));
@@ -37,7 +37,7 @@ GSE_INLINE void backward_pixels(const Record& r, int pixel, const PixelGrid& gri
     blended = blended | (live & s.touched);
 }
 
-/// The same pixels of a Gaussian that wants no gradient: it only takes its light.
+/// Pixels of a Gaussian that wants no gradient: it only takes its light.
 GSE_INLINE void pass_pixels(const Record& r, int pixel, const PixelGrid& grid, BackwardScratch& scratch) {
     const Sample s = sample(r, load(grid.x + pixel), load(grid.y + pixel));
     const F before = load(scratch.transmittance + pixel);
@@ -80,7 +80,7 @@ GSE_INLINE void stream_zeros(float*, std::size_t) {}
 GSE_INLINE void end_streams() {}
 #endif
 
-/// store_sums and clear_slot of a job's slot; there may be too many for the caches.
+/// store_sums and clear_slot of a job's slot. Slots may be too many for the caches.
 GSE_INLINE void fill_slot(const BackwardJob& job, const TileEntry& entry, const F* sums) {
     if (HasStreams && job.past_caches) return stream_sums(sums, slot_of(job, entry));
     store_sums(sums, slot_of(job, entry));
@@ -91,7 +91,7 @@ GSE_INLINE void empty_slot(const BackwardJob& job, const TileEntry& entry) {
     clear_slot(slot_of(job, entry));
 }
 
-/// Slots of the active entries in [begin, end), which nothing reached.
+/// Clears the slots of the active entries in [begin, end), which nothing reached.
 static void clear_rest(const BackwardJob& job, std::uint32_t begin, std::uint32_t end) {
     for (std::uint32_t i = begin; i < end; ++i)
         if (job.entries[i].record >= job.first_record) empty_slot(job, job.entries[i]);
@@ -126,8 +126,8 @@ GSE_INLINE void pass_record(const Record& r, std::uint32_t blocks, const PixelGr
     }
 }
 
-/// Where each block has nothing more to say: behind its last active entry, and where its light ended. Blocks
-/// without an active entry say nothing at all.
+/// End of each block's work: behind its last active entry, and at the end of its light. Blocks without an
+/// active entry have no work.
 struct Reach {
     std::uint32_t ends[16];
     std::uint32_t last_active;  // behind the last active entry of the tile
@@ -151,7 +151,7 @@ GSE_INLINE Reach find_reach(const BackwardJob& job) {
     return reach;
 }
 
-/// The blocks that reach beyond entry i; `until` becomes the entry where the first of them ends.
+/// Blocks that reach beyond entry i. `until` becomes the entry at which the first of them ends.
 GSE_INLINE std::uint32_t blocks_beyond(const Reach& reach, std::uint32_t i, std::uint32_t& until) {
     std::uint32_t blocks = 0;
     until = 0xffffffff;

@@ -1,6 +1,6 @@
-// Kernel part 3: which 16x16 tiles and which 4x4 blocks of them an ellipse touches, exactly: per band of four
-// pixel rows the ellipse's largest extent in x, on pixel centres. Most ellipses lie within 2x2 tiles: W of
-// them are cut at once, band by band. The others are cut one by one, W bands at once.
+// Kernel part 3: the 16x16 tiles and their 4x4 blocks that an ellipse touches, exactly. Per band of four
+// pixel rows it takes the ellipse's largest extent in x, on pixel centres. Most ellipses lie within 2x2
+// tiles: W of them are cut at once, band by band. The others are cut one by one, W bands at once.
 
 constexpr float BinMargin = 0.01f;  // pixels, so that rounding can never drop a pair
 constexpr int BandLanes = F::W < 4 ? 4 : F::W;
@@ -79,7 +79,7 @@ GSE_INLINE float clamp_to(float value, float high) {
     return value > 0.0f ? (value < high ? value : high) : 0.0f;
 }
 
-/// One Gaussian of any size; returns false when `pairs` may not suffice.
+/// One Gaussian of any size. Returns false when `pairs` may not suffice.
 static bool bin_large(const Record& record, BinJob& job) {
     const int block_columns = (job.width + BlockSize - 1) / BlockSize;
     const std::uint32_t tile_columns = static_cast<std::uint32_t>((job.width + TileSize - 1) / TileSize);
@@ -108,21 +108,21 @@ static bool bin_large(const Record& record, BinJob& job) {
     return true;
 }
 
-/// The blocks of W Gaussians in the 2x2 tiles from `tile` on, row by row; of those that do not fit there,
-/// `fits` says so.
+/// Blocks of W Gaussians in the 2x2 tiles from `tile` on, row by row. `fits` is false for those that need
+/// more tiles.
 struct alignas(64) SmallFootprints {
     std::int32_t blocks[4][F::W];
     std::int32_t tile[F::W];
     std::int32_t fits[F::W];
 };
 
-/// What the bands of W Gaussians share.
+/// Values that the bands of W Gaussians share.
 struct SmallCut {
     F reach, inverse_l1, slope, half_height;
     F base, columns;  // first block column; those of the picture
 };
 
-/// Bits 0..7: the block columns of one band from `base` on; the sums are those of cut_bands.
+/// Bits 0..7: the block columns of one band from `base` on. The sums are those of cut_bands.
 GSE_INLINE I band_bits(const RecordColumns& r, const SmallCut& c, F first_row) {
     const F nought = zero(), quarter = set(1.0f / BlockSize);
     const F low = first_row - load(r.y), high = low + set(static_cast<float>(BlockSize - 1));
@@ -140,7 +140,7 @@ GSE_INLINE I band_bits(const RecordColumns& r, const SmallCut& c, F first_row) {
     return bit_range(hit, max(first, nought), min(last, set(7.0f)));
 }
 
-/// Four bands of eight columns -> the 4x4 blocks of the left tile; of the right one when they were shifted by
+/// Four bands of eight columns -> the 4x4 blocks of the left tile, or of the right one for bands shifted by
 /// four columns.
 GSE_INLINE I tile_blocks(I bands) {
     I x = bands & set_int(0x0f0f0f0f);
@@ -181,7 +181,7 @@ static void cut_small(const RecordColumns& r, const BinJob& job, SmallFootprints
     }
 }
 
-/// Writes all four and keeps those that are touched: nothing here can be predicted.
+/// Writes all four and keeps those that are touched. Nothing here can be predicted.
 GSE_INLINE void emit_small(const SmallFootprints& small, int lane, std::uint32_t tile_columns, BinJob& job) {
     const auto tile = static_cast<std::uint32_t>(small.tile[lane]);
     for (std::uint32_t k = 0; k < 4; ++k) {

@@ -1,5 +1,5 @@
-// Kernel part 4: blending one tile. Forward: block by block with the sums in registers. Backward and
-// contributions: Gaussian by Gaussian in the same order, so that the horizontal sums are paid once per (tile,
+// Kernel part 4: blending one tile. Forward goes block by block with the sums in registers. Backward and
+// contributions go Gaussian by Gaussian in that order, so that horizontal sums are paid once per (tile,
 // Gaussian).
 
 constexpr float CutExponent = static_cast<float>(-Log2Of255);
@@ -24,7 +24,7 @@ GSE_INLINE void fill_grid(int x, int y, PixelGrid& grid) {
     }
 }
 
-/// 1 inside the image; 0 outside, where nothing can be blended any more.
+/// Light at the start: 1 inside the image; 0 outside, where nothing can be blended any more.
 GSE_INLINE void start_transmittance(int width, int height, const PixelGrid& grid, float* transmittance) {
     const F right = set(static_cast<float>(width)), bottom = set(static_cast<float>(height)), one = set(1.0f);
     for (int pixel = 0; pixel < TilePixels; pixel += F::W) {
@@ -33,7 +33,7 @@ GSE_INLINE void start_transmittance(int width, int height, const PixelGrid& grid
     }
 }
 
-/// A Gaussian at W pixels. Forward and backward call the same function, so they take the same decisions.
+/// One Gaussian at W pixels. Forward and backward call this one function, so they take equal decisions.
 struct Sample {
     F u, v;
     F alpha;    // 0 where the pair is too faint
@@ -54,8 +54,8 @@ GSE_INLINE Sample sample(const Record& r, F px, F py) {
     return s;
 }
 
-/// Runs a list over W pixels; returns how many of its entries it took until none of them let light through,
-/// or the length if some still do, which `alive` says.
+/// Runs a list over W pixels. Returns how many entries it took until none of the pixels let light through. If
+/// some still do (`alive`), it returns the length.
 GSE_INLINE std::uint32_t blend_pixels(const BlendJob& job, const std::uint16_t* list, std::uint32_t length,
                                       int pixel, const PixelGrid& grid, bool& alive) {
     TileLight& light = *job.light;

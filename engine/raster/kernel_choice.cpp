@@ -1,4 +1,4 @@
-// Picks the instruction set at run time; compiled without any special flags so that it runs everywhere.
+// Picks the instruction set at run time. Compiled without any special flags so that it runs everywhere.
 #include <cstdlib>
 #include <string>
 #include <vector>
@@ -15,7 +15,7 @@ struct Candidate {
     bool runs_here;
 };
 
-/// Best first.
+/// Instruction sets, best first.
 std::vector<Candidate> all_candidates() {
 #ifdef GSE_X86
     const bool avx2 = __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0;

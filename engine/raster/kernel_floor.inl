@@ -1,6 +1,6 @@
-// Kernel part 7: the innermost loops of blending alone, with nothing around them and everything in the first
-// cache, and records gathered from where a scene's lie. They are the loops that pictures are made with, so a
-// faster kernel lowers the floor, too.
+// Kernel part 7: the innermost loops of blending alone, with everything in the first cache, and records
+// gathered from a scene's memory. Pictures are made with these loops, so a faster kernel lowers the floor,
+// too.
 
 /// Every block of a tile takes all records, from full transmittance.
 static std::size_t floor_forward(FloorScratch& scratch, const PixelGrid& grid) {
@@ -59,8 +59,7 @@ static std::size_t floor_gather(FloorScratch& scratch) {
     return FloorRecords;
 }
 
-/// The same out of a scene's records, which lie where so many lie: in the second or third cache, or in
-/// memory.
+/// Loop over a scene's records, which lie in the second or third cache, or in memory.
 static std::size_t floor_scene_gather(const FloorJob& floor, std::uint32_t round) {
     FloorScratch& scratch = *floor.scratch;
     const BlendJob job = {{floor.records, nullptr, NoSplit},

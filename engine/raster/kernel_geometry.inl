@@ -1,13 +1,13 @@
-// Kernel part 1: raw parameters of W Gaussians -> scale and opacity in float lanes (they are no more exact
-// than the parameters), everything from there up to the projected covariance in double lanes, and the
-// spherical harmonics in float lanes. Included inside the namespace of an instruction set.
+// Kernel part 1: the geometry and colours of W Gaussians from their raw parameters. Scale and opacity are in
+// float lanes, as exact as the parameters. Everything from there up to the projected covariance is in double
+// lanes. Spherical harmonics are in float lanes. Included inside the namespace of an instruction set.
 
 constexpr double Ln2 = 0.69314718055994530942;
 constexpr double Log2E = 1.44269504088896340736;
 constexpr double Log2Of255 = 7.99435343685885793770;
 
 #ifndef GSE_SCALAR_MATH
-/// exp for |a| < 85: 2^n times a minimax polynomial on [-ln 2 / 2, ln 2 / 2] (Cephes, expf), relative error
+/// exp for |a| < 85: 2^n times a minimax polynomial on [-ln 2 / 2, ln 2 / 2] (Cephes, expf). Relative error
 /// 9e-8.
 GSE_INLINE F exp_lanes(F a) {
     const F n = floor(fma(a, set(static_cast<float>(Log2E)), set(0.5f)));
@@ -21,7 +21,7 @@ GSE_INLINE F exp_lanes(F a) {
     return scale_by_power(fma(p, x * x, x) + set(1.0f), n);
 }
 
-/// log2 of a positive normal number: exponent plus the atanh series of the mantissa, absolute error 4e-7 on
+/// log2 of a positive normal number: exponent plus the atanh series of the mantissa. Absolute error 4e-7 on
 /// [1/255, 1].
 GSE_INLINE F log2_lanes(F a) {
     F exponent = exponent_of(a), mantissa = mantissa_of(a);
@@ -73,7 +73,7 @@ struct Vec3D {
 
 GSE_INLINE D dot3(const Vec3D& a, const Vec3D& b) { return fma(a.z, b.z, fma(a.y, b.y, a.x * b.x)); }
 
-/// The chain from raw parameters to the blurred covariance (plain_projection.cpp says it in words).
+/// The chain from raw parameters to the blurred covariance (in words: plain_projection.cpp).
 struct Geometry {
     Vec3D offset;  // position - eye, world
     D x, y, z;     // camera frame
@@ -90,7 +90,7 @@ struct Geometry {
 
 GSE_INLINE F absolute(F a) { return max(a, zero() - a); }
 
-/// Lanes whose numbers mean something; log-scale -inf and logit +-inf do.
+/// Lanes whose numbers have a meaning. Log-scale -inf and logit +-inf do.
 GSE_INLINE M usable_lanes(const RawBatch& raw) {
     const F largest = set(3.40282346638528859812e38f), farthest = set(static_cast<float>(PositionLimit));
     M good = absolute(load(raw.position[0])) <= farthest;
@@ -101,7 +101,7 @@ GSE_INLINE M usable_lanes(const RawBatch& raw) {
     return good & (logit <= logit);
 }
 
-/// Scale and opacity of a batch: no more exact than the parameters.
+/// Scale and opacity of a batch, as exact as the parameters.
 struct alignas(64) Shape {
     float scale[3][F::W];
     float opacity[F::W];       // sigmoid only
@@ -132,7 +132,7 @@ GSE_INLINE void place(const RawBatch& raw, int at, const Viewpoint& view, Geomet
     g.inverse_z = setd(1.0) / g.z;
 }
 
-/// In double: at the ends of a needle an angle of a float's rounding is some of its width.
+/// Rotation in double: at the ends of a needle, a float's rounding of the angle is some of its width.
 GSE_INLINE void orient(const RawBatch& raw, const Shape& shape, int at, Geometry& g) {
     for (int k = 0; k < 4; ++k) g.q[k] = widen(raw.rotation[k] + at);
     const D squared = fma(g.q[3], g.q[3], fma(g.q[2], g.q[2], fma(g.q[1], g.q[1], g.q[0] * g.q[0])));

@@ -1,5 +1,5 @@
-// Kernel part 6: sums of the pixels -> gradients of the raw parameters, W Gaussians at a time (the derivative
-// of kernel_geometry.inl; plain_projection.cpp is the plain twin).
+// Kernel part 6: sums of the pixels -> gradients of the raw parameters, W Gaussians at a time. Derivative of
+// kernel_geometry.inl; plain_projection.cpp is the plain twin.
 
 struct alignas(64) GradientBatch {
     RawBatch raw;
@@ -13,7 +13,7 @@ struct alignas(64) GradientBatch {
     float coefficients[48][F::W], coefficient_gradients[48][F::W];
 };
 
-/// Sums that are not finite (only overflow could make them so) count as nothing.
+/// Replaces sums that are not finite by zero. Only overflow can make them so.
 GSE_INLINE void keep_finite_sums(GradientBatch& batch) {
     const F largest = set(3.40282346638528859812e38f);
     for (int k = 0; k <= SumGvv; ++k)
@@ -232,7 +232,7 @@ static void write_gradients(const GradientJob& job, GradientBatch& batch) {
     store_columns(batch.coefficient_gradients[0], job.view->sh_count * 3, sh, batch.raw.size);
 }
 
-/// Zeros for rows [begin, end), of which there are few at a time.
+/// Zeros for rows [begin, end), few at a time.
 static void clear_rows(const GradientJob& job, std::size_t begin, std::size_t end) {
     if (begin >= end) return;
     const std::size_t stride = job.source.sh_stride;
@@ -249,8 +249,7 @@ static void clear_rows(const GradientJob& job, std::size_t begin, std::size_t en
     __builtin_memset(job.out.sh + (begin - job.out_row) * stride, 0, (end - begin) * stride * sizeof(float));
 }
 
-/// Asks for the coefficients of a row, and for the places of its gradients and of those before it from
-/// `asked` on.
+/// Prefetches the coefficients of a row, and the gradients of this and earlier rows from `asked` on.
 GSE_INLINE void prefetch_gradients(const GradientJob& job, std::size_t row, std::size_t& asked) {
     const std::size_t stride = job.source.sh_stride;
     prefetch_floats<0>(job.source.sh + row * stride, job.view->sh_count * 3);

@@ -1,4 +1,4 @@
-// Kernel part 2: rows -> records: ellipses in double lanes, then extents, and the colours of what is left, in
+// Kernel part 2: rows -> records. Ellipses are in double lanes, extents and the colours of visible rows in
 // float lanes.
 
 /// Fields of W records, one after the other.
@@ -21,8 +21,8 @@ struct alignas(64) RecordBatch {
     int size;
 };
 
-/// Ellipse of one half batch: centre and Cholesky factor; of its extent, what finish_records needs. Returns
-/// the lanes that have one.
+/// Ellipse of one half batch: centre, Cholesky factor, and the part of its extent that finish_records needs.
+/// Returns the lanes that have one.
 GSE_INLINE MD project_records(const Viewpoint& view, const Geometry& g, int at, RecordBatch& out) {
     constexpr double longest = 1e36;  // px^2; squares beyond a float's range are as long as this
     if (view.antialiased) narrow(out.dimming + at, sqrt(g.raw_determinant / g.determinant));
@@ -44,7 +44,7 @@ GSE_INLINE MD project_records(const Viewpoint& view, const Geometry& g, int at, 
            (g.determinant > setd(DeterminantCut));
 }
 
-/// Opacity and extent of the batch; returns the lanes that may show in the picture.
+/// Opacity and extent of the batch. Returns the lanes that may show in the picture.
 GSE_INLINE M finish_records(const Viewpoint& view, const Shape& shape, RecordBatch& out) {
     F opacity = load(shape.opacity);
     if (view.antialiased) opacity = opacity * load(out.dimming);
@@ -66,8 +66,8 @@ GSE_INLINE M finish_records(const Viewpoint& view, const Shape& shape, RecordBat
 
 constexpr float UnusableMark = 1.0f;  // as log2(opacity), which is never positive
 
-/// Colours of the batch, clamped at 0. Lanes without a finite one are marked and counted (so that what is
-/// drawn is the same whether colours or values are composited).
+/// Colours of the batch, clamped at 0. Lanes without a finite one are marked and counted. The drawn Gaussians
+/// then do not depend on compositing colours or values.
 static void colour_batch(const ProjectJob& job, RecordBatch& batch) {
     const int sh_count = job.view->sh_count;
     alignas(64) float coefficients[48][F::W];
@@ -88,7 +88,7 @@ static void colour_batch(const ProjectJob& job, RecordBatch& batch) {
         store(batch.columns.colour[channel], max(colour[channel], zero()));
 }
 
-/// The first `size` lanes, with their colours, into their records.
+/// Writes the first `size` lanes, with their colours, into their records.
 static void write_records(const ProjectJob& job, RecordBatch& batch) {
     if (batch.size == 0) return;
     for (int lane = batch.size; lane < F::W; ++lane) {
@@ -105,7 +105,7 @@ static void write_records(const ProjectJob& job, RecordBatch& batch) {
     batch.size = 0;
 }
 
-/// Takes out what is marked; the keys of the rest.
+/// Takes out marked records and writes the keys of the rest.
 static void finish_keys(ProjectJob& job) {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < job.drawn; ++i) {
@@ -145,7 +145,8 @@ GSE_INLINE void append_lane(const RecordBatch& from, int lane, RecordBatch& to) 
     to.record[at] = from.record[lane];
 }
 
-/// Records of the drawn lanes: a batch of which most is drawn is written as it is, the others are collected.
+/// Records of the drawn lanes. A batch that is mostly drawn is written as it is; lanes of others are
+/// collected.
 GSE_INLINE void keep_drawn(ProjectJob& job, unsigned drawn, RecordBatch& found, RecordBatch& waiting) {
     const bool direct = 2 * __builtin_popcount(drawn) > F::W;
     const float* any_sh = job.source.sh + found.columns.row[__builtin_ctz(drawn)] * job.source.sh_stride;
@@ -166,14 +167,14 @@ GSE_INLINE void keep_drawn(ProjectJob& job, unsigned drawn, RecordBatch& found, 
     }
 }
 
-/// Asks for the coefficients of the next batch, of which most are drawn.
+/// Prefetches the coefficients of the next batch, most of which is drawn.
 GSE_INLINE void prefetch_coefficients(const ProjectJob& job, std::size_t row, std::size_t count) {
     const std::size_t end = !job.colours ? row : row + count < job.end ? row + count : job.end;
     for (; row < end; ++row)
         prefetch_floats<0>(job.source.sh + row * job.source.sh_stride, job.view->sh_count * 3);
 }
 
-/// Columns that nothing is written to; colours are not, where they are not wanted.
+/// Columns without a destination. Colours have none when nobody wants them.
 GSE_INLINE void clear_unset(RecordColumns& columns) {
     for (auto& column : columns.rest) store(column, zero());
     for (auto& channel : columns.colour) store(channel, zero());

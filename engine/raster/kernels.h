@@ -1,6 +1,6 @@
-// What the driver of the fast rasterizer and its per-instruction-set kernels share: plain structs and one
-// function table. No standard containers and no inline functions here: everything that is compiled with
-// special flags must stay in the file that has them, or the linker may pick its code for all.
+// Plain structs and one function table shared by the driver of the fast rasterizer and its kernels of each
+// instruction set. No standard containers and no inline functions are here. Code compiled with special flags
+// must stay in its own file, or the linker may pick it for all.
 #pragma once
 
 #include <cstddef>
@@ -14,9 +14,9 @@ inline constexpr int TilePixels = 256;    // in block order: [block 16][lane 16]
 inline constexpr int PartialStride = 16;  // floats per (tile, Gaussian) in the backward pass
 inline constexpr std::uint32_t BatchEntries = 256;
 
-/// Everything the pixels need to know about one Gaussian; one cache line. The ellipse is kept as its Cholesky
-/// factor in the log2 domain: u = l1 dx + l2 dy, v = l3 dy, log2(alpha) = log2_opacity - u^2 - v^2, which
-/// cannot lose its sign for needles as A dx^2 + 2 B dx dy + C dy^2 can.
+/// Pixel inputs of one Gaussian, in one cache line. The ellipse is kept as its Cholesky factor in the log2
+/// domain: u = l1 dx + l2 dy, v = l3 dy, log2(alpha) = log2_opacity - u^2 - v^2. Unlike A dx^2 + 2 B dx dy +
+/// C dy^2, this cannot lose its sign for needles.
 struct alignas(64) Record {
     float x, y;  // pixels
     float l1, l2, l3;
@@ -69,7 +69,7 @@ struct TilePair {
     std::uint32_t blocks;  // bit 4 row + column of the 4x4 blocks touched
 };
 
-/// The pairs of one record: a place in its chunk's and a number.
+/// Pairs of one record: a place in its chunk's pairs and their number.
 struct PairRange {
     std::uint32_t begin, count;
 };
@@ -109,7 +109,7 @@ struct alignas(64) BlendScratch {
     std::uint16_t lists[16][BatchEntries + 16];
 };
 
-/// Records by index: those below `split` lie in one array, the others in a second one.
+/// Records by index. Those below `split` lie in one array, the others in a second one.
 struct RecordTable {
     const Record* first;
     const Record* second;  // its first is record `split`
@@ -151,12 +151,12 @@ struct BackwardJob {
     bool past_caches;  // slots are written straight to memory
 };
 
-/// Order of the sums in a slot of partial gradients. g is dL/d ln(alpha), w the weight alpha T.
+/// Order of the sums in a slot of partial gradients. g is dL/d ln(alpha), w is the weight alpha T.
 enum PartialSum : int { SumG, SumGu, SumGv, SumGuu, SumGuv, SumGvv, SumRed, SumGreen, SumBlue, SumBlended };
 /// Order in the slots of contributions.
 enum ContributionSum : int { SumWeight, SumMasked };
 
-/// Where the raw-parameter gradients go.
+/// Destinations of the raw-parameter gradients.
 struct GradientArrays {
     float* position;
     float* log_scale;
@@ -167,7 +167,7 @@ struct GradientArrays {
     std::uint8_t* visible;
 };
 
-/// Sums the partial gradients of records [begin, end) and applies the chain rule; rows of [first_row,
+/// Sums the partial gradients of records [begin, end) and applies the chain rule. Rows of [first_row,
 /// end_row) that no pixel shows get zeros.
 struct GradientJob {
     Source source;
@@ -225,8 +225,8 @@ extern const Kernels Avx2Kernels;
 extern const Kernels Avx512Kernels;
 #endif
 
-/// The table of that name; of an empty one that which GSE_CPU forces, else the best this processor runs.
-/// Throws Error if the one asked for is unknown or cannot run here.
+/// Table of that name. An empty name is the choice of GSE_CPU, else the best this processor runs. Throws
+/// Error for one that is unknown or cannot run here.
 const Kernels& choose_kernels(const char* name);
 
 }  // namespace gse::raster

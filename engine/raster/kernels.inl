@@ -1,4 +1,4 @@
-// All kernels, in the order of use; included inside the namespace of an instruction set after its register
+// All kernels, in the order of use. Included inside the namespace of an instruction set after its register
 // types.
 // clang-format off
 #include "engine/raster/kernel_geometry.inl"

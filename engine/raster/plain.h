@@ -1,5 +1,4 @@
-// The plain double-precision rasterizer as functions: the truth that tests, finite differences and the bench
-// compare to.
+// The plain double-precision rasterizer as functions. Tests, finite differences and the bench compare to it.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +8,7 @@
 
 namespace gse::raster::plain {
 
-/// Splats in drawing order: by depth as a float, then by row (so that every version breaks ties alike).
+/// Splats in drawing order: by depth as a float, then by row, so that every version breaks ties alike.
 struct SplatList {
     std::vector<Splat> splats;
     std::size_t unusable_rows = 0;

@@ -18,15 +18,15 @@ struct Pair {
     double before = 0;     // transmittance in front of the pair
 };
 
-/// What the loop saw of a pair, blended or not, for those who want to mark close decisions.
+/// Values of a pair in the loop, blended or not, for callers that mark close decisions.
 struct Decision {
     std::size_t pixel = 0;
     double unclamped_alpha = 0;
     double after = 0;  // transmittance behind the pair
 };
 
-/// Behind two pairs at the alpha limit T is (1 - 0.99)^2, exactly the cut: they end the pixel, as in float,
-/// whatever 1 - 0.99 is rounded to.
+/// Transmittance at which a pixel ends, with room for rounding. Behind two pairs at the alpha limit it is
+/// (1 - 0.99)^2, exactly the cut. Both end the pixel as in float, however 1 - 0.99 is rounded.
 constexpr double LastCut = TransmittanceCut * (1 + 1e-12);
 
 template <class Visit, class Watch>

@@ -43,7 +43,7 @@ bool usable(const Inputs& in, std::size_t row) {
 
 double sigmoid(double logit) { return 1.0 / (1.0 + std::exp(-logit)); }
 
-/// Clamp of x/z to the frustum widened by the margin, as in gsplat: it follows the principal point.
+/// Clamp of x/z to the frustum widened by the margin, as in gsplat. It follows the principal point.
 double clamp_ratio(double ratio, double size, double focal, double centre) {
     const double margin = FrustumMargin * 0.5 * size / focal;
     return std::clamp(ratio, -(centre / focal + margin), (size - centre) / focal + margin);
@@ -136,7 +136,7 @@ void colour_backward(const Inputs& in, std::size_t row, const View& view,
         result.position[static_cast<std::size_t>(axis)] += tangent[axis] / colour.distance;
 }
 
-/// Symmetric 2x2 gradient of the blurred covariance; xy is half the derivative with respect to the entry.
+/// Symmetric 2x2 gradient of the blurred covariance. xy is half the derivative with respect to the entry.
 struct CovarianceGradient {
     double xx = 0, xy = 0, yy = 0;
 };
@@ -176,8 +176,8 @@ void rotation_backward(const Inputs& in, std::size_t row, const Geometry& g, con
                        (dz - z * radial) / n};
 }
 
-/// Camera-frame gradient through the centre of the splat and through the Jacobian (clamped as the forward
-/// is).
+/// Camera-frame gradient through the centre of the splat and through the Jacobian, which is clamped as in
+/// forward.
 Vec3 point_backward(const Geometry& g, const Camera& camera, const SplatGradient& d,
                     const Mat23& d_to_pixels) {
     const double x = g.camera_point.x, y = g.camera_point.y, z = g.camera_point.z;

@@ -12,14 +12,14 @@
 
 namespace gse::raster::plain {
 
-/// N Gaussians in double precision (finite differences need more digits than GaussianSpans has).
+/// N Gaussians in double precision. Finite differences need more digits than GaussianSpans has.
 struct Inputs {
     std::size_t size = 0;
     int sh_degree = 0;
     std::span<const double> position, log_scale, rotation, opacity_logit, sh;
 };
 
-/// What the pixels need to know about one Gaussian.
+/// Pixel inputs of one Gaussian.
 struct Splat {
     std::size_t row = 0;
     double x = 0, y = 0;                     // centre, pixels
@@ -30,10 +30,10 @@ struct Splat {
     std::array<double, 3> colour{};
 };
 
-/// Why a row is (not) drawn.
+/// Reason for which a row is not drawn, or none.
 enum class Fate { Drawn, Culled, Unusable };
 
-/// Gradient with respect to what Splat holds.
+/// Gradient with respect to the values of a Splat.
 struct SplatGradient {
     double x = 0, y = 0;
     double a = 0, b = 0, c = 0;

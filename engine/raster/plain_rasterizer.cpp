@@ -28,7 +28,7 @@ struct WideArrays {
     }
 };
 
-/// Narrowing that cannot make an infinity of a finite number.
+/// Narrows to float. Never makes an infinity of a finite number.
 float narrow(double value) {
     constexpr double limit = std::numeric_limits<float>::max();
     return static_cast<float>(std::clamp(value, -limit, limit));

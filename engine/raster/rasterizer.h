@@ -1,5 +1,5 @@
 // Differentiable Gaussian rasterizer: the 3DGS image formation (Kerbl et al. 2023, EWA splatting), forward,
-// backward and per-Gaussian contributions. Double-precision truth and fast float versions behind one
+// backward and per-Gaussian contributions. A double-precision reference and fast float versions share one
 // interface.
 #pragma once
 
@@ -19,7 +19,7 @@
 
 namespace gse::raster {
 
-/// Image formation settings; the defaults are the program's.
+/// Image formation settings. The defaults are the program's.
 struct Settings {
     float near_plane = 0;                // along the view; 0 = follows scene and camera (scene/depth_range.h)
     float far_plane = 0;                 // 0 = nothing is too far
@@ -32,7 +32,7 @@ struct Settings {
     bool operator==(const Settings&) const = default;
 };
 
-/// The settings with both planes given: those that follow scene and camera as they are for these.
+/// Settings with both planes given. Planes that follow scene and camera take their values for these.
 Settings with_depth_range(const Settings& settings, const GaussianSpans& gaussians, const Camera& camera);
 
 struct ForwardOutput {
@@ -61,15 +61,14 @@ struct Gradients {
 
 class ViewSession;
 
-/// A rasterizer keeps its scratch memory between calls: one object per thread of use, no allocation once
-/// warm. Results are bit-identical for every number of threads and from call to call; those of two
-/// instruction sets differ in the last digits (`gseditpro-lab bench stability` says by how much,
-/// tests/stress/stability holds it).
+/// A rasterizer keeps its scratch memory between calls. Use one object per thread; nothing is allocated once
+/// warm. Results are bit-identical for every number of threads and from call to call. Those of two
+/// instruction sets differ in the last digits (`gseditpro-lab bench stability`, tests/stress/stability).
 class Rasterizer {
 public:
     virtual ~Rasterizer() = default;
 
-    /// Renders. Keeps what backward() needs; `gaussians` must stay alive and unchanged until then.
+    /// Renders. Keeps the inputs of backward(): `gaussians` must stay alive and unchanged until then.
     virtual void forward(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings,
                          ForwardOutput& output) = 0;
 
@@ -78,56 +77,56 @@ public:
     virtual void backward(const Image& d_colour, const Image& d_alpha, std::size_t first_row,
                           Gradients& output) = 0;
 
-    /// Adds to masked[i] the sum over pixels of alpha T mask, to total[i] the sum of alpha T (double
-    /// accumulators of length N), for one view. `mask` is [H,W,1]. Used for back-projection (method S5,
-    /// variant B).
+    /// Adds to masked[i] the sum over pixels of alpha T mask, to total[i] the sum of alpha T, for one view.
+    /// Both are double accumulators of length N. `mask` is [H,W,1]. For back-projection (METHOD.md, Label
+    /// voting).
     virtual void contributions(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings,
                                const Image& mask, std::span<double> masked, std::span<double> total) = 0;
 
-    /// Composites one value per Gaussian instead of its colour: [H,W,1] sum of alpha T value (label and part
-    /// renders).
+    /// Composites one value per Gaussian instead of its colour: [H,W,1], the sum of alpha T value. For label
+    /// and part renders.
     virtual void forward_values(const GaussianSpans& gaussians, const Camera& camera,
                                 const Settings& settings, std::span<const float> values, Image& output) = 0;
 
-    /// A session of `views` views (view_session.h) that keeps up to `budget_bytes` of what does not change in
-    /// them; views beyond that are rendered in full. The rasterizer must outlive it. backward() of the one
-    /// does not follow forward() of the other.
+    /// A session of `views` views (view_session.h) that keeps up to `budget_bytes` of their fixed parts.
+    /// Views beyond that are rendered in full. The rasterizer must outlive it. backward() of one does not
+    /// follow forward() of the other.
     virtual std::unique_ptr<ViewSession> view_session(std::size_t views, std::size_t budget_bytes);
 
-    /// "plain", "scalar", "avx2", "avx512" or "cuda".
+    /// Name: "plain", "scalar", "avx2", "avx512" or "cuda".
     virtual std::string name() const = 0;
 };
 
-/// The truth: double precision, one thread, no tiles.
+/// Reference rasterizer: double precision, one thread, no tiles.
 std::unique_ptr<Rasterizer> make_plain_rasterizer();
 
-/// The fast one: tiles, SIMD chosen at run time (forced by GSE_CPU=scalar|avx2|avx512), threads from `pool`
-/// (kept by reference; must outlive the rasterizer).
+/// Fast rasterizer: tiles, SIMD chosen at run time (forced by GSE_CPU=scalar|avx2|avx512), threads from
+/// `pool`. The pool is kept by reference and must outlive the rasterizer.
 std::unique_ptr<Rasterizer> make_fast_rasterizer(ThreadPool& pool);
-/// The same with the instruction set of that name. Throws Error for one that there is not, or not on this
-/// processor.
+/// Fast rasterizer with the instruction set of that name. Throws Error for an unknown one, or one that this
+/// processor lacks.
 std::unique_ptr<Rasterizer> make_fast_rasterizer(ThreadPool& pool, const std::string& kernels);
 
-/// The CUDA one, on the first device of NVIDIA's driver (compute capability 6.0 or newer): the kernels of
-/// engine/raster/cuda, which every device first has to draw and differentiate a small scene with as the plain
-/// version does. Results are bit-identical from call to call. Throws Error: no kernels in this build, no
-/// driver, no device, or one that computes something else.
+/// CUDA rasterizer on the first device of NVIDIA's driver (compute capability 6.0 or newer), with the kernels
+/// of engine/raster/cuda. The device must first draw and differentiate a small scene as the plain version
+/// does. Results are bit-identical from call to call. Throws Error without kernels in this build, without
+/// driver or device, or for a device that fails the check.
 std::unique_ptr<Rasterizer> make_cuda_rasterizer();
 
-/// Whether make_cuda_rasterizer() gives one; `why` (may be null) gets the sentence where it does not.
+/// True when make_cuda_rasterizer() gives one. Otherwise `why` (may be null) gets the sentence.
 bool cuda_usable(std::string* why = nullptr);
 
-/// The fast one with the instruction set of that name, the best for an empty one, or the CUDA one for "cuda".
-/// Throws Error.
+/// Fast rasterizer with the instruction set of that name, or the best one for an empty name. "cuda" gives the
+/// CUDA one. Throws Error.
 std::unique_ptr<Rasterizer> make_rasterizer_of(const std::string& kernels, ThreadPool& pool);
 
-/// By a user's choice: "cpu" is the fast one, "cuda" the CUDA one, "auto" is "cpu": no CUDA device has been
-/// measured to be worth its copies. Throws Error for other names and where that one cannot be had.
+/// Rasterizer by a user's choice: "cpu" is the fast one, "cuda" the CUDA one. "auto" is "cpu": no CUDA device
+/// has been measured to be worth its copies. Throws Error for other names and for one that is not available.
 std::unique_ptr<Rasterizer> make_rasterizer(const std::string& choice, ThreadPool& pool);
-/// Throws what that would throw.
+/// Throws the errors of make_chosen_rasterizer().
 void require_rasterizer(const std::string& choice);
 
-/// The instruction sets that run here, the fastest first.
+/// Instruction sets that run here, the fastest first.
 std::vector<std::string> usable_kernels();
 
 }  // namespace gse::raster

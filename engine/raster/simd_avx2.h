@@ -45,7 +45,7 @@ GSE_INLINE F only(M m, F a) { return {_mm256_and_ps(m.v, a.v)}; }
 GSE_INLINE unsigned bits(M m) { return static_cast<unsigned>(_mm256_movemask_ps(m.v)); }
 GSE_INLINE bool any(M m) { return _mm256_movemask_ps(m.v) != 0; }
 GSE_INLINE F reciprocal(F a) { return {_mm256_div_ps(_mm256_set1_ps(1.0f), a.v)}; }
-/// Counters; count() adds 1 in the lanes of m.
+/// Counters. count() adds 1 in the lanes of m.
 struct I {
     __m256i v;
 };
@@ -68,7 +68,7 @@ GSE_INLINE I bit_range(M m, F first, F last) {
     const __m256i bits = _mm256_sub_epi32(_mm256_sllv_epi32(two, _mm256_cvttps_epi32(last.v)), low);
     return {_mm256_and_si256(bits, _mm256_castps_si256(m.v))};
 }
-/// 2^a: degree-5 minimax polynomial on [-1/2, 1/2], relative error 7.5e-8; the power goes into the exponent
+/// 2^a: degree-5 minimax polynomial on [-1/2, 1/2], relative error 7.5e-8. The power goes into the exponent
 /// field.
 GSE_INLINE F exp2_lanes(F a) {
     const __m256 magic =
@@ -179,7 +179,7 @@ GSE_INLINE void stream_columns(const float* from, int columns, float* const* row
 GSE_INLINE void stream_zeros(float* to, std::size_t count) {
     for (std::size_t i = 0; i < count; i += 8) _mm256_stream_ps(to + i, _mm256_setzero_ps());
 }
-/// What was streamed is there before what is stored from now on.
+/// Orders streamed stores before all later ones.
 GSE_INLINE void end_streams() { _mm_sfence(); }
 
 /// For each set of eight bits, the places of those that are set, in order.
@@ -193,8 +193,8 @@ constexpr PlacesOfBits places_of_bits() {
             if ((set >> bit & 1) != 0) places.of[set][found++] = static_cast<std::uint8_t>(bit);
     return places;
 }
-/// The masks of 16 entries -> for each block the list of the entries that touch it. Nothing of it can be
-/// predicted, so it has no branch.
+/// Masks of 16 entries -> for each block the list of the entries that touch it. Has no branch, since nothing
+/// of it can be predicted.
 #define GSE_HAS_LISTS 1
 GSE_INLINE void append_lists(const std::uint32_t* blocks, std::uint32_t first, std::uint16_t (*lists)[272],
                              std::uint32_t* lengths) {
@@ -218,7 +218,7 @@ GSE_INLINE __m128 four_sums(__m256 a, __m256 b, __m256 c, __m256 d) {
     const __m256 abcd = _mm256_hadd_ps(_mm256_hadd_ps(a, b), _mm256_hadd_ps(c, d));
     return _mm_add_ps(_mm256_castps256_ps128(abcd), _mm256_extractf128_ps(abcd, 1));
 }
-/// Horizontal sums of ten registers, into the first ten floats of `to`; the other six become 0.
+/// Horizontal sums of ten registers, into the first ten floats of `to`. The other six become 0.
 GSE_INLINE void store_sums(const F* a, float* to) {
     const __m256 nought = _mm256_setzero_ps();
     _mm_store_ps(to, four_sums(a[0].v, a[1].v, a[2].v, a[3].v));

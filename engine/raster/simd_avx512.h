@@ -49,7 +49,7 @@ GSE_INLINE F reciprocal(F a) {
     const __m512 estimate = _mm512_rcp14_ps(a.v);
     return {_mm512_fmadd_ps(estimate, _mm512_fnmadd_ps(a.v, estimate, _mm512_set1_ps(1.0f)), estimate)};
 }
-/// Counters; count() adds 1 in the lanes of m.
+/// Counters. count() adds 1 in the lanes of m.
 struct I {
     __m512i v;
 };
@@ -169,7 +169,7 @@ GSE_INLINE void stream_columns(const float* from, int columns, float* const* row
 GSE_INLINE void stream_zeros(float* to, std::size_t count) {
     for (std::size_t i = 0; i < count; i += 16) _mm512_stream_ps(to + i, _mm512_setzero_ps());
 }
-/// What was streamed is there before what is stored from now on.
+/// Orders streamed stores before all later ones.
 GSE_INLINE void end_streams() { _mm_sfence(); }
 
 /// Four registers -> one whose every 128-bit quarter holds the four sums of that quarter.
@@ -179,7 +179,7 @@ GSE_INLINE __m512 quarter_sums(__m512 a, __m512 b, __m512 c, __m512 d) {
     return _mm512_castpd_ps(_mm512_unpacklo_pd(_mm512_castps_pd(ab), _mm512_castps_pd(cd))) +
            _mm512_castpd_ps(_mm512_unpackhi_pd(_mm512_castps_pd(ab), _mm512_castps_pd(cd)));
 }
-/// Horizontal sums of ten registers; the other six floats are 0.
+/// Horizontal sums of ten registers. The other six floats are 0.
 GSE_INLINE __m512 ten_sums(const F* a) {
     const __m512 x = quarter_sums(a[0].v, a[1].v, a[2].v, a[3].v);
     const __m512 y = quarter_sums(a[4].v, a[5].v, a[6].v, a[7].v);
@@ -192,7 +192,7 @@ GSE_INLINE __m512 ten_sums(const F* a) {
 }
 GSE_INLINE void store_sums(const F* a, float* to) { _mm512_store_ps(to, ten_sums(a)); }
 GSE_INLINE void stream_sums(const F* a, float* to) { _mm512_stream_ps(to, ten_sums(a)); }
-/// The masks of 16 entries -> for each block the list of the entries that touch it.
+/// Masks of 16 entries -> for each block the list of the entries that touch it.
 #define GSE_HAS_LISTS 1
 GSE_INLINE void append_lists(const std::uint32_t* blocks, std::uint32_t first, std::uint16_t (*lists)[272],
                              std::uint32_t* lengths) {

@@ -56,7 +56,7 @@ GSE_INLINE F only(M m, F a) { return {m.v ? a.v : 0.0f}; }
 GSE_INLINE unsigned bits(M m) { return m.v ? 1u : 0u; }
 GSE_INLINE bool any(M m) { return m.v; }
 GSE_INLINE F reciprocal(F a) { return {1.0f / a.v}; }
-/// Counters; count() adds 1 in the lanes of m.
+/// Counters. count() adds 1 in the lanes of m.
 struct I {
     std::int32_t v;
 };
@@ -78,7 +78,7 @@ template <int N> GSE_INLINE I shift_right(I a) {
 GSE_INLINE I bit_range(M m, F first, F last) {
     return {m.v ? (2 << static_cast<std::int32_t>(last.v)) - (1 << static_cast<std::int32_t>(first.v)) : 0};
 }
-/// 2^a for a in about [-100, 0]; anything else gives an arbitrary value.
+/// 2^a for a in about [-100, 0]. Anything else gives an arbitrary value.
 GSE_INLINE F exp2_lanes(F a) { return {power_of_two(a.v)}; }
 
 GSE_INLINE D setd(double a) { return {a}; }
@@ -106,7 +106,7 @@ GSE_INLINE F exp_lanes(F a) { return {__builtin_expf(a.v)}; }
 GSE_INLINE F log2_lanes(F a) { return {__builtin_log2f(a.v)}; }
 #endif
 
-/// columns of W rows -> to[column][row]; rows may lie anywhere.
+/// Columns of W rows -> to[column][row]. Rows may lie anywhere.
 GSE_INLINE void load_columns(const float* const* rows, int columns, float* to) {
     for (int k = 0; k < columns; ++k) to[k] = rows[0][k];
 }
@@ -115,7 +115,7 @@ GSE_INLINE void store_columns(const float* from, int columns, float* const* rows
     if (row_count < 1) return;
     for (int k = 0; k < columns; ++k) rows[0][k] = from[k];
 }
-/// Horizontal sums of ten registers, into the first ten floats of `to`; the other six become 0.
+/// Horizontal sums of ten registers, into the first ten floats of `to`. The other six become 0.
 GSE_INLINE void store_sums(const F* a, float* to) {
     for (int k = 0; k < 16; ++k) to[k] = k < 10 ? a[k].v : 0.0f;
 }

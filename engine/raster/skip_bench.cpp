@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t SkipBudget = std::size_t{4} << 30;  // every view is kept
 constexpr double StepSize = 1e-4;  // of positions, between rounds, times the spread of the rows
 
-/// All rows with those nearest to the middle last; the middle is the row nearest to the mean place.
+/// All rows, ending with those nearest to the middle. The middle is the row nearest to the mean place.
 std::vector<std::size_t> towards_middle(const GaussianSpans& g) {
     std::vector<std::size_t> rows(g.size);
     std::iota(rows.begin(), rows.end(), std::size_t{0});
@@ -77,7 +77,7 @@ struct SkipCase {
     int repetitions = 1;
 };
 
-/// The labelled rows go a step, as an optimiser lets them.
+/// Moves the labelled rows by a step, as an optimiser does.
 void move_labelled(const SkipCase& c, Random& random) {
     for (std::size_t i = c.first_row * 3; i < c.data.position.size(); ++i)
         c.data.position[i] += static_cast<float>(c.step * random.normal());

@@ -1,4 +1,4 @@
-// Times an iteration of an edit with and without the skips of a view session, and measures that they change
+// Times an iteration of an edit with and without the skips of a view session, and checks that they change
 // nothing.
 #pragma once
 
@@ -31,8 +31,8 @@ struct SkipBench {
     double gradient_difference = 0;  // relative L2 over the tensors
 };
 
-/// Labels the rows nearest to the row in the middle of the scene, for the labelled rows of an edit lie
-/// together, and lets them move a little from round to round.
+/// Labels the rows nearest to the row in the middle of the scene, since the labelled rows of an edit lie
+/// together. They move a little from round to round.
 std::vector<SkipBench> bench_skips(const GaussianSpans& gaussians, std::span<const Camera> cameras,
                                    const BenchSettings& settings, std::span<const double> shares);
 

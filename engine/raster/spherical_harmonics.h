@@ -8,7 +8,7 @@ namespace gse::raster {
 
 inline constexpr int MaxShCoefficients = 16;
 
-/// Basis values of a unit direction; writes sh_coefficient_count(degree) numbers.
+/// Basis values of a unit direction. Writes sh_coefficient_count(degree) numbers.
 void sh_basis(const Vec3& direction, int degree, double* basis);
 
 /// Derivative of each basis value with respect to the direction's components, taken as independent variables.

@@ -73,8 +73,8 @@ bool ViewCache::prepare(const Job& job, Frame& frame) {
     return true;
 }
 
-/// Projects with a nearer near plane where nothing lies between, so that the real one may come nearer without
-/// harm; it follows the scene, and so moves with the rows that change.
+/// Projects with a nearer near plane if nothing lies between, so that the real one may come nearer without
+/// harm. The real one follows the scene, and so moves with the rows that change.
 void ViewCache::project(const Job& job, Frame& frame) {
     Settings settings = job.settings;
     near_plane_ = job.near_plane;
@@ -95,7 +95,7 @@ void ViewCache::project(const Job& job, Frame& frame) {
     if (unusable) near_high_ = near_plane_;
 }
 
-/// A margin that doubles every time, so that rows which spread cannot ask for many preparations.
+/// Margin that doubles every time, so that spreading rows cannot ask for many preparations.
 void ViewCache::cover(const Job& job, const Frame& frame) {
     const int columns = (frame.width() + TileSize - 1) / TileSize;
     covered_.resize(frame.tile_count(), 0);
@@ -103,7 +103,7 @@ void ViewCache::cover(const Job& job, const Frame& frame) {
                 static_cast<int>(frame.tile_count()) / columns, covered_);
 }
 
-/// Numbers the records in the lists that are kept front to back; returns how many there are.
+/// Numbers the records in the kept lists front to back. Returns their count.
 std::size_t ViewCache::rank_records(const Frame& frame, std::vector<std::uint32_t>& ranks) const {
     ranks.assign(frame.row_count(), Unused);
     for (std::size_t tile = 0; tile < frame.tile_count(); ++tile) {

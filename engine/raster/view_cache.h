@@ -1,5 +1,5 @@
-// What the rows that do not change show in one view: their records front to back, the lists of the tiles that
-// rows which change can reach, and the picture without those rows.
+// Fixed rows of one view: their records front to back, the lists of tiles that changing rows can reach, and
+// the picture without changing rows.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace gse::raster {
 
-/// An entry of a tile's list of fixed records, front to back: the record numbers ascend.
+/// Entry of a tile's list of fixed records, front to back. Record numbers ascend.
 struct FixedEntry {
     std::uint32_t record;
     std::uint32_t blocks;
@@ -21,14 +21,14 @@ struct FixedEntry {
 
 class ViewCache {
 public:
-    /// True when everything kept is for this camera and these settings with this near plane (`near_plane` is
-    /// what they come to, see with_depth_range).
+    /// True when everything kept is for this camera and these settings. `near_plane` is the near plane that
+    /// they give (with_depth_range).
     bool holds(const Camera& camera, const Settings& settings, float near_plane) const;
     /// True when the lists of all these tiles are kept.
     bool covers(std::span<const std::uint32_t> tiles) const;
 
-    /// Prepares the view: `frame` (working memory) projects, sorts and bins `fixed`; the lists of `tiles`, of
-    /// those around them and of all that were kept before stay. Returns false, and keeps nothing, when that
+    /// Prepares the view: `frame` (working memory) projects, sorts and bins `fixed`. The lists of `tiles`, of
+    /// their neighbours and of all that were kept before stay. Returns false, and keeps nothing, when that
     /// takes more than `budget` bytes.
     struct Job {
         const GaussianSpans& fixed;
@@ -46,13 +46,13 @@ public:
     std::size_t bytes() const;
 
     std::span<const Record> records() const { return records_; }
-    /// Of the records, ascending.
+    /// Rows of the records, ascending.
     std::span<const float> depths() const { return depths_; }
     std::span<const FixedEntry> entries(std::size_t tile) const {
         return {entries_.data() + offsets_[tile], offsets_[tile + 1] - offsets_[tile]};
     }
     const ForwardOutput& picture() const { return picture_; }
-    /// How often the view was prepared since clear().
+    /// Number of preparations since clear().
     int times_prepared() const { return times_prepared_; }
 
 private:

@@ -1,4 +1,4 @@
-// What the kernels of every fast version are told about camera and scene.
+// Camera and scene as the kernels of every fast version take them.
 #pragma once
 
 #include "engine/math/camera.h"
@@ -7,7 +7,7 @@
 
 namespace gse::raster {
 
-/// Tile-Gaussian pairs of one picture; more are refused.
+/// Most tile-Gaussian pairs of one picture. More are refused.
 inline constexpr std::size_t MostPairs = 1'000'000'000;
 
 /// Aborts if the arrays' lengths disagree or the camera has no pixels.

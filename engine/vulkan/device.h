@@ -1,5 +1,5 @@
-// Vulkan instance and device: choice of the device, one queue, submission by serial number, and destruction
-// that waits until the device no longer uses a thing.
+// Vulkan instance and device: choice of the device, one queue, submission by serial number. Objects are
+// destroyed once the device no longer uses them.
 #pragma once
 
 #include <atomic>
@@ -24,14 +24,14 @@ struct InstanceOptions {
     bool validation = false;  // also switched on by GSE_VULKAN_VALIDATION=1; ignored if not installed
 };
 
-/// Connection to the Vulkan library. Throws Error{NotFound} where there is none.
+/// Connection to the Vulkan library. Throws Error{NotFound} if there is none.
 class Instance {
 public:
     explicit Instance(const InstanceOptions& options = {});
 
     vk::raii::Instance& handle() { return *instance_; }
     bool validates() const { return validates_; }
-    /// What the validation layers reported (warnings and errors) so far.
+    /// Messages of the validation layers (warnings and errors) so far.
     std::size_t message_count() const { return message_count_; }
     std::string first_message() const;
 
@@ -55,7 +55,7 @@ struct DeviceOptions {
     VkSurfaceKHR surface = VK_NULL_HANDLE;  // what it must be able to present to
 };
 
-/// What the rest of the program wants to know about a device.
+/// Properties of a device for the rest of the program.
 struct DeviceInfo {
     std::string name;
     bool is_cpu = false;
@@ -70,7 +70,7 @@ struct DeviceInfo {
 
 class Device {
 public:
-    /// Discrete GPU before integrated before others before CPU, unless a choice is made.
+    /// Opens the chosen device. Without a choice: discrete GPU before integrated before others before CPU.
     Device(Instance& instance, const DeviceOptions& options = {});
     ~Device();
     Device(const Device&) = delete;
@@ -93,25 +93,25 @@ public:
     /// Hands work recorded after begin_commands() to the queue and returns its serial number.
     std::uint64_t submit(const Submission& work);
     bool finished(std::uint64_t serial);
-    /// Stands for everything submitted or being recorded now; holds the serial number to wait for, 0 while
-    /// commands are still being recorded.
+    /// Serial number of everything submitted or being recorded now. 0 while commands are still being
+    /// recorded.
     using Ticket = std::shared_ptr<std::uint64_t>;
     Ticket ticket();
     bool finished(const Ticket& ticket) { return ticket && *ticket != 0 && finished(*ticket); }
     void wait(std::uint64_t serial);
     void wait_idle();
 
-    /// Command buffer ready for recording (one-time submit). After submit() give it back with recycle() and
-    /// its serial, or without submitting with discard().
+    /// Command buffer ready for recording (one-time submit). Give it back after submit() with recycle() and
+    /// its serial, or unsubmitted with discard().
     vk::raii::CommandBuffer begin_commands();
     void recycle(vk::raii::CommandBuffer commands, std::uint64_t serial);
     void discard(vk::raii::CommandBuffer commands);
     /// Records body(commands), submits it and waits.
     template <class Body> void run(Body&& body);
 
-    /// Destroys `object` once everything submitted, and what is being recorded now, has been executed.
+    /// Destroys `object` once all commands submitted or being recorded now have been executed.
     template <class Object> void retire(Object object);
-    /// Destroys what is no longer used; called by submit().
+    /// Destroys objects that are no longer used. Called by submit().
     void collect();
 
     /// Descriptor set of a layout, freed with retire().
@@ -120,15 +120,15 @@ public:
                               vk::MemoryPropertyFlags required) const;
     void name(vk::ObjectType type, std::uint64_t handle, const char* text);
 
-    /// The one T of this device (pipelines that several users share), made when first asked for; lives as
-    /// long as the device.
+    /// The one T of this device (pipelines that several users share). Made on demand; lives as long as the
+    /// device.
     template <class T> T& shared() {
         auto& slot = shared_[std::type_index(typeid(T))];
         if (!slot) slot = std::make_shared<T>(*this);
         return *static_cast<T*>(slot.get());
     }
 
-    /// For tests of recovery: the next submission reports a lost device.
+    /// Makes the next submission report a lost device, for tests of recovery.
     void pretend_lost() { pretend_lost_ = true; }
 
 private:

@@ -1,4 +1,4 @@
-// The one place where exceptions of the Vulkan binding become gse::Error; a lost device has its own type.
+// Translation of the Vulkan binding's exceptions into gse::Error. A lost device has its own type.
 #pragma once
 
 #include <utility>
@@ -7,13 +7,13 @@
 
 namespace gse::vulkan {
 
-/// The graphics device is gone (driver reset, unplugged). Everything made on it has to be made again.
+/// The graphics device is gone (driver reset, unplugged). Everything made on it must be made again.
 class DeviceLost : public Error {
 public:
     explicit DeviceLost(const std::string& during);
 };
 
-/// Turns the exception being handled into gse::Error or DeviceLost; `doing` completes "the graphics device
+/// Turns the exception being handled into gse::Error or DeviceLost. `doing` completes "the graphics device
 /// failed while ...".
 [[noreturn]] void rethrow_as_error(const char* doing);
 

@@ -1,4 +1,4 @@
-// Creates the Vulkan instance and counts what the validation layers say.
+// Creates the Vulkan instance and counts the messages of the validation layers.
 #include <cstdlib>
 #include <cstring>
 

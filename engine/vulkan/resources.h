@@ -1,4 +1,4 @@
-// Buffers and images that clean up after themselves: the object on the device lives until the device is done
+// Buffers and images that clean up after themselves. The object on the device lives until the device is done
 // with it.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace gse::vulkan {
 
-/// What a buffer is for; decides the kind of memory.
+/// Use of a buffer; decides the kind of memory.
 enum class BufferHome {
     Device,    // fastest for shaders; mapped too where the device's memory is the host's
     Upload,    // written by the CPU, read by the device
@@ -38,7 +38,7 @@ public:
     vk::Buffer handle() const;
     vk::BufferView view() const;
     std::uint64_t size() const;
-    /// The memory as the CPU sees it; null where it does not.
+    /// The memory as the CPU sees it; null if it does not.
     std::byte* mapped() const;
     template <class T> std::span<T> as() const {
         return {reinterpret_cast<T*>(mapped()), size() / sizeof(T)};
@@ -58,7 +58,7 @@ struct ImageDescription {
     const char* name = "";
 };
 
-/// A 2D colour image with one level; remembers its layout.
+/// A 2D colour image with one level. Remembers its layout.
 class Texture {
 public:
     Texture() = default;
@@ -74,9 +74,9 @@ public:
     std::uint32_t height() const { return height_; }
     /// Records a change of layout that waits for all earlier use and lets all later use wait for it.
     void transition(vk::CommandBuffer commands, vk::ImageLayout layout);
-    /// Records a copy of tightly packed pixels; leaves the image ready for sampling.
+    /// Records a copy of tightly packed pixels. Leaves the image ready for sampling.
     void copy_from(vk::CommandBuffer commands, const Buffer& source, std::uint64_t offset = 0);
-    /// Records a copy into a buffer; leaves the image in its layout.
+    /// Records a copy into a buffer. Leaves the image in its layout.
     void copy_to(vk::CommandBuffer commands, const Buffer& target);
 
 private:
@@ -88,10 +88,9 @@ private:
     std::shared_ptr<State> state_;
 };
 
-/// Everything written by earlier commands is seen by later ones (compute, transfer, indirect, fragment,
-/// host).
+/// Barrier: later commands see all writes of earlier ones (compute, transfer, indirect, fragment, host).
 void full_barrier(vk::CommandBuffer commands);
-/// What compute shaders and copies wrote is seen by later compute shaders and indirect dispatches.
+/// Barrier: later compute shaders and indirect dispatches see writes of compute shaders and copies.
 void compute_barrier(vk::CommandBuffer commands);
 
 }  // namespace gse::vulkan

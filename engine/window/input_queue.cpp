@@ -1,4 +1,4 @@
-// What one frame can tell apart.
+// Splits input into portions that one frame can tell apart.
 #include "engine/window/input_queue.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ constexpr std::uint64_t FocusFrames = 3;  // until the field that Tab moves to t
 
 bool is_modifier(int key) { return key >= FirstModifier && key <= LastModifier; }
 
-/// A key that does something by itself, other than its character.
+/// Key with an effect of its own, other than its character.
 bool acts(const InputQueue::Event& event) {
     if (event.character || event.action != Press || is_modifier(event.key)) return false;
     const bool writes = event.key >= FirstPrintable && event.key <= LastPrintable;

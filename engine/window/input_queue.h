@@ -8,13 +8,12 @@
 
 namespace gse::window {
 
-/// ImGui 1.86 sees which keys are down and which characters came since the last frame, not in which order. On
-/// a machine whose frames are slow a key may go down and up between two of them, and characters typed after
-/// Tab would go to the field that was left. This queue hands on what one frame can tell apart; the rest waits
-/// for the next.
+/// Queue of input, handed on in portions that one frame can tell apart. ImGui 1.86 sees the keys that are
+/// down and the characters since the last frame, not their order. In a slow frame a key may go down and up
+/// unseen. Characters typed after Tab would go to the field that was left.
 class InputQueue {
 public:
-    /// Numbers are GLFW's.
+    /// Numbers of GLFW.
     struct Event {
         bool character = false;
         int key = 0, code = 0, action = 0, modifiers = 0;  // of a key
@@ -23,7 +22,7 @@ public:
 
     void push(const Event& event) { waiting_.push_back(event); }
     bool waiting() const { return !waiting_.empty(); }
-    /// What the frame that begins is told, in its order.
+    /// Input of the frame that begins, in its order.
     std::vector<Event> next_frame();
 
 private:

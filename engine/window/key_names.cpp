@@ -1,4 +1,4 @@
-// Places to letters.
+// Places of keys to letters.
 #include "engine/window/key_names.h"
 
 #include <string_view>

@@ -53,7 +53,7 @@ struct Window::State {
         Glfw& operator=(const Glfw&) = delete;
     };
 
-    /// What a frame in flight owns.
+    /// Resources of a frame in flight.
     struct Slot {
         std::uint64_t serial = 0;
         vk::raii::Semaphore acquired{nullptr};
@@ -134,7 +134,8 @@ Window::State::State(const WindowOptions& wanted) : options(wanted), wanted_scal
     make_device();
 }
 
-/// ImGui has 16 bits for a character; the table of the panels (ui/glyphs.h) has codes for larger ones.
+/// Maps a character for ImGui, which has 16 bits for it. The table of the panels (ui/glyphs.h) has codes for
+/// larger ones.
 void Window::State::translate_texts() {
     if (!options.take_character || !options.take_text || !options.give_text) return;
     auto& io = ImGui::GetIO();
@@ -198,7 +199,7 @@ void Window::State::make_window() {
     note_events();
 }
 
-/// Whatever may change what the window shows. ImGui's own callbacks, installed later, call these first.
+/// Notes events that may change the shown window. ImGui's own callbacks, installed later, call these first.
 void Window::State::note_events() {
     glfwSetWindowRefreshCallback(window, [](GLFWwindow* target) { of(target).came_in = true; });
     glfwSetFramebufferSizeCallback(window, [](GLFWwindow* target, int, int) { of(target).came_in = true; });
@@ -213,8 +214,8 @@ void Window::State::note_events() {
     glfwSetScrollCallback(window, [](GLFWwindow* target, double, double) { of(target).came_in = true; });
 }
 
-/// What the options leave open: the usual size, but with its frame inside what panels and docks leave of the
-/// screen.
+/// Size of the window when the options leave it open: the usual size, with its frame inside the free area of
+/// the screen. Panels and docks take the rest.
 void Window::State::fit_screen() {
     GLFWmonitor* monitor = glfwGetPrimaryMonitor();
     if (monitor == nullptr) return;
@@ -282,7 +283,7 @@ float Window::State::desktop_scale() const {
     return std::clamp(std::max(x, y), 0.5f, 4.0f);
 }
 
-/// Fonts and sizes follow the scale; glyphs are made for the pixels they are shown with.
+/// Applies the scale to fonts and sizes. Glyphs are made for the pixels they are shown with.
 void Window::State::update_scale() {
     const float now = wanted_scale > 0 ? std::clamp(wanted_scale, 0.5f, 4.0f) : desktop_scale();
     if (now == scale && !fonts_stale && !undressed) return;

@@ -9,6 +9,7 @@
 //       ...ImGui calls...
 //       window.end_frame();
 //   }
+//
 // begin_frame() and end_frame() throw vulkan::DeviceLost when the device is gone: call rebuild_device() and
 // go on.
 #pragma once
@@ -43,16 +44,16 @@ struct WindowOptions {
     std::string device;         // index or part of the name of the graphics device; empty = the best
     bool validation = false;    // validation layers
     bool visible = true;
-    /// Adds the fonts and sets colours and sizes for a scale; plain ones when empty.
+    /// Adds the fonts and sets colours and sizes for a scale. Plain ones when empty.
     std::function<void(ImFontAtlas&, ImGuiStyle&, float scale)> dress;
     std::function<void(const std::vector<std::filesystem::path>&)> on_drop;
-    /// Typed and pasted characters on their way to ImGui, and text on its way to the clipboard; as they are
-    /// when empty.
+    /// Filters of typed and pasted characters on their way to ImGui, and of text on its way to the clipboard.
+    /// Empty = unchanged.
     std::function<unsigned(unsigned)> take_character;
     std::function<std::string(const std::string&)> take_text, give_text;
 };
 
-/// Holds things on the graphics device that have to be let go and made again when the device is lost.
+/// Owner of things on the graphics device that must be released and made again when the device is lost.
 class DeviceClient {
 public:
     virtual ~DeviceClient() = default;
@@ -105,7 +106,7 @@ public:
     void remove_client(DeviceClient* client);
     void rebuild_device();  // after vulkan::DeviceLost
 
-    /// Asks for a copy of the next frame that is shown; take it after end_frame(). [H,W,3] in 0..1.
+    /// Asks for a copy of the next frame that is shown. Take it after end_frame(). [H,W,3] in 0..1.
     void request_capture();
     std::optional<Image> take_capture();
 

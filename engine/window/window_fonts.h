@@ -8,8 +8,8 @@ struct ImGuiStyle;
 
 namespace gse::window {
 
-/// File of the installed font that fits best, for example "DejaVu Sans", "sans-serif:bold", "monospace";
-/// empty if none can be used (only TrueType and OpenType files are).
+/// File of the installed font that fits best, for example "DejaVu Sans", "sans-serif:bold", "monospace".
+/// Empty if none can be used; only TrueType and OpenType files can.
 std::string system_font(const std::string& pattern);
 
 /// Default look: the system's sans-serif font at 15 px times scale, dark colours.

@@ -18,7 +18,7 @@ struct Push {
     float scale[2], offset[2];
 };
 
-/// Handles are never used twice, also not by the renderer of a device that is opened again.
+/// Next handle. Handles are never used twice, not even by the renderer of a device that is opened again.
 std::uint64_t next_id() {
     static std::uint64_t last = 0;
     return ++last;
@@ -32,7 +32,7 @@ vk::raii::Sampler make_sampler(vulkan::Device& device, vk::Filter filter) {
     return vk::raii::Sampler(device.handle(), info);
 }
 
-/// Room for `bytes`, with some to spare; the old buffer dies when the device is done with it.
+/// Makes room for `bytes`, with some to spare. The old buffer dies when the device is done with it.
 void reserve(vulkan::Device& device, vulkan::Buffer& buffer, std::size_t bytes, vk::BufferUsageFlags usage) {
     if (buffer.size() >= bytes && buffer) return;
     buffer = vulkan::Buffer(device, {.size = bytes + bytes / 2 + 4096,

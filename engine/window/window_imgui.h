@@ -1,5 +1,5 @@
-// Draws what Dear ImGui emits, with any number of textures (the stock backend of ImGui 1.86 knows only the
-// font's).
+// Renderer of Dear ImGui's output with any number of textures. The stock backend of ImGui 1.86 knows only the
+// font's.
 #pragma once
 
 #include <cstdint>
@@ -21,12 +21,12 @@ public:
 
     /// Records the upload of the font atlas of the current context.
     void upload_fonts(vk::CommandBuffer commands);
-    /// Copies vertices and records the drawing; `slot` counts the frames in flight, whose buffers must be
+    /// Copies vertices and records the drawing. `slot` counts the frames in flight, whose buffers must be
     /// free again.
     void draw(vk::CommandBuffer commands, const ImDrawData& data, std::size_t slot);
 
     std::uint64_t add_texture(vk::ImageView view, bool smooth);
-    /// Another image under the same handle: what was drawn with it before the change still shows something.
+    /// Puts another image under an existing handle. Earlier drawings with it still show something.
     void replace_texture(std::uint64_t id, vk::ImageView view);
     void remove_texture(std::uint64_t id);
 

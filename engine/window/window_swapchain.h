@@ -13,13 +13,14 @@ class Swapchain {
 public:
     Swapchain(vulkan::Device& device, VkSurfaceKHR surface);
 
-    /// Makes the images anew; waits until the old ones are no longer used. False when the window has no area.
+    /// Makes the images anew. Waits until the old ones are no longer used. Returns false when the window has
+    /// no area.
     bool resize(std::uint32_t width, std::uint32_t height);
     bool fits(std::uint32_t width, std::uint32_t height) const;
 
-    /// Next image to draw to; nothing when the surface has changed and resize() is needed.
+    /// Next image to draw to. Nothing when the surface has changed and resize() is needed.
     std::optional<std::uint32_t> acquire(vk::Semaphore ready);
-    /// False when resize() is needed.
+    /// Presents the image. Returns false when resize() is needed.
     bool present(std::uint32_t image);
 
     vk::RenderPass render_pass() const { return *render_pass_; }

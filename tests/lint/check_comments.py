@@ -15,6 +15,8 @@ BEGINNINGS = re.compile(r"(What|The same|Of|Where)\b")
 # Stops that end no sentence.
 ABBREVIATION = re.compile(r"\b(e\.g|i\.e|et al|vs|cf|Eq|Sec|Fig|etc|St|p|pp|No)\.(?=\s)")
 CITED = re.compile(r"\b([\w-]+)\.md\b(,? (\d+(?:\.\d+)*)\b)?")
+# Sections of documents that lay beside the repository once.
+OUTSIDE = re.compile(r"\b(?:method|views|raster|formats|design|style|GSEditPro) [A-Z]?\d+(?:\.\d+)*\b(?! ?(?:px|%|MB))")
 LITERAL = r'"((?:\\.|[^"\\])*)"'
 LITERALS = re.compile(LITERAL)
 FIELD_HELP = re.compile(r'\bf\(\s*"[a-z_0-9]+",\s*self\.[\w.]+,\s*((?:' + LITERAL + r'\s*)+)')
@@ -47,6 +49,8 @@ def help_texts(text):
 
 def sentences(text):
     for paragraph in re.split(r"\n\s*\n|\n(?=\s*(?:[-*] |\d+\. ))", text):
+        if all(line.startswith("  ") for line in paragraph.split("\n") if line.strip()) and "\n\n" in text:
+            continue   # an example in code, or a formula
         plain = re.sub(r"\s+", " ", paragraph).strip()
         plain = ABBREVIATION.sub(lambda found: found.group(0)[:-1], plain)
         yield from re.split(r"(?<=[.!?])[)\"]? (?=[\"(`\[A-Z0-9])|(?<=[.!?]) (?=[a-z_]+\()", plain)
@@ -64,6 +68,8 @@ def check_text(text, documents):
         words = word_count(sentence)
         if words > MOST_WORDS:
             yield f"{words} words in one sentence: \"{sentence[:60]}...\""
+    for cited in OUTSIDE.findall(text):
+        yield f"\"{cited}\" is no document of the repository"
     for name, section, number in CITED.findall(text):
         if name not in documents:
             yield f"{name}.md is not in the repository"
@@ -105,14 +111,14 @@ def self_test():
         "what.h": "// What it is.\n", "same.h": head + "/// The same at the end.\nint x;\n", "of.h": head + "    /// Of a view.\n",
         "where.h": head + "/// Where it lies.\n", "long.h": head + "/// Short. " + long + ".\n",
         "lines.h": head + "/// " + "word " * 20 + "\n/// " + "word " * 20 + "\n", "head.h": "// " + long + "\n",
-        "document.h": head + "/// Weights (method.md 6.4).\n", "section.h": head + "/// Weights (METHOD.md, 6).\n",
+        "document.h": head + "/// Weights (method.md 6.4).\n", "outside.h": head + "/// Weights (method 6.4).\n", "section.h": head + "/// Weights (METHOD.md, 6).\n",
         "field.h": head + 'f("count", self.count, "Of the views " "of it.", Range{0, 1});\n',
         "option.cpp": head + 'command->add_option("--out", options->output, "' + long + '");\n',
         "command.cpp": head + 'app.add_subcommand("edit", "What changes");\n',
     }
     whole = {
         "good.h": head + "/// Count of words, e.g. Three. " + "word " * 20 + ".\n///\n/// " + "word " * 20 + "\n/// - " + "word " * 20 +
-                  "\n/// - " + "word " * 20 + "\nint x;  // of a view\n// What follows is no doc comment.\n/// See METHOD.md, Labels.\n",
+                  "\n/// - " + "word " * 20 + "\n///\n///   code(" + long + ");\n///\n/// End.\nint x;  // of a view\n// What follows is no doc comment.\n/// See METHOD.md, Labels.\n",
         "help.h": head + 'f("count", self.count, "Views that vote.", Range{0, 1});\ng("What");\n',
     }
     missed = []

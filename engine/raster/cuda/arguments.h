@@ -1,6 +1,6 @@
-// What the kernels of the CUDA rasterizer are called with, read by the compiler of the device and by that of
-// the processor: plain structs of addresses in the device's memory and numbers. Rows are those of the scene,
-// ranks their places in the order of depth, pairs are numbered rank by rank, slots row by row.
+// Arguments of the CUDA rasterizer's kernels, read by the compiler of the device and by that of the
+// processor. Plain structs of numbers and of addresses in the device's memory. Rows are those of the scene;
+// ranks are their places in the order of depth. Pairs are numbered rank by rank, slots row by row.
 #pragma once
 
 #include "engine/raster/kernels.h"
@@ -17,7 +17,7 @@ inline constexpr std::uint32_t Saturated = 0xffffffff;  // sums of counts stop h
 inline constexpr std::uint32_t SlotFloats = 10;         // PartialSum
 inline constexpr std::uint32_t WeightFloats = 2;        // ContributionSum
 
-/// out[i] = sum of in[0..i), which may be the same array; totals[b] = sum of block b's BlockThreads *
+/// Prefix sums out[i] = sum of in[0..i), which may be one array; totals[b] = sum of block b's BlockThreads *
 /// ScanItems.
 struct ScanArguments {
     const std::uint32_t* in;
@@ -33,8 +33,8 @@ struct AddArguments {
     std::uint32_t count;
 };
 
-/// One digit of a stable radix sort. counts: [RadixDigits, blocks] how often each block has each digit, then
-/// their exclusive sums.
+/// One digit of a stable radix sort. counts: [RadixDigits, blocks] frequency of each digit in each block,
+/// later their exclusive sums.
 struct RadixArguments {
     const std::uint32_t* keys;
     const std::uint32_t* values;  // none: 0, 1, 2 ...
@@ -44,7 +44,7 @@ struct RadixArguments {
     std::uint32_t count, blocks, shift;
 };
 
-/// Rows -> records, sort keys, numbers of tiles touched. What is not drawn gets NotDrawn and 0.
+/// Rows -> records, sort keys, numbers of tiles touched. Rows that are not drawn get NotDrawn and 0.
 struct ProjectArguments {
     Source source;
     Viewpoint view;
@@ -64,7 +64,7 @@ struct GatherArguments {
     std::uint32_t count;
 };
 
-/// The pairs of every rank: tiles and rows, and where those of each row begin.
+/// Pairs of every rank: tiles and rows, and the first pair of each row.
 struct EmitArguments {
     const Record* records;
     const std::uint32_t* order;        // [rows] rank -> row
@@ -108,7 +108,7 @@ struct BlendArguments {
     std::int32_t* blended;  // [H,W]
 };
 
-/// Where each (tile, Gaussian) leaves its sums: slot slot_begins[row - first_row] + pair - pair_begins[row],
+/// Slots of the sums of each (tile, Gaussian): slot slot_begins[row - first_row] + pair - pair_begins[row],
 /// for rows >= first_row.
 struct SlotTable {
     const std::uint32_t* pair_begins;  // [rows]

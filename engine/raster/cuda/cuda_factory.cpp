@@ -1,4 +1,5 @@
-// The CUDA rasterizer, made only where a device draws what the processor draws; and the choice by name.
+// Makes the CUDA rasterizer only on a device that draws as the processor does; choice of a rasterizer by
+// name.
 #include <fmt/format.h>
 
 #include "engine/base/error.h"

@@ -1,6 +1,5 @@
-// A machine that runs the kernels: memory of its own, copies, fills and launches. One is behind the CUDA
-// driver, one is the processor that stands in for it in tests; what is launched in which order is the same
-// code for both.
+// Machine that runs the kernels: memory of its own, copies, fills and launches. One implementation is the
+// CUDA driver, the other the processor that stands in for it in tests. Both run one sequence of launches.
 #pragma once
 
 #include <cstddef>
@@ -38,8 +37,8 @@ inline constexpr const char* KernelNames[] = {
 #undef GSE_KERNEL
 };
 
-/// Calls are carried out in order; download() waits for all before it. Everything throws Error (Unsupported
-/// where memory runs out, Foreign else), also for what an earlier launch did wrong.
+/// Queues calls, which are carried out in order. download() waits for all before it. Every call throws Error,
+/// also for an earlier launch: Unsupported without memory, Foreign otherwise.
 class Device {
 public:
     virtual ~Device() = default;
@@ -67,7 +66,7 @@ inline std::size_t blocks_for(std::size_t count, std::size_t per_block = BlockTh
     return (count + per_block - 1) / per_block;
 }
 
-/// An array in a device's memory. Grows, never shrinks: what was allocated once stays.
+/// Array in a device's memory. Grows, never shrinks.
 template <class T> class DeviceArray {
 public:
     explicit DeviceArray(Device& device) : device_(device) {}
@@ -77,7 +76,7 @@ public:
     DeviceArray(const DeviceArray&) = delete;
     DeviceArray& operator=(const DeviceArray&) = delete;
 
-    /// Room for `count`; the content is lost when there was less. Never null.
+    /// Makes room for `count`. The content is lost when there was less. Never null.
     T* at_least(std::size_t count) {
         if (count <= capacity_ && data_ != nullptr) return data_;
         if (data_ != nullptr) device_.release(data_);
@@ -95,11 +94,11 @@ public:
         if (!values.empty()) device_.upload(to, values.data(), values.size_bytes());
         return to;
     }
-    /// The first values.size().
+    /// Uploads all of `values` to the beginning.
     void download(std::span<T> values) const {
         if (!values.empty()) device_.download(values.data(), data_, values.size_bytes());
     }
-    /// `count` values of zero bits.
+    /// Fills `count` values with zero bits.
     T* zeros(std::size_t count) {
         static_assert(sizeof(T) % sizeof(std::uint32_t) == 0);
         T* to = at_least(count);

@@ -1,4 +1,4 @@
-// What is launched for one view, in which order.
+// Launches of one view, in their order.
 #include "engine/raster/cuda/device_frame.h"
 
 #include <bit>

@@ -1,5 +1,5 @@
 // One view prepared for blending in a device's memory: projected records, pairs sorted by tile, depth and
-// row, the tiles' lists.
+// row, and the tiles' lists.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ public:
     /// Gives every pair of rows >= first_row its slot of `floats` zeros.
     SlotTable assign_slots(std::size_t first_row, std::uint32_t floats);
 
-    /// Blends all tiles; the pictures stay in the device's memory.
+    /// Blends all tiles. The pictures stay in the device's memory.
     void blend(const std::array<float, 3>& background, int channels);
 
     std::size_t row_count() const { return rows_; }

@@ -1,5 +1,4 @@
-// Forward, backward, contributions and composited values by a device: what goes up, what is launched, what
-// comes down.
+// Forward, backward, contributions and composited values by a device: uploads, launches, downloads.
 #include "engine/raster/cuda/device_rasterizer.h"
 
 #include <algorithm>

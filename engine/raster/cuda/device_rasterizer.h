@@ -1,4 +1,4 @@
-// The rasterizer whose kernels a device runs.
+// Rasterizer whose kernels a device runs.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace gse::raster::cuda {
 
-/// Not checked; takes the device over. `name` is what Rasterizer::name() says.
+/// Rasterizer on an unchecked device, which it takes over. `name` is the result of Rasterizer::name().
 std::unique_ptr<Rasterizer> make_device_rasterizer(std::unique_ptr<Device> device, std::string name);
 
 }  // namespace gse::raster::cuda

@@ -16,11 +16,11 @@ public:
     void run(const std::uint32_t* in, std::uint32_t* out, std::size_t count) {
         scan_level(in, out, count, 0);
     }
-    /// The same; returns the sum of all, for which it waits.
+    /// Prefix sums as above. Returns the sum of all, for which it waits.
     std::uint32_t total(const std::uint32_t* in, std::uint32_t* out, std::size_t count);
 
 private:
-    /// Returns where the sum of all is.
+    /// Place of the sum of all. Does not wait.
     const std::uint32_t* scan_level(const std::uint32_t* in, std::uint32_t* out, std::size_t count,
                                     std::size_t level);
 

@@ -70,7 +70,7 @@ private:
     void* handle_;
 };
 
-/// What has to be given back in this order, also when the constructor of the whole device fails half way.
+/// Resources that are given back in this order, also when the constructor of the whole device fails half way.
 class Context {
 public:
     explicit Context(const std::string& library) : driver(library) {
@@ -102,7 +102,8 @@ public:
     Context(const Context&) = delete;
     Context& operator=(const Context&) = delete;
 
-    /// The calls below are meant for it; a rasterizer may be used on another thread than it was made on.
+    /// Makes the device's context current. A rasterizer may be used on another thread than the one that made
+    /// it.
     void enter() const { driver.check(driver.make_current(context_), "use " + name); }
 
     void load(const std::string& text) {

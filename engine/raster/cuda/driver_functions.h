@@ -1,5 +1,5 @@
-// The functions of the CUDA driver that are used, as NVIDIA's driver API documents them (CUDA Driver API,
-// version 6.0 and newer).
+// Functions of the CUDA driver that are used, as NVIDIA documents them (CUDA Driver API, version 6.0 and
+// newer).
 #pragma once
 
 #include <cstddef>

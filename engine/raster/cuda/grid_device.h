@@ -1,4 +1,4 @@
-// The grid of a CUDA device, by the compiler's own names (no toolkit's headers are read).
+// The grid of a CUDA device, by the compiler's own names. No toolkit's headers are read.
 #pragma once
 
 #define GSE_DEVICE static inline __attribute__((device, always_inline))
@@ -34,26 +34,26 @@ template <class T> using PerLane = PerThread<T>;
          lane##_left = 0, end_warp_phase())
 #define GSE_SHARED(grid, Type, name) static __attribute__((shared)) Type name
 
-/// Whether any thread of the block says so. For the whole block.
+/// True when any thread of the block says so. For the whole block.
 GSE_DEVICE bool any_thread(const Grid&, const PerThread<bool>& says) {
     return __nvvm_bar0_or(says.own ? 1 : 0) != 0;
 }
-/// The same of a warp, for the whole warp.
+/// True when any thread of a warp says so. For the whole warp.
 GSE_DEVICE bool any_lane(const PerLane<bool>& says) { return __nvvm_vote_any_sync(WholeWarp, says.own); }
 
-/// The sum over the warp's lanes, in every lane; in the order of a butterfly, whatever the values.
+/// Sum over the warp's lanes, in every lane, in the order of a butterfly.
 GSE_DEVICE void sum_lanes(PerLane<float>& value) {
 #pragma unroll
     for (int distance = WarpLanes / 2; distance > 0; distance /= 2)
         value.own += __nvvm_shfl_sync_bfly_f32(WholeWarp, value.own, distance, WarpLanes - 1);
 }
 
-/// Counts; sums of whole numbers are the same in any order.
+/// Atomic counts. Sums of whole numbers do not depend on the order.
 GSE_DEVICE void add_atomically(std::uint32_t* to, std::uint32_t value) {
     __atomic_fetch_add(to, value, __ATOMIC_RELAXED);
 }
 
-/// a b + c, rounded once.
+/// Fused a b + c, rounded once.
 GSE_DEVICE float fused(float a, float b, float c) { return __builtin_fmaf(a, b, c); }
 GSE_DEVICE double fused(double a, double b, double c) { return __builtin_fma(a, b, c); }
 /// 2^a, relative error below 2^-22 (PTX ISA, ex2.approx); results below 2^-126 are 0.

@@ -1,5 +1,5 @@
-// The grid on the processor: the threads of a phase one after the other, in an order that tests may turn
-// round. It shows what the kernels compute, not how fast.
+// The grid on the processor: the threads of a phase one after the other, in an order that tests may reverse.
+// It shows the kernels' results, not their speed.
 #pragma once
 
 #define GSE_DEVICE static inline
@@ -42,20 +42,20 @@ template <class T> struct PerLane {
     static_assert(sizeof(Type) <= SharedBytes); \
     Type& name = *static_cast<Type*>((grid).shared)
 
-/// Whether any thread of the block says so.
+/// True when any thread of the block says so.
 GSE_DEVICE bool any_thread(const Grid&, const PerThread<bool>& says) {
     bool result = false;
     for (const bool one : says.all) result = result || one;
     return result;
 }
-/// The same of a warp.
+/// True when any thread of a warp says so.
 GSE_DEVICE bool any_lane(const PerLane<bool>& says) {
     bool result = false;
     for (const bool one : says.all) result = result || one;
     return result;
 }
 
-/// The sum over the warp's lanes, in every lane; in the order of a butterfly, whatever the values.
+/// Sum over the warp's lanes, in every lane, in the order of a butterfly.
 GSE_DEVICE void sum_lanes(PerLane<float>& value) {
     for (std::uint32_t distance = WarpLanes / 2; distance > 0; distance /= 2) {
         PerLane<float> next;
@@ -65,13 +65,13 @@ GSE_DEVICE void sum_lanes(PerLane<float>& value) {
     }
 }
 
-/// Counts; sums of whole numbers are the same in any order.
+/// Counts. Sums of whole numbers do not depend on the order.
 GSE_DEVICE void add_atomically(std::uint32_t* to, std::uint32_t value) { *to += value; }
 
-/// a b + c, rounded once as on a device.
+/// Fused a b + c, rounded once as on a device.
 GSE_DEVICE float fused(float a, float b, float c) { return __builtin_fmaf(a, b, c); }
 GSE_DEVICE double fused(double a, double b, double c) { return __builtin_fma(a, b, c); }
-/// 2^a; what is below 2^-126 is 0.
+/// 2^a; results below 2^-126 are 0.
 GSE_DEVICE float power_of_two(float a) { return a > -126.0f ? __builtin_exp2f(a) : 0.0f; }
 
 }  // namespace gse::raster::cuda

@@ -1,5 +1,5 @@
-// Kernels 4: the slots of a row, in order, -> gradients of its raw parameters (kernel_gradient.inl, in
-// double), or its weights. One thread per row.
+// Kernels 4: the slots of a row, in order, -> gradients of its raw parameters, or its weights. One thread per
+// row. The chain rule is that of kernel_gradient.inl, in double.
 
 struct RowSums {
     float sums[SlotFloats];
@@ -27,8 +27,8 @@ GSE_DEVICE void clear_row(const GradientArguments& args, std::size_t index) {
     args.out.visible[index] = 0;
 }
 
-/// colour_gradient of kernel_gradient.inl for a number of coefficients the compiler knows: those of `sh`, and
-/// of the position through the direction.
+/// colour_gradient of kernel_gradient.inl for a number of coefficients that the compiler knows: gradients of
+/// `sh`, and of the position through the direction.
 template <int Count>
 GSE_DEVICE void colour_chain(const Viewpoint& view, const float* sh, float* d_sh, GradientBatch& batch) {
     F d_colour[3];

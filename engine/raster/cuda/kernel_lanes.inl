@@ -1,7 +1,6 @@
-// One lane per thread: the register types and the image formation are those of the vector kernels, with W
-// = 1.
+// One lane per thread. Register types and image formation are those of the vector kernels, with W = 1.
 
-/// For exp_lanes and log2_lanes of kernel_geometry.inl: no library is there for a device.
+/// Functions for exp_lanes and log2_lanes of kernel_geometry.inl. A device has no library for them.
 #define GSE_ONE_LANE_MATH 1
 #include "engine/raster/simd_scalar.h"
 

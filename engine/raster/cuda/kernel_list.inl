@@ -1,4 +1,4 @@
-// Every kernel: GSE_KERNEL(name, arguments, body) is defined by whoever includes this.
+// List of every kernel. The includer defines GSE_KERNEL(name, arguments, body).
 GSE_KERNEL(scan, ScanArguments, scan)
 GSE_KERNEL(add_offsets, AddArguments, add_offsets)
 GSE_KERNEL(radix_count, RadixArguments, radix_count)

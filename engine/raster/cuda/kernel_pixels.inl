@@ -1,7 +1,7 @@
 // Kernels 3: one block per tile of 16x16 pixels, one thread per pixel, the Gaussians in batches through
-// shared memory. Forward: sums in registers. Backward and contributions: the same walk front to back with the
-// same decisions; the sums over a tile's pixels are added in one order, warp by warp, and left in the slot of
-// the (tile, Gaussian), so that no result depends on which block came first.
+// shared memory. Forward keeps sums in registers. Backward and contributions walk front to back with equal
+// decisions. Sums over a tile's pixels are added in one order, warp by warp, into the slot of the (tile,
+// Gaussian). No result depends on the order of the blocks.
 
 constexpr std::uint32_t BlendBatch = BlockThreads;  // records
 constexpr std::uint32_t SumBatch = 32;              // one bit each
@@ -25,7 +25,7 @@ GSE_DEVICE TilePixel tile_pixel(const TileLists& lists, std::uint32_t tile, std:
             x < width && y < height};
 }
 
-/// Records of the rows, word by word, so that neighbouring threads read neighbouring words.
+/// Records of the rows, word by word. Neighbouring threads read neighbouring words.
 GSE_DEVICE void copy_records(const Record* from, const std::uint32_t* rows, std::uint32_t count,
                              std::uint32_t t, Record* to) {
     for (std::uint32_t word = t; word < count * RecordWords; word += BlockThreads) {
@@ -108,8 +108,8 @@ GSE_DEVICE void blend_tile(const Grid& grid, const BlendArguments& args) {
     }
 }
 
-/// Remaining-light form of the derivative, as backward_pixels has it: dL/dalpha = T (c.v) - R / (1 - alpha)
-/// with R the gradient-weighted light behind the pair.
+/// Remaining-light form of the derivative, as in backward_pixels: dL/dalpha = T (c.v) - R / (1 - alpha). R is
+/// the gradient-weighted light behind the pair.
 struct SlopePixel {
     using Arguments = BackwardArguments;
     static constexpr std::uint32_t Floats = SlotFloats;
@@ -126,7 +126,7 @@ struct SlopePixel {
         }
     }
 
-    /// Takes the record's light; the sums' terms where `active`. Returns whether it was blended.
+    /// Takes the record's light, and the sums' terms if `active`. Returns whether it was blended.
     GSE_MEMBER bool take(const Record& r, bool active, float* sums) {
         for (std::uint32_t k = 0; k < Floats; ++k) sums[k] = 0.0f;
         if (!(transmittance > CutTransmittance)) return false;
@@ -187,7 +187,7 @@ template <std::uint32_t Floats> struct SumShared {
     std::uint32_t last[BlockThreads];
 };
 
-/// Behind the last entry of the tile that wants sums; 0 where none does.
+/// Place behind the last entry of the tile that wants sums; 0 if none does.
 GSE_DEVICE std::uint32_t last_active(const Grid& grid, const TileLists& lists, std::uint32_t first_row,
                                      std::uint32_t* last) {
     const TileRange range = lists.ranges[grid.block];
@@ -239,7 +239,7 @@ GSE_DEVICE void sum_warp(const Grid& grid, std::uint32_t warp, std::uint32_t siz
     }
 }
 
-/// The warps' sums, in order, into the slots; slots that no pixel reached stay as they are.
+/// Adds the warps' sums, in order, into the slots. Slots that no pixel reached stay as they are.
 template <std::uint32_t Floats>
 GSE_DEVICE void write_slots(const SumShared<Floats>& shared, std::uint32_t size, std::uint32_t t,
                             float* slots) {

@@ -1,11 +1,11 @@
-// Kernels 2: rows -> records (Kerbl et al. 2023, EWA as kernel_geometry.inl has it, in double), the tiles
-// their ellipses touch, and the tiles' parts of the sorted pairs. One thread per row.
+// Kernels 2: rows -> records, the tiles their ellipses touch, and the tiles' parts of the sorted pairs. One
+// thread per row. EWA projection as in kernel_geometry.inl, in double (Kerbl et al. 2023).
 
 constexpr float TileMargin = 0.01f;  // pixels, so that rounding can never drop a pair
 
 GSE_DEVICE std::uint32_t row_of(const Grid& grid, std::uint32_t t) { return grid.block * BlockThreads + t; }
 
-/// Colour before the clamp, of the first Count coefficients: a number the compiler knows, so that no array
+/// Colour before the clamp, of the first Count coefficients. The compiler knows the number, so that no array
 /// lies in memory.
 template <int Count> GSE_DEVICE void colour_of(F x, F y, F z, const float* sh, float* colour) {
     F basis[16];
@@ -20,7 +20,7 @@ template <int Count> GSE_DEVICE void colour_of(F x, F y, F z, const float* sh, f
     for (int channel = 0; channel < 3; ++channel) store(colour + channel, sums[channel]);
 }
 
-/// Colour clamped at 0; false where it is not finite.
+/// Colour clamped at 0. Returns false if it is not finite.
 GSE_DEVICE bool colour_record(const ProjectArguments& args, const RecordBatch& found, Record& record) {
     const F dx = load(found.direction[0]), dy = load(found.direction[1]), dz = load(found.direction[2]);
     const F scale = set(1.0f) / sqrt(fma(dz, dz, fma(dy, dy, dx * dx)));
@@ -77,7 +77,7 @@ GSE_DEVICE RowFate record_of(const ProjectArguments& args, std::uint32_t row, Re
     return colour_record(args, found, record) ? RowFate::Drawn : RowFate::Unusable;
 }
 
-/// An ellipse over rows of tiles, as bin_large has it over rows of blocks.
+/// Ellipse over rows of tiles, as bin_large has it over rows of blocks.
 struct TileEllipse {
     float x, y, slope, inverse_l1, l3, reach, half_height, lean;
     std::int32_t top, bottom;  // rows of tiles

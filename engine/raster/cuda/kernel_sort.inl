@@ -1,5 +1,5 @@
 // Kernels 1: sums of counts, and one digit of a stable radix sort (least digit first). Each thread has
-// neighbouring items, so that order within a block is the order of the threads.
+// neighbouring items, so that the order of threads is that of items within a block.
 
 GSE_DEVICE std::uint32_t add_saturated(std::uint32_t a, std::uint32_t b) {
     return a + b < a ? Saturated : a + b;

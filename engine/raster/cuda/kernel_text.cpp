@@ -1,4 +1,4 @@
-// The kernels' PTX text, where the build had a compiler for it.
+// The kernels' PTX text, if the build had a compiler for it.
 #include "engine/raster/cuda/driver.h"
 
 #ifdef GSE_CUDA_TEXT

@@ -1,5 +1,5 @@
-// The kernels for a CUDA device: compiled by clang without a toolkit to PTX text, which the driver translates
-// for the device it finds.
+// The kernels for a CUDA device. clang compiles them without a toolkit to PTX text, which the driver
+// translates for its device.
 #include "engine/raster/conventions.h"
 #include "engine/raster/cuda/arguments.h"
 #include "engine/raster/cuda/grid.h"

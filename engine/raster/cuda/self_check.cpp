@@ -25,8 +25,8 @@ constexpr double ContributionLimit =
 
 constexpr int CheckWidth = 75, CheckHeight = 53;  // whole and cut tiles
 
-/// Several batches of Gaussians per tile, some opaque, some needles, one row that means nothing, two at the
-/// same depth.
+/// Scene with several batches of Gaussians per tile: some opaque, some needles, one row without meaning, two
+/// at one depth.
 GaussianData check_scene() {
     constexpr std::size_t rows = 600;
     GaussianData data;
@@ -107,7 +107,7 @@ Shown show(Rasterizer& rasterizer, const GaussianData& data, const std::vector<s
     return shown;
 }
 
-/// Largest difference outside the doubtful pixels; infinite where there is a NaN or another size.
+/// Largest difference outside the doubtful pixels. Infinite for a NaN or another size.
 double worst(const std::vector<float>& found, const std::vector<float>& expected,
              const std::vector<std::uint8_t>& doubtful) {
     if (found.size() != expected.size()) return INFINITY;

@@ -1,6 +1,5 @@
-// Whether a rasterizer draws and differentiates a small built-in scene as the plain version does: asked of
-// every CUDA device before it is used, so that one that computes something else is refused rather than
-// believed.
+// Comparison of a rasterizer with the plain version on a small built-in scene, drawing and derivative. Every
+// CUDA device must pass before use, so that one with other results is refused.
 #pragma once
 
 #include <string>
@@ -9,8 +8,8 @@
 
 namespace gse::raster {
 
-/// Differences to the plain version on the built-in scene. Pixels where rounding may decide a cut otherwise
-/// are left out.
+/// Differences to the plain version on the built-in scene. Pixels whose cut may depend on rounding are left
+/// out.
 struct SelfCheck {
     double image = 0;          // largest over colour, alpha and composited values
     double depth = 0;          // largest, world units
@@ -25,7 +24,7 @@ struct SelfCheck {
 
 SelfCheck check_against_plain(Rasterizer& rasterizer);
 
-/// Throws Error with the figures where the check fails; `what` is the device's name.
+/// Throws Error with the figures if the check fails. `what` is the device's name.
 void require_agreement(Rasterizer& rasterizer, const std::string& what);
 
 }  // namespace gse::raster
