@@ -16,7 +16,7 @@ BEGINNINGS = re.compile(r"(What|The same|Of|Where)\b")
 ABBREVIATION = re.compile(r"\b(e\.g|i\.e|et al|vs|cf|Eq|Sec|Fig|etc|St|p|pp|No)\.(?=\s)")
 CITED = re.compile(r"\b([\w-]+)\.md\b(,? (\d+(?:\.\d+)*)\b)?")
 # Sections of documents that lay beside the repository once.
-OUTSIDE = re.compile(r"\b(?:method|views|raster|formats|design|style|GSEditPro) [A-Z]?\d+(?:\.\d+)*\b(?! ?(?:px|%|MB))")
+OUTSIDE = re.compile(r"\b(?:method|views|raster|formats|design|style) [A-Z]?\d+(?:\.\d+)*\b(?! ?(?:px|%|MB))")
 LITERAL = r'"((?:\\.|[^"\\])*)"'
 LITERALS = re.compile(LITERAL)
 FIELD_HELP = re.compile(r'\bf\(\s*"[a-z_0-9]+",\s*self\.[\w.]+,\s*((?:' + LITERAL + r'\s*)+)')

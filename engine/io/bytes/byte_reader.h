@@ -1,4 +1,4 @@
-// Bounds-checked cursor over little-endian bytes; every overrun becomes one sentence about a truncated file.
+// Bounds-checked cursor over little-endian bytes. Every overrun becomes one sentence about a truncated file.
 #pragma once
 
 #include <fmt/core.h>
@@ -15,7 +15,7 @@
 
 namespace gse::io {
 
-/// a * b, or the largest value when that does not fit: sizes from files are compared, never trusted.
+/// a * b, or the largest value when that does not fit. Sizes from files are compared, never trusted.
 inline std::uint64_t saturating_product(std::uint64_t a, std::uint64_t b) {
     std::uint64_t result = 0;
     return __builtin_mul_overflow(a, b, &result) ? ~std::uint64_t{0} : result;
@@ -27,8 +27,8 @@ inline std::uint64_t saturating_sum(std::uint64_t a, std::uint64_t b) {
     return __builtin_add_overflow(a, b, &result) ? ~std::uint64_t{0} : result;
 }
 
-/// Little-endian scalar at `source` (the machine is little-endian, as everywhere Debian's amd64 and arm64
-/// run).
+/// Little-endian scalar at `source`. The machine is little-endian, as everywhere Debian's amd64 and arm64
+/// run.
 template <class T> T load_scalar(const std::byte* source) {
     static_assert(std::is_trivially_copyable_v<T>);
     T value;
@@ -38,7 +38,7 @@ template <class T> T load_scalar(const std::byte* source) {
 
 class ByteReader {
 public:
-    /// `what` names the thing being read in messages ("the SPZ file").
+    /// `what` names the read thing in messages ("the SPZ file").
     ByteReader(std::span<const std::byte> bytes, std::string what) : bytes_(bytes), what_(std::move(what)) {}
 
     std::size_t offset() const { return offset_; }
@@ -62,7 +62,7 @@ public:
         offset_ += size + 1;
         return {begin, size};
     }
-    /// A count of things that take at least `least_bytes` each; throws when the rest cannot hold so many.
+    /// Count of things that take at least `least_bytes` each. Throws when the rest cannot hold so many.
     std::uint64_t read_count(std::uint64_t least_bytes) {
         const auto count = read<std::uint64_t>();
         if (saturating_product(count, least_bytes) > remaining())

@@ -1,4 +1,4 @@
-// The two limits of what a file may ask for.
+// The two limits of a file's claims: its own size and the free memory.
 #include "engine/io/bytes/claims.h"
 
 #include <fmt/core.h>

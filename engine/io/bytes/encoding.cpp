@@ -9,7 +9,7 @@
 namespace gse::io {
 namespace {
 
-/// Which axes appear to an odd power in each basis function of bands 1 to 3 (3DGS order): bit 0 x, bit 1 y,
+/// Axes that appear to an odd power in each basis function of bands 1 to 3 (3DGS order): bit 0 x, bit 1 y,
 /// bit 2 z.
 constexpr std::array<unsigned, 15> OddAxes = {
     2, 4, 1,             // y, z, x

@@ -1,4 +1,4 @@
-// Arithmetic the scene formats share: 8-bit opacities, quaternions, SH under axis flips, clamped
+// Arithmetic that the scene formats share: 8-bit opacities, quaternions, SH under axis flips, clamped
 // quantisation.
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace gse::io {
 
-/// Opacities that come as exactly 0 or 1 are pulled in by this, so that their logits are finite (+-13.8).
+/// Margin that opacities of exactly 0 or 1 are pulled in by, so that their logits are finite (+-13.8).
 inline constexpr double OpacityMargin = 1e-6;
 /// Log-scale of an axis that a format stores as exactly flat: e^-23 = 1e-10 units.
 inline constexpr float FlattestLogScale = -23.025851f;
@@ -26,16 +26,16 @@ const std::array<float, 256>& byte_logits();
 
 double opacity_from_logit(double logit);
 
-/// round(value) clamped to 0..255; NaN gives 0.
+/// round(value) clamped to 0..255. NaN gives 0.
 inline std::uint8_t to_byte(double value) {
     if (!(value > 0)) return 0;
     return value >= 255 ? 255 : static_cast<std::uint8_t>(value + 0.5);
 }
 
-/// q / |q|; a zero or non-finite quaternion gives (1,0,0,0).
+/// q / |q|. A zero or non-finite quaternion gives (1,0,0,0).
 std::array<double, 4> unit_quaternion(const float* wxyz);
 
-/// Signs of a flip of world axes; each is +1 or -1.
+/// Signs of a flip of world axes. Each is +1 or -1.
 struct AxisSigns {
     int x = 1, y = 1, z = 1;
     bool identity() const { return x == 1 && y == 1 && z == 1; }
@@ -51,7 +51,7 @@ constexpr std::size_t rest_of_degree(int degree) {
     return static_cast<std::size_t>(sh_coefficient_count(degree)) - 1;
 }
 
-/// Rows a quantised format can hold: usable ones, with a log warning when some are left out.
+/// Rows that a quantised format can hold: the usable ones. Logs a warning when some are left out.
 GaussianSet storable_rows(const GaussianSet& set, const char* format);
 
 /// Appends the bytes of a trivially copyable value.

@@ -18,7 +18,7 @@ std::uint64_t hash_number(std::uint64_t number, std::uint64_t state) {
     return hash_bytes({reinterpret_cast<const char*>(&number), sizeof number}, state);
 }
 
-/// Reads with a stream, not a map: somebody may be cutting the file off at this moment.
+/// Reads with a stream, not a map, since somebody may be cutting the file off at this moment.
 std::optional<Fingerprint> of_file(const std::filesystem::path& path) {
     std::error_code failure;
     const std::uint64_t size = std::filesystem::file_size(path, failure);

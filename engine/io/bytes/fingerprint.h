@@ -1,4 +1,4 @@
-// Telling a scene's file again without reading all of it.
+// Recognition of a scene's file without reading all of it.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,11 @@ struct Fingerprint {
     std::uint64_t value = 0;
 };
 
-/// Of a file: its size, the first and last MiB and 64 pages in between; of a folder: names and sizes of its
-/// files. Nothing when it cannot be read.
+/// Fingerprint of a file: its size, the first and last MiB and 64 pages in between. For a folder: names and
+/// sizes of its files. Nothing when it cannot be read.
 std::optional<Fingerprint> fingerprint(const std::filesystem::path& path);
 
-/// FNV-1a, 64 bits; goes on from `state`.
+/// FNV-1a hash, 64 bits. Continues from `state`.
 std::uint64_t hash_bytes(std::string_view bytes, std::uint64_t state = 0xcbf29ce484222325ULL);
 
 }  // namespace gse::io

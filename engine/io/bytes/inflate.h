@@ -1,4 +1,4 @@
-// Decompression that grows with what really comes out, so that a lying size costs nothing.
+// Decompression that grows with its real output, so that a lying size costs nothing.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 namespace gse::io {
 
 /// Inflates a gzip stream until its end or until `limit` bytes. Throws Error (Malformed) when the stream is
-/// broken. A stream that is cut off gives what came out before.
+/// broken. A stream that is cut off gives the bytes before its end.
 std::vector<std::byte> inflate_gzip(std::span<const std::byte> bytes, std::uint64_t limit);
 
 /// Decompresses one zstd frame that must give exactly `size` bytes. Throws Error (Malformed).

@@ -1,4 +1,4 @@
-// Whole numbers out of JSON: a fraction or a number out of range is an error, not undefined behaviour.
+// Whole numbers from JSON. A number out of range is an error, not undefined behaviour.
 #pragma once
 
 #include <fmt/core.h>
@@ -11,7 +11,7 @@
 
 namespace gse::io {
 
-/// A number in [0, highest], which must be below 2^53; fractions are cut.
+/// Number in [0, highest], which must be below 2^53. Fractions are cut.
 inline std::uint64_t whole_number(const nlohmann::json& json, std::uint64_t highest, const char* what) {
     const double value = json.is_number() ? json.get<double>() : std::nan("");
     if (!(value >= 0 && value <= static_cast<double>(highest)))

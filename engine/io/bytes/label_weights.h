@@ -1,4 +1,4 @@
-// Label weights as files hold them: anything; as labels need them: between 0 and 1.
+// Label weights: any numbers in files, numbers between 0 and 1 in labels.
 #pragma once
 
 #include <fmt/core.h>
@@ -11,7 +11,7 @@
 
 namespace gse::io {
 
-/// Brings every weight into [0,1], NaN to 0; returns how many were not there.
+/// Brings every weight into [0,1], NaN to 0. Returns how many were outside.
 inline std::size_t hold_weights(std::span<float> weights) {
     std::size_t held = 0;
     for (float& weight : weights) {
@@ -22,7 +22,7 @@ inline std::size_t hold_weights(std::span<float> weights) {
     return held;
 }
 
-/// The warning for that; `where` begins it.
+/// Warning for `held` weights that were outside. `where` begins it.
 inline std::string held_weights_text(std::size_t held, std::string_view where) {
     return fmt::format(
         "{} has weights outside of 0 to 1 for {} splats: they are taken as the nearer of the two", where,

@@ -1,4 +1,4 @@
-// libzip over buffers.
+// Archives in memory through libzip.
 #include "engine/io/bytes/zip_archive.h"
 
 #include <fmt/core.h>

@@ -17,12 +17,11 @@ struct ZipMember {
     bool deflate = false;  // otherwise stored as it is
 };
 
-/// The archive's bytes; the same members give the same bytes.
+/// Bytes of the archive. Equal members give equal bytes.
 std::string write_zip(std::span<const ZipMember> members);
 
-/// Reads an archive whose bytes outlive it. Throws Error (Malformed) when they are none; `what` names the
-/// file in messages
-/// ("the project").
+/// Reads an archive whose bytes outlive it. Throws Error (Malformed) for bytes that are no archive. `what`
+/// names the file in messages ("the project").
 class ZipReader {
 public:
     ZipReader(std::span<const std::byte> bytes, std::string what);
@@ -31,8 +30,8 @@ public:
     ZipReader& operator=(ZipReader&&) = delete;
 
     bool has(const std::string& name) const;
-    /// The member's bytes, its checksum verified. Throws Error when it is not there, broken or larger than
-    /// `most` bytes.
+    /// The member's bytes, its checksum verified. Throws Error for a member that is missing, broken or larger
+    /// than `most` bytes.
     std::vector<std::byte> read(const std::string& name, std::uint64_t most) const;
 
 private:

@@ -1,4 +1,4 @@
-// What every camera reader refuses: focal lengths, sizes and poses that no camera has.
+// Checks of every camera reader: focal lengths, sizes and poses that no camera has are refused.
 #pragma once
 
 #include <fmt/core.h>
@@ -13,7 +13,7 @@ namespace gse::io {
 
 inline constexpr int LargestImageSide = 100000;  // pixels
 
-/// `hint` says what to do about it.
+/// Throws Error (Malformed) for intrinsics that no camera has. `hint` says what to do about it.
 inline void check_intrinsics(const Camera& camera, const std::string& which, const char* hint = "") {
     if (camera.width < 1 || camera.height < 1 || camera.width > LargestImageSide ||
         camera.height > LargestImageSide)
@@ -30,7 +30,7 @@ inline void check_intrinsics(const Camera& camera, const std::string& which, con
                     hint);
 }
 
-/// Rotation orthonormal within a hundredth and everything finite.
+/// Throws Error (Malformed) unless everything is finite and the rotation is orthonormal within a hundredth.
 inline void check_pose(const Camera& camera, const std::string& which, const char* hint = "") {
     const Vec3& t = camera.translation;
     bool valid = std::isfinite(t.x) && std::isfinite(t.y) && std::isfinite(t.z);

@@ -1,4 +1,4 @@
-// A camera as JSON, as projects and pictures keep it.
+// A camera as JSON, in projects and pictures.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,11 +10,11 @@
 namespace gse {
 
 nlohmann::ordered_json camera_to_json(const Camera& camera);
-/// Throws nlohmann::json::exception for entries that are missing or of another kind, Error (Malformed) for
-/// values that are no camera's. Without a principal point it is the middle.
+/// Camera from JSON. Throws nlohmann::json::exception for entries that are missing or of another kind, Error
+/// (Malformed) for values that are no camera's. The principal point is the middle if it is missing.
 Camera camera_from_json(const nlohmann::ordered_json& json);
 
-/// A list of {"time", "camera"}; as above.
+/// Camera path from a list of {"time", "camera"}. Throws as above.
 nlohmann::ordered_json camera_keys_to_json(const std::vector<CameraKey>& keys);
 std::vector<CameraKey> camera_keys_from_json(const nlohmann::ordered_json& json);
 

@@ -1,4 +1,4 @@
-// Finding camera files beside scenes, and telling their kinds apart.
+// Search for camera files beside scenes, and their kinds.
 #include "engine/io/cameras/cameras.h"
 
 #include <algorithm>

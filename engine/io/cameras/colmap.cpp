@@ -1,4 +1,4 @@
-// COLMAP sparse models, binary and text: intrinsics of cameras, poses of images; points are not read.
+// COLMAP sparse models, binary and text: intrinsics of cameras, poses of images. Points are not read.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 using io::ByteReader;
 
-/// One camera model: `params` numbers, the first `focals` are focal lengths, then cx, cy (unless spherical).
+/// Camera model of `params` numbers. The first `focals` are focal lengths, then cx, cy (unless spherical).
 struct Model {
     std::string_view name;
     std::size_t params;
@@ -25,7 +25,7 @@ struct Model {
     bool perspective;    // a pinhole when everything after cx, cy is zero
 };
 
-/// Index = COLMAP's model number.
+/// Camera models; the index is COLMAP's model number.
 constexpr std::array<Model, 18> Models = {{{"SIMPLE_PINHOLE", 3, 1, true},
                                            {"PINHOLE", 4, 2, true},
                                            {"SIMPLE_RADIAL", 4, 1, true},
@@ -50,7 +50,7 @@ constexpr std::uint64_t LeastImageBytes = 4 + 7 * 8 + 4 + 1 + 8;
 constexpr std::uint64_t PointBytes = 24;
 constexpr double LargestSize = 1e5;  // pixels
 
-/// Intrinsics only; the pose comes from the image.
+/// Intrinsics only. The pose comes from the image.
 struct Intrinsics {
     Camera camera;
     bool distorted = false;
@@ -87,7 +87,7 @@ Intrinsics make_intrinsics(const Model& model, double width, double height, std:
     return result;
 }
 
-/// q (w,x,y,z) and t are world to camera.
+/// Camera of an image. q (w,x,y,z) and t are world to camera.
 View make_view(std::string_view name, const std::array<double, 7>& pose, const Intrinsics& intrinsics) {
     View view;
     view.name = std::string(name);
@@ -109,7 +109,7 @@ const Intrinsics& find_camera(const Cameras& cameras, std::uint32_t id) {
     return found->second;
 }
 
-/// Order by name: COLMAP's own order is that of a hash table.
+/// Sorts by name, since COLMAP's own order is that of a hash table.
 std::vector<View> sorted(std::vector<View> views) {
     if (views.empty()) throw_malformed_colmap("has no images");
     std::stable_sort(views.begin(), views.end(),

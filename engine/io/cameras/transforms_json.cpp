@@ -22,7 +22,7 @@ using Json = nlohmann::json;
 
 constexpr int BlenderSide = 800;  // pixels; what the scenes without a stated size and without pictures have
 
-/// x -> linear x + offset.
+/// Affine map x -> linear x + offset.
 struct Affine {
     Mat3 linear = Mat3::identity();
     Vec3 offset{};
@@ -33,7 +33,7 @@ struct Affine {
                 "the file is damaged or of another kind");
 }
 
-/// 3x4 or 4x4, by rows.
+/// Matrix of 3x4 or 4x4 numbers, by rows.
 Affine affine(const Json& json) {
     if (!json.is_array() || json.size() < 3)
         throw_malformed_transforms("has a matrix with fewer than three rows");
@@ -57,8 +57,8 @@ Affine operator*(const Affine& a, const Affine& b) {
     return {a.linear * b.linear, a.linear * b.offset + a.offset};
 }
 
-/// From the world of the file to that of the splats: nerfstudio turns and scales the cameras before training
-/// and says how in dataparser_transforms.json, which it writes beside the exported splats, counted from the
+/// Map from the world of the file to that of the splats. nerfstudio turns and scales the cameras before
+/// training. It writes that map to dataparser_transforms.json beside the exported splats, counted from the
 /// world before applied_transform.
 struct WorldChange {
     Affine transform;
@@ -154,7 +154,8 @@ bool has_distortion(const Json& frame, const Json& file) {
     return false;
 }
 
-/// OpenGL axes (right, up, back) to ours (right, down, forward), then camera-to-world to world-to-camera.
+/// Sets the pose: from OpenGL axes (right, up, back) to ours (right, down, forward), then from
+/// camera-to-world to world-to-camera.
 void set_pose(Camera& camera, const Json& frame, const WorldChange& change) {
     Affine pose = change.transform * affine(frame.at("transform_matrix"));
     for (int row = 0; row < 3; ++row) {

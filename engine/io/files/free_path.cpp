@@ -1,4 +1,4 @@
-// Numbered names.
+// Numbered names of files.
 #include "engine/io/files/free_path.h"
 
 #include <fmt/format.h>
@@ -10,7 +10,7 @@
 namespace gse {
 namespace {
 
-/// Ending of a file's name: all of a scene format's (".compressed.ply"), else what follows the last dot.
+/// Ending of a file's name: all of a scene format's (".compressed.ply"), else the part from the last dot on.
 std::string ending_of(const std::string& file) {
     std::string ending = std::filesystem::path(file).extension().string();
     for (const std::string& extension : readable_extensions())

@@ -5,7 +5,7 @@
 
 namespace gse {
 
-/// The first of "shot.png", "shot-2.png", ... that is free; an empty folder is.
+/// First free name of "shot.png", "shot-2.png", ... An empty folder counts as free.
 std::filesystem::path first_free(const std::filesystem::path& wanted);
 
 }  // namespace gse

@@ -20,7 +20,7 @@ std::filesystem::path from_environment(const char* name) {
     return value != nullptr ? std::filesystem::path(value) : std::filesystem::path();
 }
 
-/// `own` as it is, else `xdg`/gseditpro (XDG asks for absolute paths), else ~/`fallback`/gseditpro.
+/// `own` as it is, else `xdg`/gseditpro, else ~/`fallback`/gseditpro. XDG asks for absolute paths.
 std::filesystem::path user_folder(const char* own, const char* xdg, const char* fallback) {
     if (const auto folder = from_environment(own); !folder.empty()) return folder;
     if (const auto folder = from_environment(xdg); folder.is_absolute()) return folder / "gseditpro";
@@ -58,7 +58,7 @@ bool write_json(const std::filesystem::path& path, const Json& json) {
 
 std::filesystem::path recent_path() { return config_folder() / "recent.json"; }
 
-/// Every path in recent.json, there or not.
+/// Every path in recent.json, whether or not its file exists.
 std::vector<std::string> recent_names() {
     std::vector<std::string> names;
     const Json json = load_user_json(recent_path());

@@ -109,7 +109,8 @@ float load_sh(const Header& header, const std::byte* source, std::size_t index) 
     return header.sh_low + (header.sh_high - header.sh_low) * code / 255;
 }
 
-/// The file is band-major, then channel-major: rrr ggg bbb of band 1, then rrrrr ggggg bbbbb of band 2.
+/// Coefficients of a row. The file is band-major, then channel-major: rrr ggg bbb of band 1, then rrrrr ggggg
+/// bbbbb of band 2.
 void read_sh(const Header& header, const std::byte* source, int degree, float* sh) {
     std::size_t index = 0, first = 1;
     for (int band = 1; band <= degree; ++band) {

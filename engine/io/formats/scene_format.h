@@ -60,10 +60,9 @@ struct SceneFormat {
         {};  // "meta.json": files that stand for a folder's scene, first wins
     MimeType mime;
 
-    /// Whether the content begins like this format. Never throws. Null when only the name tells the format.
+    /// True when the content begins like this format. Never throws. Null when only the name tells the format.
     bool (*detect)(Bytes bytes) = nullptr;
-    /// Whether a file of this name is a scene at all, from its first SceneFormat::StartBytes bytes. Null = it
-    /// is.
+    /// True when a file of this name is a scene at all, by its first StartBytes bytes. Null = it always is.
     bool (*may_be_scene)(std::string_view start) = nullptr;
     /// Reads a file in memory. Throws Error when the content is broken.
     Scene (*read)(Bytes bytes) = nullptr;
@@ -72,7 +71,7 @@ struct SceneFormat {
     /// Reads the folder that one of `file_names` stands for. Throws Error.
     Scene (*read_folder)(const std::filesystem::path& file) = nullptr;
 
-    /// Hands on the bytes of a file; throws Error before the first piece or not at all. Formats that are not
+    /// Hands on the bytes of a file. Throws Error before the first piece or not at all. Formats that are not
     /// exact leave out unusable rows with a warning. Returns the order: row order[i] of the usable rows
     /// became row i. An empty order means that rows stay in their places.
     std::vector<std::uint32_t> (*write)(const Scene& scene, const SaveOptions& options,

@@ -21,7 +21,8 @@ constexpr int SubpixelBits = 4;
 cv::Mat view_of(Image& image) { return {image.height, image.width, CV_32FC3, image.data.data()}; }
 cv::Scalar scalar(const DrawColour& colour) { return {colour[0], colour[1], colour[2]}; }
 
-/// OpenCV blends antialiased lines into 8-bit pictures only: what lies in `area` is drawn as coverage first.
+/// Blends lines into `area`, drawn as coverage first. OpenCV blends antialiased lines into 8-bit pictures
+/// only.
 template <class Draw> void blend(Image& image, cv::Rect area, const DrawColour& colour, Draw draw) {
     area &= cv::Rect(0, 0, image.width, image.height);
     if (image.channels != 3 || area.empty()) return;
@@ -40,7 +41,7 @@ bool drawable(const std::array<double, 2>& p) {
     return std::abs(p[0]) < Far && std::abs(p[1]) < Far;
 }
 
-/// What lines between the points cover, with the room of their thickness.
+/// Area that lines between the points cover, with the room of their thickness.
 cv::Rect area_of(std::span<const std::array<double, 2>> points, int width) {
     cv::Rect area;
     for (const auto& p : points)

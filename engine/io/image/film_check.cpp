@@ -29,7 +29,7 @@ bool mp4_is_whole(std::span<const std::byte> bytes) {
     return has_index;
 }
 
-/// Element of a WebM file: the size is all ones while it is not known.
+/// Element of a WebM file. The size is all ones while it is not known.
 struct Element {
     std::uint64_t id = 0, size = 0;
     std::size_t header = 0;

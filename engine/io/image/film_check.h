@@ -1,4 +1,4 @@
-// Whether a film file was closed properly: its encoder does not say when the disk took no more.
+// Check that a film file was closed properly. Its encoder does not say when the disk took no more.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Image files: PNG is written here, everything is read by the media library.
+// Image files. PNG is written here; everything is read by the media library.
 #include "engine/io/image/image_file.h"
 
 #include <fmt/core.h>

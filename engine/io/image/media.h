@@ -1,6 +1,5 @@
-// What reads image files and encodes films, in plain types: a library of its own, which the first such file
-// loads. OpenCV's readers and FFmpeg bring two hundred libraries along, 0.3 s for a program that may never
-// see a picture.
+// Readers of image files and encoders of films, in plain types. They are a library of their own, loaded on
+// demand. OpenCV's readers and FFmpeg bring two hundred libraries along, which most commands do not need.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +13,7 @@
 
 namespace gse::io {
 
-/// A film as it is encoded. Goes before its file is looked at: only then everything is in it.
+/// Film as it is encoded. Destroy it before its file is read: only then everything is in it.
 class FilmEncoder {
 public:
     virtual ~FilmEncoder() = default;
@@ -24,7 +23,7 @@ public:
     virtual const std::string& codec() const = 0;
 };
 
-/// Of a film, pixels; even.
+/// Size of a film in pixels; even.
 struct FilmSize {
     int width = 0, height = 0;
 };
@@ -32,15 +31,15 @@ struct FilmSize {
 class Media {
 public:
     virtual ~Media() = default;
-    /// Values in [0,1], 1, 3 (red, green, blue) or 4 channels. Throws Error (Malformed, Unsupported),
-    /// OutOfMemory.
+    /// Decodes an image: values in [0,1], 1, 3 (red, green, blue) or 4 channels. Throws Error (Malformed,
+    /// Unsupported), OutOfMemory.
     virtual Image decode(std::span<const std::byte> file) = 0;
-    /// Null where no codec opens the file. Its extension says which are tried.
+    /// Opens an encoder, or null if no codec opens the file. Its extension says which are tried.
     virtual std::unique_ptr<FilmEncoder> open_film(const std::filesystem::path& file, FilmSize size,
                                                    double frames_per_second) = 0;
 };
 
-/// Loads libgse_media.so on the first call. Throws Error where it is missing.
+/// Loads libgse_media.so on the first call. Throws Error if it is missing.
 Media& media();
 
 }  // namespace gse::io

@@ -1,4 +1,4 @@
-// The library that reads image files and encodes films.
+// Loads the library that reads image files and encodes films.
 #include "engine/base/plugin.h"
 #include "engine/io/image/media.h"
 

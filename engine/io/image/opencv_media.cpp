@@ -1,5 +1,5 @@
-// Image files by OpenCV's readers; MP4 and WebM by its FFmpeg: H.264 where the system can encode it, MPEG-4
-// elsewhere; VP9 or VP8 for WebM.
+// Image files by OpenCV's readers; MP4 and WebM by its FFmpeg. MP4 is H.264 if the system can encode it,
+// MPEG-4 otherwise. WebM is VP9 or VP8.
 #include <fmt/format.h>
 
 #include <array>
@@ -41,7 +41,7 @@ cv::Mat decoded(std::span<const std::byte> bytes) {
 
 class OpenCvFilm final : public FilmEncoder {
 public:
-    /// Tries the codecs in order; OpenCV says on stderr what it misses, which is no news to the user.
+    /// Tries the codecs in order. OpenCV's complaints on stderr are no news to the user.
     bool open(const std::filesystem::path& file, double rate, FilmSize size) {
         const auto level = cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
         size_ = {size.width, size.height};

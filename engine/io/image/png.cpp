@@ -58,7 +58,7 @@ int paeth(int left, int up, int corner) {
 
 using Row = std::vector<std::uint8_t>;
 
-/// How far the bytes are from zero, read as signed numbers: the usual guess of what compresses best.
+/// Sum of the bytes' distances from zero, read as signed numbers: the usual guess for the best compression.
 std::size_t cost_of(const Row& row) {
     std::size_t sum = 0;
     for (const auto byte : row) sum += static_cast<std::size_t>(byte < 128 ? byte : 256 - byte);
@@ -73,7 +73,7 @@ public:
         candidates_.fill(Row(row_bytes));
     }
 
-    /// Appends the filter's number and the filtered row; `above` is null for the first.
+    /// Appends the filter's number and the filtered row. `above` is null for the first.
     void append(std::string& out, const std::uint8_t* row, const std::uint8_t* above) {
         filter(row, above != nullptr ? above : zeros_.data());
         std::size_t best = 0, least = cost_of(candidates_[0]);
@@ -84,7 +84,7 @@ public:
     }
 
 private:
-    /// None, sub, up, average, Paeth.
+    /// Fills the candidates of the five filters: none, sub, up, average, Paeth.
     void filter(const std::uint8_t* row, const std::uint8_t* above) {
         const std::size_t size = zeros_.size(), first = std::min(step_, size);
         auto& [none, sub, up, average, paeth_row] = candidates_;

@@ -11,7 +11,7 @@
 
 namespace gse::io {
 
-/// 8-bit pixels, interleaved; channels 1 (grey), 3 or 4.
+/// 8-bit pixels, interleaved. Channels are 1 (grey), 3 or 4.
 struct BytePixels {
     int width = 0;
     int height = 0;
@@ -20,7 +20,7 @@ struct BytePixels {
 };
 
 std::string encode_png(const BytePixels& pixels, const PngText& text);
-/// Text chunks of a PNG; broken chunks end the search.
+/// Text chunks of a PNG. Broken chunks end the search.
 PngText parse_png_text(std::span<const std::byte> bytes);
 /// Size of a PNG or JPEG from its header.
 std::optional<ImageSize> parse_image_size(std::span<const std::byte> bytes);

@@ -1,4 +1,4 @@
-// Films are encoded on a thread of their own while the next frames are painted.
+// Films, encoded on a thread of their own while the next frames are painted.
 #include "engine/io/image/video.h"
 
 #include <fmt/core.h>
@@ -38,7 +38,7 @@ struct VideoWriter::State {
 
     using Frame = std::vector<std::uint8_t>;  // rows of blue, green, red
 
-    /// Hands a frame to the encoder; waits when it has enough to do. Throws what encoding has thrown.
+    /// Hands a frame to the encoder. Waits when it has enough to do. Rethrows errors of the encoding.
     void hand_over(Frame frame) {
         std::unique_lock lock(mutex);
         changed.wait(lock, [&] { return waiting.size() < MostWaiting || failure; });
@@ -46,7 +46,7 @@ struct VideoWriter::State {
         waiting.push_back(std::move(frame));
         changed.notify_all();
     }
-    /// Returns when all frames are encoded. Throws what encoding has thrown.
+    /// Returns when all frames are encoded. Rethrows errors of the encoding.
     void end() {
         {
             const std::lock_guard lock(mutex);

@@ -13,8 +13,8 @@ namespace gse {
 /// nothing.
 class VideoWriter {
 public:
-    /// Every frame must be width x height; odd sizes lose their last row or column (MP4 needs even ones).
-    /// Throws Error (Unsupported when built without OpenCV or when no codec works, Unwritable).
+    /// Every frame must be width x height. Odd sizes lose their last row or column, since MP4 needs even
+    /// ones. Throws Error (Unsupported without OpenCV or a working codec, Unwritable).
     VideoWriter(const std::filesystem::path& path, int width, int height, double frames_per_second);
     ~VideoWriter();
     VideoWriter(const VideoWriter&) = delete;

@@ -1,4 +1,4 @@
-// Autosave files and the question whether their process still lives.
+// Autosave files, and the check that their process still lives.
 #include "engine/io/project/autosave.h"
 
 #include <fmt/core.h>
@@ -24,7 +24,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Reads a /proc file, which has no size; empty when it is not there.
+/// Contents of a /proc file, which has no size. Empty when it is missing.
 std::string read_line(const std::string& path) {
     std::ifstream stream(path);
     std::string line;
@@ -32,11 +32,11 @@ std::string read_line(const std::string& path) {
     return line;
 }
 
-/// Changes with every start of the machine; empty where the system does not tell.
+/// Id that changes with every start of the machine. Empty if the system does not tell.
 std::string boot_id() { return read_line("/proc/sys/kernel/random/boot_id"); }
 
-/// When the process started, in ticks since the boot; empty where the system does not tell or there is no
-/// such process.
+/// Start of the process in ticks since the boot. Empty if the system does not tell or there is no such
+/// process.
 std::string process_start(long process) {
     const std::string line = read_line(fmt::format("/proc/{}/stat", process));
     // Field 22; the second one, the name in brackets, may hold blanks and brackets.
@@ -74,7 +74,8 @@ std::string absolute_name(const std::filesystem::path& path) {
                         : std::filesystem::absolute(path, failure).lexically_normal().string();
 }
 
-/// What one sidecar leads to; removes what is of no use any more.
+/// Finds the recoverable project of a sidecar. Returns false, and removes files without use, if there is
+/// none.
 bool recover(const std::filesystem::path& sidecar, Recoverable& found) {
     const Json json = try_parse_json(read_file(sidecar));
     if (!json.is_object() || owner_lives(json)) return false;

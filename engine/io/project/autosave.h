@@ -1,8 +1,8 @@
 // Autosaves: copies of projects in the state folder, found again when their process died.
 //
-// Each is NAME.gsep, a whole project, with NAME.json beside it that tells who writes it (process, its start,
-// the boot), for which project and scene. NAME is a hash of the project's path ("unsaved" without one) and a
-// random id of the session.
+// Each is NAME.gsep, a whole project. NAME.json beside it names the writer (process, its start, the boot),
+// the project and the scene. NAME is a hash of the project's path ("unsaved" without one) and a random id of
+// the session.
 #pragma once
 
 #include <cstdint>
@@ -15,25 +15,25 @@
 
 namespace gse {
 
-/// state_folder()/autosave.
+/// Folder of the autosaves: state_folder()/autosave.
 std::filesystem::path autosave_folder();
 
-/// The autosave of one open document. Safe to use from any thread, one call at a time runs; destroying it
-/// leaves the files (a program that ends well calls discard).
+/// Autosave of one open document. Safe to use from any thread; one call at a time runs. Its destructor leaves
+/// the files; a program that ends well calls discard().
 class Autosave {
 public:
     explicit Autosave(std::filesystem::path folder = autosave_folder());
 
-    /// Atomic and safe against kill -9 at any moment: afterwards the newest or the one before can be
-    /// recovered. `project_path`: where the artist saved the project, empty = nowhere yet. Use the document's
-    /// own writer so that little is compressed. Throws Error.
+    /// Writes an autosave. Atomic and safe against kill -9 at any moment: the newest or the one before can be
+    /// recovered. `project_path` is the artist's own file, empty = none yet. Use the document's own writer so
+    /// that little is compressed. Throws Error.
     void write(const ProjectData& project, const std::filesystem::path& project_path, ProjectWriter& writer);
-    /// The work is saved elsewhere, or the artist wants none of it.
+    /// Removes the autosave. Call it when the work is saved elsewhere or not wanted.
     void discard();
-    /// The last one stays and is offered again, though this process lives on; the next write begins another.
-    /// Throws Error.
+    /// Leaves the last autosave to be offered again, though this process lives on. The next write begins
+    /// another. Throws Error.
     void leave();
-    /// Where the last one was written; empty = none.
+    /// Path of the last autosave; empty = none.
     std::filesystem::path path() const {
         const std::lock_guard lock(mutex_);
         return path_;
@@ -46,7 +46,7 @@ private:
     std::filesystem::path path_;
 };
 
-/// An autosave whose process is gone, or that was left; load_project(file) opens it.
+/// Autosave whose process is gone, or that was left. load_project(file) opens it.
 struct Recoverable {
     std::filesystem::path file;
     std::filesystem::path project;  // where it was saved by the artist; empty = nowhere
@@ -58,7 +58,7 @@ struct Recoverable {
 /// than their project are removed. Never throws.
 std::vector<Recoverable> find_recoverable(const std::filesystem::path& folder = autosave_folder());
 
-/// Removes it; call when it was recovered and saved or autosaved anew, or is not wanted.
+/// Removes it. Call it when it was recovered and saved or autosaved anew, or is not wanted.
 void discard(const Recoverable& recoverable);
 
 }  // namespace gse

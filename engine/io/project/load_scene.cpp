@@ -9,7 +9,7 @@
 namespace gse {
 namespace {
 
-/// A project's own scene may be a project again.
+/// Scene of a project, whose own scene may be a project again.
 Scene load_project_scene(const std::filesystem::path& path) {
     constexpr int Deepest = 8;
     thread_local int depth = 0;

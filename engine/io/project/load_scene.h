@@ -7,8 +7,8 @@
 
 namespace gse {
 
-/// Reads whatever load_scene_file() reads, and of a project (.gsep) its scene with the edits that are on.
-/// Throws Error with one clear sentence, also when projects refer to each other as their scenes.
+/// Reads the scene of a file or folder (see load_scene_file()), or of a project (.gsep) with the edits that
+/// are on. Throws Error with one clear sentence, also when projects refer to each other as their scenes.
 Scene load_scene(const std::filesystem::path& path);
 
 }  // namespace gse

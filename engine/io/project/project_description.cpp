@@ -34,7 +34,7 @@ constexpr const char* DamagedProject = "the file is damaged; open an older copy 
                 DamagedProject);
 }
 
-/// A JSON object that is read field by field; absent fields keep their default.
+/// JSON object that is read field by field. Absent fields keep their default.
 class Fields {
 public:
     Fields(const Json& json, std::string name) : json_(json), name_(std::move(name)) {
@@ -53,7 +53,7 @@ public:
             value = found->get<bool>();
         }
     }
-    /// Finite unless `any`; values that JSON has no number for are written as text.
+    /// Reads a number, finite unless `any`. Values that JSON has no number for are written as text.
     void number(const char* key, double& value, bool any = false) const {
         const Json* found = find(key);
         if (found == nullptr) return;
@@ -78,7 +78,7 @@ public:
         value = found->is_number_unsigned() ? static_cast<T>(found->get<std::uint64_t>())
                                             : static_cast<T>(found->get<std::int64_t>());
     }
-    /// Exactly `out.size()` finite numbers.
+    /// Reads exactly `out.size()` finite numbers.
     void numbers(const char* key, std::span<double> out) const {
         const Json* found = find(key);
         if (found == nullptr) return;
@@ -113,7 +113,7 @@ private:
     std::string name_;
 };
 
-/// A double as JSON; infinities and NaN as words.
+/// A double as JSON. Infinities and NaN become words.
 Json any_number(double value) {
     if (std::isfinite(value)) return value;
     return std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf";

@@ -1,4 +1,4 @@
-// What project.json says: everything of a project but its arrays, with the names of the members that hold
+// Contents of project.json: everything of a project but its arrays, with the names of the members that hold
 // those.
 #pragma once
 
@@ -15,7 +15,7 @@ namespace gse::io {
 inline constexpr int ProjectVersion = 1;
 inline constexpr const char* ProjectFormat = "gseditpro-project";
 
-/// How the base of the document follows from the scene's file.
+/// Relation of the document's base to the scene's file.
 enum class BaseKind {
     File,   // it is what the file holds
     Kept,   // some rows of the file, told by a bit each
@@ -51,7 +51,7 @@ struct ProjectDescription {
 };
 
 std::string write_description(const ProjectDescription& description);
-/// Throws Error with one sentence for anything that is not as it should be; unknown fields are kept in
+/// Parses project.json. Throws Error with one sentence for any invalid value. Unknown fields are kept in
 /// `unknown`.
 ProjectDescription parse_description(std::string_view text);
 

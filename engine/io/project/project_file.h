@@ -16,7 +16,7 @@
 
 namespace gse {
 
-/// The file a document's base came from.
+/// File that a document's base came from.
 struct SceneSource {
     std::filesystem::path path;  // absolute; empty = none (synthetic): projects then hold the whole base
     std::uint64_t bytes = 0;
@@ -28,7 +28,7 @@ struct SceneSource {
 /// read.
 SceneSource scene_source(const std::filesystem::path& path, GaussianSet loaded);
 
-/// Everything a project holds. Copying it copies pointers, so that it can be saved on another thread.
+/// Contents of a project. Copies copy pointers, so that a project can be saved on another thread.
 struct ProjectData {
     DocumentState state;
     SceneSource source;
@@ -39,7 +39,7 @@ struct ProjectData {
     std::vector<std::string> warnings;                  // of loading: the scene moved, changed...
 };
 
-/// What a project says about itself without its scene being loaded.
+/// Facts of a project, read without loading its scene.
 struct ProjectSummary {
     std::string program;          // version that wrote it
     std::filesystem::path scene;  // where it was
@@ -54,15 +54,14 @@ struct ProjectSummary {
     std::shared_ptr<const Image> thumbnail;  // null when there is none or this build reads no pictures
 };
 
-/// Saves projects. Arrays that were in the last save are not compressed again, so autosaves are cheap; keep
-/// one writer per document and use it for saves and autosaves. Safe to use from any thread, one call at a
-/// time runs.
+/// Saves projects. Arrays of the last save are not compressed again, so autosaves are cheap. Keep one writer
+/// per document for saves and autosaves. Safe to use from any thread; one call at a time runs.
 class ProjectWriter {
 public:
-    /// Atomic: afterwards, or after a crash at any moment, `path` holds the old or the new project. Throws
-    /// Error.
+    /// Saves atomically. After it, or after a crash at any moment, `path` holds the old or the new project.
+    /// Throws Error.
     void save(const std::filesystem::path& path, const ProjectData& project);
-    /// The file's bytes; `path` only tells where relative paths start.
+    /// Bytes of the file. `path` only tells the start of relative paths.
     std::string pack(const std::filesystem::path& path, const ProjectData& project);
 
 private:
@@ -78,18 +77,18 @@ private:
     std::filesystem::path warned_of_;  // scene that was said to be gone
 };
 
-/// One save without a cache.
+/// Saves once, without a cache.
 void save_project(const std::filesystem::path& path, const ProjectData& project);
 
-/// Reads a project and its scene. The scene is looked for beside the project (same relative path), where it
-/// was, and by name in the project's folder; what is unusual is said in `warnings`. Throws Error with one
+/// Reads a project and its scene. The scene is looked for beside the project (by its relative path), at its
+/// old place, and by name in the project's folder. `warnings` tell unusual findings. Throws Error with one
 /// sentence.
 ProjectData load_project(const std::filesystem::path& path);
 
-/// The same from memory, for a project that holds its base or whose base is `base` (as its file gives it).
+/// Reads a project from memory. It must hold its base, or its base is `base` (as its file gives it).
 ProjectData parse_project(std::span<const std::byte> bytes, const GaussianSet* base = nullptr);
 
-/// What a project shows, with the edits that are on: splats, and labels, the active one first.
+/// Scene that a project shows, with the edits that are on: splats, and labels, the active one first.
 Scene scene_of_project(const ProjectData& project);
 
 ProjectSummary read_project_summary(const std::filesystem::path& path);

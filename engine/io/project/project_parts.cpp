@@ -32,7 +32,7 @@ constexpr int EditShift = 32;
                 "the file is damaged; open an older copy or an autosave");
 }
 
-/// Byte k of word i goes to k * words + i: floats' exponents come together and compress.
+/// Transposes bytes: byte k of word i goes to k * words + i. Floats' exponents come together and compress.
 void transpose(const char* from, char* to, std::size_t words) {
     for (std::size_t i = 0; i < words; ++i)
         for (std::size_t k = 0; k < WordBytes; ++k) to[k * words + i] = from[i * WordBytes + k];

@@ -1,4 +1,4 @@
-// Reads projects: description, scene, edits, labels; everything is checked before it is used.
+// Reads projects: description, scene, edits, labels. Everything is checked before it is used.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ public:
           description_(read_description()) {}
 
     const io::ProjectDescription& description() const { return description_; }
-    /// What was odd about the arrays read so far.
+    /// Warnings about the arrays read so far.
     const std::vector<std::string>& warnings() const { return warnings_; }
 
     std::shared_ptr<const Image> picture(const std::string& name) {
@@ -57,7 +57,7 @@ public:
         }
     }
 
-    /// The base, given what the scene's file holds (empty when it is not needed).
+    /// Base of the document. `file` is the content of the scene's file, empty when it is not needed.
     GaussianSet base(const GaussianSet& file) {
         if (description_.base == io::BaseKind::Whole)
             return checked_base(GaussianSet(
@@ -180,7 +180,7 @@ private:
     io::ProjectDescription description_;
 };
 
-/// Where the scene of a project may be, best first.
+/// Possible places of a project's scene, best first.
 std::vector<std::filesystem::path> scene_candidates(const io::ProjectDescription& description,
                                                     const std::filesystem::path& project) {
     std::error_code failure;

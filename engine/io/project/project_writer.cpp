@@ -1,4 +1,4 @@
-// Packs projects; a member is compressed once per array.
+// Packs projects. A member is compressed once per array.
 #include <fmt/core.h>
 
 #include <cstring>
@@ -18,7 +18,7 @@
 
 namespace gse {
 
-/// One run of a writer: collects members and the description.
+/// One run of a writer. Collects members and the description.
 class ProjectPacker {
 public:
     ProjectPacker(ProjectWriter& writer, const std::filesystem::path& path) : writer_(writer), path_(path) {
@@ -48,8 +48,8 @@ public:
     }
 
 private:
-    /// Adds the member that `make` gives, or the bytes that the same array gave before. `key`: the array's
-    /// kind and address.
+    /// Adds the member that `make` gives, or the bytes that this array gave before. `key` is the array's kind
+    /// and address.
     template <class Make>
     std::string add(std::string name, const std::string& key, const std::shared_ptr<const void>& of,
                     Make&& make) {
@@ -153,7 +153,7 @@ private:
             static_cast<const void*>(b.opacity_logit.get()), static_cast<const void*>(b.sh.get()));
     }
 
-    /// The base as rows of the file, where it is some of them in their order; otherwise nothing.
+    /// The base as rows of the file, if it is some of them in their order. Nothing otherwise.
     std::string add_kept_rows(const GaussianSet& base, const GaussianSet& loaded) {
         const std::string key = key_of("kept", base) + key_of("of", loaded);
         const auto known = writer_.members_.find(key);

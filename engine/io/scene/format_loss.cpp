@@ -43,7 +43,7 @@ struct Losses {
     double extent = 0;  // largest coordinate
 };
 
-/// Degrees between two orientations; exact for small ones.
+/// Degrees between two orientations. Exact for small ones.
 double turn_between(const float* a, const float* b) {
     const auto p = unit_quaternion(a), q = unit_quaternion(b);
     double same = 0, opposite = 0;

@@ -1,4 +1,4 @@
-// What a scene format changed: the written bytes read back and compared, field by field.
+// Loss of a scene format: the written bytes read back and compared, field by field.
 #pragma once
 
 #include <cstdint>
@@ -9,9 +9,9 @@
 
 namespace gse::io {
 
-/// Worst differences of each lossy field in words, separated by commas, with the number of splats where they
-/// show; empty when nothing but float rounding differs. Row `order[i]` (i when there is no order) of
-/// `written` became row `i` of `back`.
+/// Worst differences of each lossy field in words, separated by commas, with the number of splats that show
+/// them. Empty when nothing but float rounding differs. Row `order[i]` (i without an order) of `written`
+/// became row `i` of `back`.
 std::string describe_loss(const GaussianSet& written, const GaussianSet& back,
                           std::span<const std::uint32_t> order);
 

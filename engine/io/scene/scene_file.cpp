@@ -1,4 +1,4 @@
-// Which reader or writer takes a file; folders of known layouts; messages that end with the path.
+// Choice of a file's reader or writer, folders of known layouts, and messages that end with the path.
 #include "engine/io/scene/scene_file.h"
 
 #include <fmt/core.h>
@@ -62,7 +62,7 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Whether a file of that name in lower case is of the format.
+/// True when a file of that name (in lower case) is of the format.
 bool has_extension_of(const io::SceneFormat& format, std::string_view name) {
     return std::any_of(format.extensions.begin(), format.extensions.end(),
                        [&](const std::string& extension) { return name.ends_with(extension); });
@@ -91,7 +91,7 @@ std::optional<std::filesystem::path> scene_of_layout(const std::filesystem::path
     return std::nullopt;
 }
 
-/// The first bytes of a file, none when it cannot be read.
+/// First bytes of a file, none when it cannot be read.
 std::string start_of(const std::filesystem::path& path) {
     std::string start(io::SceneFormat::StartBytes, '\0');
     std::ifstream stream(path, std::ios::binary);
@@ -138,7 +138,8 @@ const io::SceneFormat& format_to_write(const std::filesystem::path& path, const 
                 "use " + in_words(writable_formats(), "or"), path);
 }
 
-/// Reads back what is about to be written: the error is that of whoever opens the file, not an estimate.
+/// Warns of a format's losses by reading back the bytes that are about to be written. The errors are
+/// measured, not estimated.
 void warn_of_losses(const std::string& name, const Scene& scene, const GaussianSet& rows,
                     const std::string& bytes, const io::SceneFormat& format,
                     const std::vector<std::uint32_t>& order) {
@@ -154,7 +155,7 @@ void warn_of_losses(const std::string& name, const Scene& scene, const GaussianS
                      in_words(extensions_that_keep(&io::SceneFormat::keeps_up), "and"));
 }
 
-/// An exact format, never held as a whole; nothing is touched when the scene cannot be written.
+/// Writes an exact format, never held as a whole. Touches nothing when the scene cannot be written.
 void write_in_pieces(const std::filesystem::path& path, const io::SceneFormat& format, const Scene& scene,
                      const SaveOptions& options) {
     std::optional<PendingFile> file;

@@ -12,7 +12,7 @@ namespace gse::io {
 
 constexpr std::size_t CompressedChunkRows = 256;  // rows that share their bounds
 
-/// Whether the content begins like a compressed PLY.
+/// True when the content begins like a compressed PLY.
 bool detect_compressed_ply(Bytes bytes);
 /// Bytes of a compressed PLY. Row order[i] of the usable rows became row i (`order` may be null).
 std::string write_compressed_ply(const Scene& scene, std::vector<std::uint32_t>* order = nullptr);

@@ -1,4 +1,4 @@
-// PlayCanvas compressed PLY: 256 splats share a chunk of bounds; each splat is four packed 32-bit words.
+// PlayCanvas compressed PLY: 256 splats share a chunk of bounds. Each splat is four packed 32-bit words.
 #include <fmt/core.h>
 
 #include <array>
@@ -35,7 +35,7 @@ constexpr std::size_t NamesWithoutColour = 12;
     throw Error(ErrorCode::Malformed, "the compressed PLY file " + what, "the file is damaged; get it again");
 }
 
-/// Byte offset of each named property in a row; all must have this type.
+/// Byte offset of each named property in a row. All must have this type.
 std::vector<std::size_t> offsets_of(const PlyElement& element, std::span<const char* const> names,
                                     PlyType type) {
     std::vector<std::size_t> offsets;
@@ -77,12 +77,13 @@ std::vector<Chunk> read_chunks(const PlyElement& element, std::span<const std::b
 
 float mix(float low, float high, double t) { return static_cast<float>(low * (1 - t) + high * t); }
 
-/// x in the top 11 bits, y in the next 10, z in the low 11, each 0..1.
+/// Unpacks x from the top 11 bits, y from the next 10, z from the low 11, each 0..1.
 std::array<double, 3> unpack_11_10_11(std::uint32_t word) {
     return {(word >> 21) / 2047.0, ((word >> 11) & 1023) / 1023.0, (word & 2047) / 2047.0};
 }
 
-/// Two bits name the largest component of (w,x,y,z); the other three follow in order, 10 bits each.
+/// Unpacks a rotation. Two bits name the largest component of (w,x,y,z). The other three follow in order, 10
+/// bits each.
 std::array<float, 4> unpack_rotation(std::uint32_t word) {
     std::array<float, 4> q{};
     const std::size_t largest = word >> 30;
@@ -121,7 +122,8 @@ void unpack_row(const std::byte* source, const VertexColumns& columns, const Chu
     data.opacity_logit[row] = byte_logits()[colour & 255];
 }
 
-/// Property f_rest_(c * K + k) is coefficient k of channel c; bytes 0 and 255 are the ends of the range.
+/// Coefficients beyond DC. Property f_rest_(c * K + k) is coefficient k of channel c. Bytes 0 and 255 are the
+/// ends of the range.
 void unpack_sh(const PlyElement& element, std::span<const std::byte> rows, GaussianData& data) {
     const std::size_t rest = rest_of_degree(data.sh_degree);
     std::vector<std::string> names;

@@ -28,7 +28,7 @@ template <class U> U load_ordered(const std::byte* source, bool big_endian) {
 
 bool is_space(char letter) { return letter == ' ' || (letter >= '\t' && letter <= '\r'); }
 
-/// Decimal text to float; values beyond its range become infinite or zero as in C.
+/// Float of a decimal text. Values beyond its range become infinite or zero as in C.
 float parse_float(std::string_view token) {
     std::string_view digits = token;
     if (digits.size() > 1 && digits.front() == '+') digits.remove_prefix(1);

@@ -1,4 +1,4 @@
-// Rows of a PLY body in any encoding, one at a time, as floats; binary files without lists also by random
+// Rows of a PLY body in any encoding, one at a time, as floats. Binary files without lists also by random
 // access.
 #pragma once
 
@@ -14,23 +14,23 @@ namespace gse::io {
 /// Scalar of a fixed-size row, converted to float.
 float load_ply_scalar(const std::byte* source, PlyType type, bool big_endian);
 
-/// Walks the body of a PLY file element by element, in the order of the header. Throws Error where the file
-/// ends early.
+/// Walks the body of a PLY file element by element, in the order of the header. Throws Error if the file ends
+/// early.
 class PlyBody {
 public:
     PlyBody(std::span<const std::byte> bytes, const PlyHeader& header);
 
-    /// Skips everything before `element`, which must be one of the header's; checks that its rows can fit in
+    /// Skips everything before `element`, which must be one of the header's. Checks that its rows can fit in
     /// the rest.
     void seek(const PlyElement& element);
-    /// Next row of `element`; values[i] belongs to property i, lists give 0. `values` may be empty to skip
+    /// Next row of `element`. values[i] belongs to property i; lists give 0. `values` may be empty to skip
     /// the row.
     void read_row(const PlyElement& element, std::span<float> values);
-    /// The rows of a binary element without lists, all at once; the cursor moves behind them.
+    /// All rows of a binary element without lists. The cursor moves behind them.
     std::span<const std::byte> take_rows(const PlyElement& element);
 
     std::size_t remaining() const { return bytes_.size() - offset_; }
-    /// Bytes that are not blanks are left (text files end in a newline).
+    /// True when bytes other than blanks are left. Text files end in a newline.
     bool has_rest() const;
 
 private:

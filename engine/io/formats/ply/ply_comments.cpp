@@ -18,7 +18,7 @@ std::string lower(std::string_view text) {
     return result;
 }
 
-/// Text after `key` when the comment begins with it, in any case; blanks around it removed.
+/// Text after `key`, without blanks around it, when the comment begins with `key` in any case.
 std::optional<std::string> comment_value(const std::string& comment, std::string_view key) {
     if (lower(comment).substr(0, key.size()) != key) return std::nullopt;
     std::string value = comment.substr(key.size());
@@ -26,8 +26,8 @@ std::optional<std::string> comment_value(const std::string& comment, std::string
     return value;
 }
 
-/// Brush writes "Vertical axis" and means the negative axis by a bare letter; nerfstudio writes "Vertical
-/// Axis: z" for its world with +z up. Three numbers are taken literally.
+/// Up axis of a comment. Brush writes "Vertical axis" and means the negative axis by a bare letter.
+/// nerfstudio writes "Vertical Axis: z" for its world with +z up. Three numbers are taken literally.
 std::optional<Vec3> vertical_axis(const std::string& comment) {
     const auto value = comment_value(comment, "vertical axis");
     if (!value) return std::nullopt;

@@ -1,4 +1,4 @@
-// What PLY files say of a scene in the comments of their header, plain and compressed ones alike.
+// Facts of a scene in the comments of PLY headers, plain and compressed ones alike.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace gse::io {
 
-/// Takes the up axis and the way of drawing from the comments; where they contradict each other, the last one
-/// counts. Returns the name of the label.
+/// Takes the up axis and the way of drawing from the comments. The last of contradicting ones counts. Returns
+/// the name of the label.
 std::string read_comments(const PlyHeader& header, SceneInfo& info);
 
-/// The lines that read_comments() understands.
+/// Lines that read_comments() understands.
 std::string comment_lines(const SceneInfo& info);
 
 }  // namespace gse::io

@@ -1,4 +1,4 @@
-// Line-by-line reading of a PLY header; every complaint names the line.
+// Line-by-line reading of a PLY header. Every complaint names the line.
 #include "engine/io/formats/ply/ply_header.h"
 
 #include <fmt/core.h>
@@ -124,7 +124,7 @@ private:
         fail("names an unknown type");
     }
 
-    /// Old Macintosh files end lines with CR alone; seen from the first line.
+    /// Finds the end of lines. Old Macintosh files end lines with CR alone, seen from the first line.
     void detect_line_end() {
         const std::size_t first = text_.find_first_of("\r\n");
         const bool lone_return = first != std::string_view::npos && text_[first] == '\r' &&

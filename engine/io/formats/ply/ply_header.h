@@ -1,4 +1,4 @@
-// The header of a PLY file: elements with typed properties, comments, and where the body starts.
+// The header of a PLY file: elements with typed properties, comments, and the start of the body.
 #pragma once
 
 #include <cstddef>
@@ -29,7 +29,7 @@ struct PlyElement {
     bool has_list() const;
     /// Bytes of a row without lists.
     std::size_t row_bytes() const;
-    /// Bytes a row has at least: a list may be empty.
+    /// Least bytes of a row, since a list may be empty.
     std::size_t least_row_bytes() const;
     /// Index of the property, or -1.
     int find(std::string_view property) const;
@@ -49,8 +49,8 @@ struct PlyHeader {
 /// True when the bytes begin like a PLY file.
 bool is_ply(std::span<const std::byte> bytes);
 
-/// Accepts LF, CRLF and lone CR line ends, padded lines, and both spellings of the types. Throws Error
-/// (Malformed).
+/// Parses a header. Accepts LF, CRLF and lone CR line ends, padded lines, and both spellings of the types.
+/// Throws Error (Malformed).
 PlyHeader parse_ply_header(std::span<const std::byte> bytes);
 
 }  // namespace gse::io

@@ -1,5 +1,5 @@
-// 3DGS PLY: columns found by name, any type, order and encoding; raw values kept bit for bit. Binary files
-// are read a piece at a time.
+// 3DGS PLY: columns found by name, any type, order and encoding. Raw values are kept bit for bit. Binary
+// files are read a piece at a time.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ constexpr std::size_t LongestHeader = std::size_t{64} << 10;  // of a file that 
 constexpr float SurfelLogScale = -13.8155f;                   // third axis of a 2DGS surfel: 1e-6 units
 constexpr std::size_t RestOfDegree4 = 24;
 
-/// The attributes of a row; each is a list of property indices of the vertex element (Absent = fill with
+/// Attributes of a row. Each is a list of property indices of the vertex element (Absent = fill with
 /// `missing`).
 struct Attribute {
     std::vector<int> columns;
@@ -44,7 +44,7 @@ struct Layout {
     std::vector<int> position, log_scale, rotation, opacity, sh, label, label_weight;
 };
 
-/// "f_rest_7" -> 7
+/// Number at the end of a name: "f_rest_7" -> 7.
 std::optional<std::size_t> rest_index(std::string_view name) {
     constexpr std::string_view prefix = "f_rest_";
     if (name.substr(0, prefix.size()) != prefix) return std::nullopt;
@@ -80,7 +80,7 @@ bool complete(const std::vector<int>& columns) {
     return std::find(columns.begin(), columns.end(), Absent) == columns.end();
 }
 
-/// Columns of the SH coefficients beyond DC, coefficient-major; the file has all of red first, then green,
+/// Columns of the SH coefficients beyond DC, coefficient-major. The file has all of red first, then green,
 /// then blue.
 std::vector<int> rest_columns(const PlyElement& vertex, Layout& layout, std::vector<std::string>& warnings) {
     std::vector<int> by_index;
@@ -136,7 +136,7 @@ Layout find_layout(const PlyHeader& header, const PlyElement& vertex, std::vecto
     return layout;
 }
 
-/// Hands out binary rows [begin, end); they stay where they are until it is asked again.
+/// Source of binary rows [begin, end). They stay in place until the next call.
 using RowSource = std::function<std::span<const std::byte>(std::size_t begin, std::size_t end)>;
 
 /// Gathers binary rows without lists, block by block, so that each destination is written once.
@@ -245,8 +245,8 @@ struct Described {
     bool has_fixed_rows() const { return header.encoding != PlyEncoding::Ascii && !vertex->has_list(); }
 };
 
-/// Fills the scene with the rows that `read` puts into the attributes; `rest` tells how many bytes are left
-/// behind them, if any are.
+/// Fills the scene with the rows that `read` puts into the attributes. `rest` returns the number of bytes
+/// behind them.
 Scene fill_scene(Described& described, const std::function<void(std::span<const Attribute>)>& read,
                  const std::function<std::size_t()>& rest) {
     const auto& [header, vertex, layout, scene, label_name] = described;

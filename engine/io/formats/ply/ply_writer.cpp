@@ -1,5 +1,4 @@
-// 3DGS PLY in the plain Inria layout, with zero normals; labels, when wanted, as two float columns at the
-// end.
+// 3DGS PLY in the plain Inria layout, with zero normals. Wanted labels are two float columns at the end.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -16,7 +15,7 @@ namespace {
 
 constexpr std::size_t PieceBytes = std::size_t{1} << 20;
 
-/// Label columns in their final form; empty when absent.
+/// Label columns in their final form. Empty when absent.
 struct LabelColumns {
     std::vector<float> from_bits;
     std::span<const float> label, weight;

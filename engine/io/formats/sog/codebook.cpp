@@ -1,4 +1,4 @@
-// Lloyd's algorithm on sorted values, with prefix sums: every pass is exact and costs 256 searches.
+// Lloyd's algorithm on sorted values, with prefix sums. Every pass is exact and costs 256 searches.
 #include "engine/io/formats/sog/codebook.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ constexpr std::size_t FewestBins = CodebookSize, MostBins = 4096;  // of the den
 constexpr std::size_t ValuesPerBin = 64;  // each with so many that its cube root is not noise
 constexpr int MostPasses = 100;           // most stop earlier; each takes microseconds
 
-/// The values between two codes belong to the nearer one.
+/// Border between two codes. Values belong to the nearer one.
 float boundary(float low, float high) { return static_cast<float>(0.5 * (static_cast<double>(low) + high)); }
 
 /// Codes spaced so that equal steps of the summed density^(1/3) lie between them.
@@ -36,7 +36,7 @@ void spread(const std::vector<float>& sorted, Codebook& codebook) {
     }
 }
 
-/// Each code becomes the mean of its values; false when nothing moved.
+/// Moves each code to the mean of its values. Returns false when nothing moved.
 bool improve(const std::vector<float>& sorted, const std::vector<double>& sums, Codebook& codebook) {
     bool moved = false;
     std::size_t begin = 0;

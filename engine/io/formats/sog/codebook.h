@@ -1,4 +1,4 @@
-// Quantisers of the scene writers: which few values, or vectors, stand for many.
+// Quantisers of the scene writers: few values, or vectors, that stand for many.
 #pragma once
 
 #include <array>
@@ -13,21 +13,21 @@ namespace gse::io {
 
 inline constexpr std::size_t CodebookSize = 256;
 
-/// 256 values, ascending; a byte names one.
+/// 256 values, ascending. A byte names one.
 struct Codebook {
     std::array<float, CodebookSize> values{};
 
-    /// The byte of the value that is nearest; of two that are equally near, the lower one.
+    /// Byte of the nearest value. Of two that are equally near, the lower one.
     std::uint8_t nearest(float value) const;
 };
 
-/// The codebook of `values` (finite, in any order): Lloyd's algorithm (Lloyd, "Least squares quantization in
-/// PCM", 1982) on all of them, begun where the density to the power 1/3 says (Panter and Dite, "Quantization
+/// Codebook of `values` (finite, in any order) by Lloyd's algorithm on all of them (Lloyd, "Least squares
+/// quantization in PCM", 1982). It begins at the density to the power 1/3 (Panter and Dite, "Quantization
 /// distortion in pulse-count modulation", 1951). Up to 256 different values are kept exactly. O(N log N),
 /// deterministic.
 Codebook fit_codebook(std::vector<float> values);
 
-/// Vectors that lie in rows of a larger array: row r begins at values[r * stride + offset].
+/// Vectors that lie in rows of a larger array. Row r begins at values[r * stride + offset].
 struct VectorRows {
     std::span<const float> values;
     std::size_t stride = 0, offset = 0, dimension = 0, count = 0;
@@ -44,9 +44,10 @@ struct Palette {
     std::size_t size() const { return dimension == 0 ? 0 : entries.size() / dimension; }
 };
 
-/// At most `most` vectors for the rows, by k-means of a tree: rows are split into few clusters, each gets
-/// entries in proportion to its squared error, and so on until a cluster needs few. That many rows or fewer
-/// are kept exactly. Deterministic whatever the number of threads. Takes 12 bytes per row beside the result.
+/// At most `most` vectors for the rows, by k-means of a tree. Rows are split into few clusters, and entries
+/// are shared in proportion to the squared error. Splitting goes on until a cluster needs few entries. That
+/// many rows or fewer are kept exactly. Independent of the number of threads. Takes 12 bytes per row beside
+/// the result.
 Palette fit_palette(const VectorRows& rows, std::size_t most, ThreadPool& pool);
 
 }  // namespace gse::io

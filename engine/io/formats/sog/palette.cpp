@@ -39,7 +39,7 @@ public:
         for (std::size_t axis = 0; axis < dimension_; ++axis) set(entry, axis, row[axis]);
     }
 
-    /// The nearest entry and the squared distance to it; `work` is as long as there are entries.
+    /// Nearest entry and the squared distance to it. `work` is as long as there are entries.
     std::pair<std::uint32_t, float> nearest(const float* row, std::span<float> work) const {
         std::fill(work.begin(), work.end(), 0.0f);
         float* sums = work.data();
@@ -60,7 +60,7 @@ private:
     std::vector<float> values_;
 };
 
-/// In four sums side by side, as the processor does it.
+/// Squared distance, in four sums side by side for the processor.
 float squared_distance(const float* a, const float* b, std::size_t dimension) {
     std::array<float, 4> sums{};
     std::size_t axis = 0;
@@ -76,7 +76,7 @@ struct Assigned {
     std::vector<float> error;          // its squared distance
 };
 
-/// `pool` may be null: then on the calling thread.
+/// Nearest entry of every row. Runs on the calling thread if `pool` is null.
 Assigned assign(const VectorRows& rows, const Indices& indices, const Entries& entries, ThreadPool* pool) {
     Assigned result{std::vector<std::uint32_t>(indices.size()), std::vector<float>(indices.size())};
     const auto work_on = [&](std::size_t begin, std::size_t end, unsigned) {
@@ -89,7 +89,7 @@ Assigned assign(const VectorRows& rows, const Indices& indices, const Entries& e
     return result;
 }
 
-/// Entries without rows move, one after the other, to the row that is farthest from all.
+/// Moves entries without rows, one after the other, to the row that is farthest from all.
 void reseed(const VectorRows& rows, const Indices& indices, std::span<const std::size_t> counts,
             Assigned& assigned, Entries& entries) {
     for (std::size_t entry = 0; entry < entries.size(); ++entry) {
@@ -123,9 +123,9 @@ void move_to_means(const VectorRows& rows, const Indices& indices, ThreadPool* p
     reseed(rows, indices, counts, assigned, entries);
 }
 
-/// Rows to begin at: each is drawn with a probability in proportion to its squared distance from those before
-/// (Arthur and Vassilvitskii, "k-means++: the advantages of careful seeding", 2007), so that none of what
-/// lies apart is missed.
+/// First entries. Each row is drawn with a probability in proportion to its squared distance from the rows
+/// before. No distant group is missed (Arthur and Vassilvitskii, "k-means++: the advantages of careful
+/// seeding", 2007).
 void seed_entries(const VectorRows& rows, const Indices& sample, Random& random, Entries& entries) {
     std::vector<float> distance(sample.size(), std::numeric_limits<float>::max());
     std::size_t chosen = random.below(sample.size());
@@ -167,7 +167,7 @@ struct Cluster {
     bool is_leaf() const { return kept_exactly() || entries <= LargestLeaf; }
 };
 
-/// Entries for each child in proportion to its error, none more than it has rows, each at least one.
+/// Entries for each child in proportion to its error, at most one per row and at least one.
 void share_entries(std::size_t entries, std::span<const double> errors, std::vector<Cluster>& children) {
     for (Cluster& child : children) child.entries = 1;
     std::size_t left = entries - children.size();
@@ -209,8 +209,8 @@ std::vector<Cluster> split(const VectorRows& rows, const Cluster& cluster, Threa
     return children;
 }
 
-/// The leaves of the tree, neighbours side by side. A cluster that cannot be divided (equal rows) is a leaf
-/// of one entry.
+/// Leaves of the tree, neighbours side by side. A cluster that cannot be divided (equal rows) is a leaf of
+/// one entry.
 std::vector<Cluster> grow(const VectorRows& rows, std::size_t most, ThreadPool& pool) {
     Cluster all{Indices(rows.count), most};
     std::iota(all.indices.begin(), all.indices.end(), 0u);

@@ -1,4 +1,4 @@
-// libzip and libwebp behind the SOG reader and writer.
+// Archives and WebP textures of SOG scenes, by libzip and libwebp.
 #include "engine/io/formats/sog/sog_files.h"
 
 #include <fmt/core.h>
@@ -96,8 +96,8 @@ public:
     std::uint64_t stored_bytes() const override { return stored_; }
 
 private:
-    /// Bytes that the entry unpacks to, as the archive says: held against what the archive can hold and the
-    /// free memory. More than this is not unpacked.
+    /// Unpacked bytes of the entry, as the archive states them. They are held against the archive's size and
+    /// the free memory, and no more is unpacked.
     std::uint64_t stated_size(zip_uint64_t index, const std::string& name, std::uint64_t most) const {
         zip_stat_t status;
         zip_stat_init(&status);

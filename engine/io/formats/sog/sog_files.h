@@ -13,13 +13,12 @@
 
 namespace gse::io {
 
-/// Gives the bytes of the file `name` of a scene. Throws Error when it is missing, broken or larger than
-/// `most`.
+/// Bytes of the file `name` of a scene. Throws Error when it is missing, broken or larger than `most`.
 class SogFiles {
 public:
     virtual ~SogFiles() = default;
     virtual std::vector<std::byte> read(const std::string& name, std::uint64_t most) const = 0;
-    /// Bytes that all files take on the disk: what they claim to hold is measured by it.
+    /// Bytes that all files take on the disk. Their claims are measured by it.
     virtual std::uint64_t stored_bytes() const = 0;
 };
 
@@ -30,7 +29,7 @@ std::unique_ptr<SogFiles> open_sog_folder(const std::filesystem::path& folder);
 /// The archive's bytes must outlive the result.
 std::unique_ptr<SogFiles> open_sog_archive(std::span<const std::byte> bytes);
 
-/// RGBA texture, row-major; texel i belongs to splat i.
+/// RGBA texture, row-major. Texel i belongs to splat i.
 struct Texture {
     std::size_t width = 0;
     std::size_t height = 0;
@@ -43,8 +42,8 @@ struct Texture {
 /// Decodes a WebP picture that lies in a scene of `stored_bytes`. `name` is for messages. Throws Error
 /// (Malformed) or OutOfMemory.
 Texture decode_webp(std::span<const std::byte> bytes, const std::string& name, std::uint64_t stored_bytes);
-/// The texture as a lossless WebP picture: every byte comes back, those of transparent texels too. Sides of 1
-/// to 16383. The same texture gives the same bytes. Throws Error (Foreign).
+/// Lossless WebP picture of the texture. Every byte comes back, those of transparent texels too. Sides of 1
+/// to 16383. Equal textures give equal bytes. Throws Error (Foreign).
 std::string encode_webp(const Texture& texture);
 
 }  // namespace gse::io

@@ -1,4 +1,4 @@
-// SOG: quantised attributes in lossless WebP textures, described by meta.json; version 2 and its predecessor.
+// SOG: quantised attributes in lossless WebP textures, described by meta.json. Version 2 and its predecessor.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ constexpr const char* LevelList = "lod-meta.json";  // of a streamed scene
                 "the file is damaged or written by an unknown version");
 }
 
-/// One scene being read: its description and where the textures are.
+/// Scene being read: its description and the place of its textures.
 struct Source {
     const Json& meta;
     const SogFiles& files;
@@ -119,8 +119,8 @@ void read_scales(const Source& source, GaussianData& data) {
             data.log_scale[row * 3 + axis] = decode[axis][texture.texel(row)[axis]];
 }
 
-/// Alpha 252 + i names the largest of (w,x,y,z); red, green, blue are the others in order. Other alphas: no
-/// rotation.
+/// Unpacks a rotation. Alpha 252 + i names the largest of (w,x,y,z); red, green, blue are the others in
+/// order. Other alphas mean no rotation.
 void read_rotations(const Source& source, GaussianData& data) {
     const Texture texture = source.splat_texture("quats", 0);
     for (std::size_t row = 0; row < source.count; ++row) {
@@ -161,7 +161,8 @@ int sh_degree_of(const Source& source, const Texture* centroids) {
     return degree;
 }
 
-/// Each splat has a 16-bit number of a palette entry, whose K texels are its coefficients.
+/// Coefficients from the palette. Each splat has a 16-bit number of an entry, whose K texels are its
+/// coefficients.
 void read_palette_sh(const Source& source, const Texture& centroids, GaussianData& data) {
     const Texture labels = source.splat_texture("shN", 1);
     const Decoder decode = decoders(source, "shN", 1)[0];
@@ -221,7 +222,7 @@ Json parse_json(std::span<const std::byte> bytes) {
     return gse::parse_json({text, bytes.size()}, "the description of the SOG scene");
 }
 
-/// JSON complaints (missing keys, wrong types, bad syntax) become ours.
+/// Translates JSON exceptions (missing keys, wrong types, bad syntax) into Error.
 template <class F> auto with_json_errors(F&& body) {
     try {
         return body();
@@ -261,7 +262,7 @@ struct FileNumbers {
     std::set<std::size_t> seen;
 };
 
-/// The files that a node and its children name for this level; parse_json has bounded the depth.
+/// Collects the files that a node and its children name for this level. parse_json has bounded the depth.
 void collect_files(const Json& node, const std::string& level, FileNumbers& files) {
     if (node.contains("lods") && node.at("lods").contains(level)) {
         const std::size_t file =
@@ -272,7 +273,8 @@ void collect_files(const Json& node, const std::string& level, FileNumbers& file
     for (const Json& child : node.at("children")) collect_files(child, level, files);
 }
 
-/// Each file once, however often it is listed; none outside of the scene's folder.
+/// Files of the parts, each once, however often it is listed. Files outside of the scene's folder are
+/// refused.
 std::vector<std::filesystem::path> part_files(const std::filesystem::path& folder, const Json& json) {
     FileNumbers files;
     collect_files(json.at("tree"), "0", files);

@@ -44,7 +44,8 @@ Texture blank_texture(std::size_t width, std::size_t height) {
     return texture;
 }
 
-/// Room for `count` texels: nearly square, sides that are multiples of four as other writers make them.
+/// Blank texture for `count` texels: nearly square, with sides that are multiples of four as in other
+/// writers.
 Texture splat_texture(std::size_t count) {
     const auto side = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count))));
     const std::size_t width = std::min((side + 3) / 4 * 4, WidestTexture);
@@ -52,7 +53,7 @@ Texture splat_texture(std::size_t count) {
     return blank_texture(width, std::min((height + 3) / 4 * 4, WidestTexture));
 }
 
-/// The rows in the order of the file, and what has been made of them.
+/// Rows in the order of the file, and the parts made of them so far.
 struct Sog {
     const GaussianSpans& set;
     const std::vector<std::uint32_t>& order;
@@ -67,7 +68,7 @@ struct Sog {
     }
 };
 
-/// sign(x) ln(1 + |x|): fine steps near the origin, coarse ones far away.
+/// Symmetric logarithm sign(x) ln(1 + |x|): fine steps near the origin, coarse ones far away.
 double folded(float value) {
     return std::copysign(std::log1p(std::abs(static_cast<double>(value))), static_cast<double>(value));
 }
@@ -108,7 +109,8 @@ void write_scales(Sog& sog) {
     sog.meta["scales"] = {{"codebook", codebook.values}, {"files", {"scales.webp"}}};
 }
 
-/// Alpha 252 + i names the largest of (w,x,y,z), which is made positive; the colours are the others in order.
+/// Packs a rotation. Alpha 252 + i names the largest of (w,x,y,z), which is made positive. The colours are
+/// the others in order.
 void write_rotations(Sog& sog) {
     Texture& texture = sog.add("quats.webp", splat_texture(sog.size()));
     for (std::size_t row = 0; row < sog.size(); ++row) {
@@ -126,7 +128,7 @@ void write_rotations(Sog& sog) {
     sog.meta["quats"] = {{"files", {"quats.webp"}}};
 }
 
-/// The codebook of coefficients; what is beyond its ends is held by the last value.
+/// Codebook of coefficients. Its last value stands for everything beyond its ends.
 Codebook fit_coefficients(std::vector<float> values) {
     for (float& value : values) value = std::clamp(value, -LargestCoefficient, LargestCoefficient);
     return fit_codebook(std::move(values));
@@ -151,8 +153,8 @@ void write_base_colours(Sog& sog) {
     sog.meta["sh0"] = {{"codebook", codebook.values}, {"files", {"sh0.webp"}}};
 }
 
-/// The largest power of two that is no more than the rows, within what the format takes: few rows are kept
-/// exactly.
+/// Size of the palette: the largest power of two up to the number of rows, within the format's limits. Few
+/// rows are kept exactly.
 std::size_t palette_size(std::size_t rows) {
     std::size_t size = SmallestPalette;
     while (size < LargestPalette && size * 2 <= rows) size *= 2;

@@ -1,4 +1,4 @@
-// What reader and writer of .spz files share.
+// Constants and writer of .spz files.
 #pragma once
 
 #include <cstdint>

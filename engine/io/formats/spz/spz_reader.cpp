@@ -1,9 +1,9 @@
-// Niantic .spz: v1-v3 are one gzip stream (or that stream bare), v4 a header, a table and one zstd frame per
+// Niantic .spz. v1-v3 are one gzip stream (or that stream bare), v4 a header, a table and one zstd frame per
 // attribute.
 //
-// Frame: the format's document says the stored axes are right, up, back. Evidence: two pairs of the same
-// scene in .spz and .ply (v3 and v4) agree only under it, and two more real v2 files stand upright only under
-// it. So y and z are negated on loading unless the extension SPZ_ADOBE_coordinate_system names another frame.
+// Frame: the format's document says the stored axes are right, up, back. Real pairs of a scene in .spz and
+// .ply agree only under it. So y and z are negated on loading, unless the extension
+// SPZ_ADOBE_coordinate_system names another frame.
 #include <fmt/core.h>
 
 #include <array>
@@ -50,7 +50,7 @@ struct Header {
     std::uint64_t row_bytes() const { return position_bytes() + 1 + 3 + 3 + rotation_bytes() + sh_bytes(); }
 };
 
-/// The attribute arrays, wherever they came from.
+/// Attribute arrays of any version.
 struct Arrays {
     Bytes position, alpha, colour, scale, rotation, sh;
 };
@@ -91,7 +91,7 @@ Arrays split_arrays(const Header& header, Bytes body) {
     return arrays;
 }
 
-/// What the extensions of a file say.
+/// Facts in the extensions of a file.
 struct Extensions {
     std::optional<std::uint32_t> frame;
     std::string unknown;  // their types, with commas between them
@@ -115,7 +115,7 @@ Extensions parse_extensions(Bytes bytes) {
     return extensions;
 }
 
-/// One sentence on everything in the file that is passed over; empty when that is nothing.
+/// One sentence on everything in the file that is passed over. Empty when that is nothing.
 std::string passed_over(const Header& header, const Extensions& extensions) {
     const unsigned flags = header.flags & ~static_cast<unsigned>(FlagAntialiased | FlagExtensions);
     std::string parts;
@@ -142,7 +142,7 @@ void unpack_positions(const Header& header, Bytes bytes, std::vector<float>& out
     }
 }
 
-/// x, y, z as bytes; w >= 0 follows.
+/// Unpacks a rotation from x, y, z as bytes; w >= 0 follows.
 std::array<double, 4> unpack_rotation_bytes(const std::byte* source) {
     std::array<double, 4> xyzw{};
     double rest = 1;
@@ -154,8 +154,8 @@ std::array<double, 4> unpack_rotation_bytes(const std::byte* source) {
     return xyzw;
 }
 
-/// Two bits name the largest of (x,y,z,w); the other three follow from high to low, a sign and nine bits
-/// each.
+/// Unpacks a rotation. Two bits name the largest of (x,y,z,w). The other three follow from high to low, a
+/// sign and nine bits each.
 std::array<double, 4> unpack_rotation_word(std::uint32_t word) {
     std::array<double, 4> xyzw{};
     const std::size_t largest = word >> 30;
@@ -232,7 +232,7 @@ Scene make_scene(const Header& header, const Arrays& arrays, const Extensions& e
     return scene;
 }
 
-/// v1-v3, already out of its gzip stream.
+/// Reads v1-v3, already out of the gzip stream.
 Scene parse_flat(Bytes bytes) {
     const Header header = parse_header(bytes);
     if (header.version == 4) throw_bad_spz("of version 4 lies inside a gzip stream");
@@ -243,7 +243,7 @@ Scene parse_flat(Bytes bytes) {
                       (header.flags & FlagExtensions) != 0 ? parse_extensions(rest) : Extensions{});
 }
 
-/// Before anything is unpacked: the streams and the splats that follow from the header's count.
+/// Checks the claims of the streams and of the header's count before anything is unpacked.
 void check_count(const Header& header, Bytes file) {
     const std::uint64_t splats = splat_bytes(header.count, std::min(header.degree, MaxShDegree));
     check_claim({splats + header.count * header.row_bytes(), file.size()},

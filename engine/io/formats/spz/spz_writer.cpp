@@ -1,5 +1,5 @@
-// Writer of .spz versions 2, 3 (what common readers know) and 4 (the newest); axes right, up, back as the
-// format's document says.
+// Writer of .spz versions 2, 3 (read by common programs) and 4 (the newest). Axes are right, up, back as in
+// the format's document.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,8 +21,8 @@ constexpr std::uint32_t HeaderOfStreams = 32;  // bytes before the table, where 
 constexpr int UsualFractionalBits = 12;        // steps of 1/4096 unit, range +-2048
 constexpr double LargestCode = 8388607;        // 2^23 - 1
 
-/// As many fractional bits (12 at most) as let every position fit; the reference writer would wrap far ones
-/// silently.
+/// Fractional bits of positions: as many (12 at most) as let every position fit. The reference writer would
+/// wrap far ones silently.
 int fractional_bits(const std::vector<float>& position) {
     double largest = 0;
     for (const float value : position) largest = std::max(largest, std::abs(static_cast<double>(value)));
@@ -58,7 +58,7 @@ std::uint32_t pack_rotation(const float* wxyz) {
     return word;
 }
 
-/// Versions 1 and 2: x, y, z as bytes of the rotation whose w is not negative.
+/// Packs a rotation for versions 1 and 2: x, y, z as bytes of the rotation whose w is not negative.
 void append_rotation_bytes(std::string& out, const float* wxyz) {
     const std::array<double, 4> unit = unit_quaternion(wxyz);
     const double sign = unit[0] < 0 ? -1 : 1;
@@ -90,7 +90,8 @@ Streams pack(const GaussianData& data, int version, int bits) {
     return streams;
 }
 
-/// Version 4: the header, a table of both sizes of every stream, the streams. What is empty has no entry.
+/// Joins streams for version 4: the header, a table of both sizes of every stream, the streams. Empty ones
+/// have no entry.
 std::string join_streams(std::string header, const Streams& streams) {
     append_value(header, HeaderOfStreams);
     header.resize(HeaderOfStreams, '\0');
