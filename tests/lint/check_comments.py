@@ -7,7 +7,7 @@ import tempfile
 
 # Rooms whose comments are held. A room of the tree that is not listed is not rewritten yet; the list ends as ROOMS.
 HELD = ("engine/base", "engine/math", "engine/scene", "engine/io", "engine/raster", "engine/localize", "engine/vulkan",
-        "engine/preview", "engine/window", "engine/evaluate")
+        "engine/preview", "engine/window", "engine/evaluate", "engine/neural", "engine/laboratory")
 ROOMS = ("app", "ui", "engine")
 SUFFIXES = {".h", ".cpp", ".inl", ".cu", ".comp"}
 MOST_WORDS = 30
@@ -48,7 +48,8 @@ def help_texts(text):
 
 
 def sentences(text):
-    for paragraph in re.split(r"\n\s*\n|\n(?=\s*(?:[-*] |\d+\. ))", text):
+    # A line that ends in ";" or ":" ends an entry of a list, as a blank line ends a paragraph.
+    for paragraph in re.split(r"\n\s*\n|\n(?=\s*(?:[-*] |\d+\. ))|(?<=[;:])\n", text):
         if all(line.startswith("  ") for line in paragraph.split("\n") if line.strip()) and "\n\n" in text:
             continue   # an example in code, or a formula
         plain = re.sub(r"\s+", " ", paragraph).strip()
@@ -111,14 +112,14 @@ def self_test():
         "what.h": "// What it is.\n", "same.h": head + "/// The same at the end.\nint x;\n", "of.h": head + "    /// Of a view.\n",
         "where.h": head + "/// Where it lies.\n", "long.h": head + "/// Short. " + long + ".\n",
         "lines.h": head + "/// " + "word " * 20 + "\n/// " + "word " * 20 + "\n", "head.h": "// " + long + "\n",
-        "document.h": head + "/// Weights (method.md 6.4).\n", "outside.h": head + "/// Weights (method 6.4).\n", "section.h": head + "/// Weights (METHOD.md, 6).\n",
+        "document.h": head + "/// Weights (method.md 6.4).\n", "outside.h": head + "/// Weights (method 6.4).\n", "section.h": head + "/// Weights (MANUAL.md, 6).\n",
         "field.h": head + 'f("count", self.count, "Of the views " "of it.", Range{0, 1});\n',
         "option.cpp": head + 'command->add_option("--out", options->output, "' + long + '");\n',
         "command.cpp": head + 'app.add_subcommand("edit", "What changes");\n',
     }
     whole = {
         "good.h": head + "/// Count of words, e.g. Three. " + "word " * 20 + ".\n///\n/// " + "word " * 20 + "\n/// - " + "word " * 20 +
-                  "\n/// - " + "word " * 20 + "\n///\n///   code(" + long + ");\n///\n/// End.\nint x;  // of a view\n// What follows is no doc comment.\n/// See METHOD.md, Labels.\n",
+                  "\n/// - " + "word " * 20 + "\n///\n///   code(" + long + ");\n///\n/// End.\nint x;  // of a view\n// What follows is no doc comment.\n/// See MANUAL.md, Labels.\n",
         "help.h": head + 'f("count", self.count, "Views that vote.", Range{0, 1});\ng("What");\n',
     }
     missed = []
@@ -126,7 +127,7 @@ def self_test():
         with tempfile.TemporaryDirectory() as folder:
             root = pathlib.Path(folder)
             (root / "engine").mkdir()
-            (root / "METHOD.md").write_text("# Method\n\n## Labels\n")
+            (root / "MANUAL.md").write_text("# Method\n\n## Labels\n")
             (root / "engine" / name).write_text(text)
             seen = list(check(root, ["engine"]))
         if bool(seen) != (name in broken):

@@ -37,7 +37,7 @@ struct ScaleBenchParameters {
           Range{1, 1000});
         f("limit_seconds", self.limit_seconds,
           "Points that would take longer, all runs together, are left out.", Range{0.001, 1e6});
-        f("limit_mb", self.limit_mb, "The same for memory, MiB.", Range{1, 1e7});
+        f("limit_mb", self.limit_mb, "Points that would take more memory are left out, MiB.", Range{1, 1e7});
         f("search", self.search, "Also search with growing numbers of views (asks the model).");
     }
 };

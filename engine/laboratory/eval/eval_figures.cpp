@@ -204,8 +204,8 @@ void add_silhouette(const EvalSetting& setting, const edit::EditResult& result, 
     json["silhouette_precision"] = overlap.precision();
 }
 
-/// Shares of the old object's pixels that should clearly be another: those still nearer to what they were
-/// than to what they should be, and those that have not clearly changed.
+/// Shares of the old object's pixels that should clearly change. One counts those nearer to the old object
+/// than to the truth, the other those without a clear change.
 void add_old_left(const HeldOut& seen, Json& json) {
     double left = 0, unchanged = 0, pixels = 0;
     for (std::size_t v = 0; v < seen.old.size(); ++v) {

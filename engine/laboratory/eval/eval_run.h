@@ -34,8 +34,7 @@ struct EvalParameters {
           "Kinds of edits, in turn: recolour material add ground replace; dye = colours that the bundled "
           "model does not look for.");
         f("drawn_words", self.drawn_words,
-          "What is added or comes in a thing's place is called by words that the bundled model draws and "
-          "does not look for.");
+          "Name added and replacing objects by words that the bundled model draws and does not look for.");
         f("mode", self.mode,
           "Mode the edits are asked for: auto, or right (modify, replace or add, as each needs).");
         f("held_out_views", self.held_out_views,

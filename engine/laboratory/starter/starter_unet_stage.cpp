@@ -1,13 +1,14 @@
 // Trains text encoder and UNet: v-prediction on cached latents, and losses that place each word's attention.
 // The attention losses use the generator's own part masks (as TokenCompose, Wang et al. 2023, uses
 // segmentations).
-// place: binary cross-entropy, per latent cell, of the attention that all words of a part receive against the
-// part's coverage. Inside and outside are balanced as far as the outside is not much larger.
-// spread: KL from the part's coverage to each word's own attention over the image, so a word covers its part
-// evenly.
-// insertion: pictures without an accessory are also shown with a caption that names one. Only the attention
-// losses count there, with the mask of the twin scene. The words learn where an object belongs before it is
-// there.
+//
+// - place: binary cross-entropy, per latent cell, of the attention that all words of a part receive against
+//   the part's coverage. Inside and outside are balanced as far as the outside is not much larger.
+// - spread: KL from the part's coverage to each word's own attention over the image, so a word covers its
+//   part evenly.
+// - insertion: pictures without an accessory are also shown with a caption that names one. Only the attention
+//   losses count there, with the mask of the twin scene. The words learn where an object belongs before it is
+//   there.
 #include <cmath>
 #include <unordered_map>
 

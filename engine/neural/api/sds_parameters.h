@@ -36,21 +36,20 @@ struct SdsParameters {
           "from "
           "7.5 on.",
           Range{0, 200});
-        f("view_guidance_scale", self.view_guidance_scale, "The same where views are redrawn (method views).",
-          Range{0, 200});
+        f("view_guidance_scale", self.view_guidance_scale,
+          "Classifier-free guidance of redrawn views (method views).", Range{0, 200});
         f("shape_guidance_scale", self.shape_guidance_scale,
-          "The same where they show something of a new shape.", Range{0, 200});
+          "Classifier-free guidance of redrawn views that show a new shape.", Range{0, 200});
         f("restyle", self.restyle,
-          "Another colour, material or ground is drawn by the network that is shown the scene, where the "
-          "model has one; where its pictures "
-          "hardly show what was asked, the model itself draws them all the same.");
+          "Draw another colour, material or ground with the network that is shown the scene, if the model "
+          "has "
+          "one. If its pictures hardly show the edit, the model itself draws them.");
         f("plain_ground", self.plain_ground,
-          "What stands in nothing is shown to that network on a plain ground. So is what stands alone there, "
-          "where pictures of the scene hardly "
-          "show what was asked.");
+          "Show objects in empty space to that network on a plain ground. Objects that stand alone there "
+          "follow, if pictures of the scene hardly show the edit.");
         f("restyle_guidance_scale", self.restyle_guidance_scale,
-          "The same where a model that is shown the scene gives a thing another colour or material, or "
-          "another ground.",
+          "Classifier-free guidance of a model that is shown the scene, for another colour, material or "
+          "ground.",
           Range{0, 200});
         f("image_guidance_scale", self.image_guidance_scale,
           "InstructPix2Pix: how closely the picture is kept to the unedited one. 1 = fast, with two thirds "
@@ -63,18 +62,18 @@ struct SdsParameters {
           "Sample the VAE's latent distribution instead of taking its mean.");
         f("view_words", self.view_words,
           "Append \"front view\", \"side view\" or \"back view\" to the prompt.");
-        f("negative_prompt", self.negative_prompt, "What the picture should not show.");
+        f("negative_prompt", self.negative_prompt, "Things that the picture should not show.");
         f("before_prompt", self.before_prompt,
-          "What the scene shows before the edit; worked out from the prompt when empty.");
+          "Sentence about the scene before the edit; follows from the prompt when empty.");
         f("delta", self.delta,
-          "Share of the pull on the unedited scene under its own sentence that is taken off: what the model "
-          "would "
-          "change anyway, and its noise; 0 = plain score distillation, at half the cost.",
+          "Share of the pull on the unedited scene under its own sentence that is subtracted. It holds "
+          "changes "
+          "that the model would make anyway, and noise. 0 = plain score distillation, at half the cost.",
           Range{0, 1});
     }
 };
 
-/// Of a polish (views.md 10): low noise levels, at which a model changes details only, and nothing taken off.
+/// Parameters of a polish: low noise levels, at which a model changes details only, and no subtraction.
 inline SdsParameters polishing(SdsParameters parameters) {
     parameters.t_min = 0.02;
     parameters.t_max_start = parameters.t_max_end = 0.3;

@@ -1,5 +1,4 @@
-// Attention maps: single-step probes (method.md X1) or the paper's image-to-image run (method.md, S3 in
-// detail).
+// Attention maps: single-step probes or the paper's image-to-image run (METHOD.md, Attention maps).
 #include "engine/neural/guidance/attention_source.h"
 
 #include <fmt/format.h>

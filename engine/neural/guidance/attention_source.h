@@ -27,8 +27,8 @@ public:
     void take_affinities(std::vector<AttentionCapture::Map>& affinities);
     /// Mean over everything taken, [k,size,size].
     torch::Tensor mean() const;
-    /// The mean spread `times` along the mean self-attention, S^times A at its size (DiffSegmenter; views.md
-    /// 6); the mean itself where none was taken.
+    /// Mean spread `times` along the mean self-attention, S^times A at its size (DiffSegmenter; METHOD.md,
+    /// Attention maps). The mean itself without self-attention.
     torch::Tensor refined(int times) const;
     std::int64_t count() const { return count_; }
 
@@ -59,7 +59,7 @@ private:
                AttentionCapture& capture, AttentionAccumulator& sum) const;
     void run_img2img(const edit::AttentionQuery& query, const torch::Tensor& latents,
                      const torch::Tensor& context, AttentionCapture& capture, AttentionAccumulator& sum);
-    /// [1,T,D], encoded once per sentence (method E6).
+    /// [1,T,D], encoded once per sentence.
     torch::Tensor context_of(const std::string& sentence);
 
     BufferHolder buffers_;  // goes last

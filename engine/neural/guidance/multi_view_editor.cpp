@@ -23,8 +23,8 @@ constexpr std::int64_t PixelsAtOnce =
 constexpr std::int64_t TurboLevels =
     4;  // noise levels that a Turbo model was trained at (Sauer et al. 2023, section 4)
 constexpr std::uint64_t FreshNoiseStream = 1;  // of a round's seed: noise between the steps
-/// Above it an LCM's picture has little to do with the render, and what the decoder loses of that says
-/// nothing (views.md 8.5).
+/// Noise level above which an LCM's picture has little to do with the render. The decoder's loss on the
+/// render says nothing about it then (METHOD.md, Few-step models).
 constexpr double LcmPlainDecode = 0.9;
 
 /// Share of each latent cell that may change, [1,1,h,w]; grown by one cell, but for what is drawn anew: its

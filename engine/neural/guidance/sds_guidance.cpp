@@ -12,7 +12,7 @@
 namespace gse::neural {
 namespace {
 
-/// Clamped and divided by the number of latent values (method.md 2.5: mean-reduced).
+/// Gradient clamped and divided by the number of latent values: mean-reduced (METHOD.md, Score distillation).
 torch::Tensor reduced(const torch::Tensor& gradient, const SdsParameters& parameters) {
     auto result = parameters.clamp > 0 ? gradient.clamp(-parameters.clamp, parameters.clamp) : gradient;
     return result * (parameters.weight / static_cast<double>(gradient.numel()));

@@ -1,5 +1,5 @@
-// Image encoders of the Segment Anything model: a vision transformer with windows and relative positions
-// (Kirillov et al. 2023; Li et al. 2022, ViTDet), and MobileSAM's TinyViT (Zhang et al. 2023).
+// Image encoders of the Segment Anything model (Kirillov et al. 2023). One is a vision transformer with
+// windows and relative positions (Li et al. 2022, ViTDet), the other MobileSAM's TinyViT (Zhang et al. 2023).
 #pragma once
 
 #include <array>

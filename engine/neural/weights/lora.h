@@ -46,8 +46,8 @@ std::vector<LoraTarget> lora_targets(const torch::nn::Module& network);
 std::vector<LoraFactor> new_lora(const std::vector<LoraTarget>& targets, std::int64_t rank,
                                  std::uint64_t seed);
 
-/// Throws Error (Model) when a layer that is to change is not in the network (which may be on torch::kMeta),
-/// or has another shape; `path` is the file that the changes come from.
+/// Throws Error (Model) when a layer to change is missing in the network or has another shape. The network
+/// may be on torch::kMeta. `path` is the file of the changes.
 void check_lora(const torch::nn::Module& network, const std::vector<LoraFactor>& factors,
                 const std::filesystem::path& path = {});
 
