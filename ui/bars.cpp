@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ui/commands.h"
+#include "ui/commands/guarded.h"
 #include "ui/menu.h"
 #include "ui/state.h"
 #include "ui/widgets/controls.h"
@@ -33,13 +33,13 @@ void draw_tools(Context& context) {
     };
     tool_button("tool.orbit", Icon::Pointer, Tool::Orbit, "Orbit: left drag turns the view (Esc)");
     tool_button("tool.brush", Icon::Brush, Tool::Brush,
-                with_key(context, "Brush: paint the label", Command::Brush));
+                with_key(context, "Brush: paint the label", Shortcut::Brush));
     tool_button("tool.rectangle", Icon::Rectangle, Tool::Rectangle,
-                with_key(context, "Rectangle: label what is inside", Command::Rectangle));
+                with_key(context, "Rectangle: label what is inside", Shortcut::Rectangle));
     tool_button("tool.lasso", Icon::Lasso, Tool::Lasso,
-                with_key(context, "Lasso: label what is inside", Command::Lasso));
+                with_key(context, "Lasso: label what is inside", Shortcut::Lasso));
     tool_button("tool.cut_out", Icon::CutOut, Tool::CutOut,
-                with_key(context, "Cut out: label the thing in a box, all its sides", Command::CutOut));
+                with_key(context, "Cut out: label the thing in a box, all its sides", Shortcut::CutOut));
     gap(context);
     const bool front = context.view.front_only;
     if (icon_button(context,
@@ -47,7 +47,7 @@ void draw_tools(Context& context) {
                      .icon = front ? Icon::FrontOnly : Icon::Through,
                      .tooltip = with_key(
                          context, front ? "Front only: what is behind is not touched" : "All the way through",
-                         Command::FrontOnly),
+                         Shortcut::FrontOnly),
                      .active = front})) {
         context.view.front_only = !front;
         context.view_changed = true;
@@ -99,7 +99,7 @@ void draw_running(Context& context) {
         if (button(context, {.name = "job.pause",
                              .text = job.paused ? "Resume" : "Pause",
                              .width = button_width("Resume")}))
-            context.actions.pause(!job.paused);
+            context.emit(command::Pause{!job.paused});
         ImGui::SameLine();
     }
     if (button(context, {.name = "job.cancel", .text = "Cancel", .tooltip = "Esc"})) cancel_job(context);
@@ -143,7 +143,7 @@ void draw_file_job(Context& context) {
     shown.stage = job.title.empty() ? job.stage : job.title;
     draw_bar(context, shown, "job.file", width);
     ImGui::SameLine();
-    if (button(context, {.name = "job.file.cancel", .text = "Stop"})) context.actions.cancel_file_job();
+    if (button(context, {.name = "job.file.cancel", .text = "Stop"})) context.emit(command::CancelFileJob{});
 }
 
 }  // namespace
@@ -156,12 +156,12 @@ void draw_tool_bar(Context& context) {
     if (icon_button(context,
                     {.name = "tool.frame",
                      .icon = Icon::Frame,
-                     .tooltip = with_key(context, "Frame what is labelled, else the scene", Command::Frame),
+                     .tooltip = with_key(context, "Frame what is labelled, else the scene", Shortcut::Frame),
                      .why_off = why}))
         frame_selection(context);
     if (icon_button(context, {.name = "tool.home",
                               .icon = Icon::Home,
-                              .tooltip = with_key(context, "All of the scene", Command::Home),
+                              .tooltip = with_key(context, "All of the scene", Shortcut::Home),
                               .why_off = why}))
         go_home(context);
     gap(context);
@@ -169,20 +169,20 @@ void draw_tool_bar(Context& context) {
                redo = open && context.model.document->can_redo();
     if (icon_button(context, {.name = "tool.undo",
                               .icon = Icon::Undo,
-                              .tooltip = with_key(context, "Undo", Command::Undo),
+                              .tooltip = with_key(context, "Undo", Shortcut::Undo),
                               .why_off = undo ? "" : "There is nothing to undo"}))
-        context.actions.undo();
+        context.emit(command::Undo{});
     if (icon_button(context, {.name = "tool.redo",
                               .icon = Icon::Redo,
-                              .tooltip = with_key(context, "Redo", Command::Redo),
+                              .tooltip = with_key(context, "Redo", Shortcut::Redo),
                               .why_off = redo ? "" : "There is nothing to redo"}))
-        context.actions.redo();
+        context.emit(command::Redo{});
     gap(context);
     if (icon_button(context, {.name = "tool.screenshot",
                               .icon = Icon::Camera,
-                              .tooltip = with_key(context, "Save screenshot", Command::Screenshot),
+                              .tooltip = with_key(context, "Save screenshot", Shortcut::Screenshot),
                               .why_off = why_not_export(context, context.exports.picture_path)}))
-        context.actions.export_picture();
+        context.emit(command::ExportPicture{});
 }
 
 void draw_job_bar(Context& context) {

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "ui/actions.h"
+#include "ui/commands/command.h"
 #include "ui/theme.h"
 #include "ui/view_model.h"
 
@@ -29,7 +29,7 @@ using WidgetMap = std::map<std::string, Rect, std::less<>>;
 /// Copies of settings that panels change; the shell hands them on at the end of the frame when `..._changed`.
 struct Context {
     const ViewModel& model;
-    Actions& actions;
+    CommandSink& commands;
     Textures& textures;
     UiState& state;
     WidgetMap& widgets;
@@ -42,6 +42,7 @@ struct Context {
     bool view_changed = false, request_changed = false, exports_changed = false,
          model_settings_changed = false;
 
+    void emit(Command command) { commands.push(std::move(command)); }
     bool scene_open() const { return model.document != nullptr && !model.document->empty(); }
     const DocumentState& document() const { return model.document->state(); }
     /// The label being shown and corrected; null when there is none.

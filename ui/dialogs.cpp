@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
-#include "ui/commands.h"
-#include "ui/keyboard.h"
-#include "ui/keys.h"
-#include "ui/keys_dialog.h"
+#include "ui/commands/guarded.h"
+#include "ui/keys/keyboard.h"
+#include "ui/keys/keys.h"
+#include "ui/keys/keys_dialog.h"
 #include "ui/menu.h"
 #include "ui/state.h"
 #include "ui/widgets/controls.h"

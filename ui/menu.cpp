@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "ui/commands.h"
-#include "ui/keyboard.h"
+#include "ui/commands/guarded.h"
+#include "ui/keys/keyboard.h"
 #include "ui/state.h"
 #include "ui/widgets/controls.h"
 
@@ -38,7 +38,7 @@ bool begin_menu(Context& context, const char* name) {
 
 void file_menu(Context& context) {
     const std::string why = why_not_save(context);
-    if (item(context, {"menu.open", "Open...", keys_of(context, Command::Open)})) ask_open(context);
+    if (item(context, {"menu.open", "Open...", keys_of(context, Shortcut::Open)})) ask_open(context);
     if (item(context, {"menu.sample", "Open sample"})) open_sample(context);
     if (ImGui::BeginMenu("Open recent", !context.model.recent.empty())) {
         for (const auto& path : context.model.recent)
@@ -46,13 +46,13 @@ void file_menu(Context& context) {
         ImGui::EndMenu();
     }
     ImGui::Separator();
-    if (item(context, {"menu.save", "Save project", keys_of(context, Command::Save), why})) save(context);
-    if (item(context, {"menu.save_as", "Save project as...", keys_of(context, Command::SaveAs), why}))
+    if (item(context, {"menu.save", "Save project", keys_of(context, Shortcut::Save), why})) save(context);
+    if (item(context, {"menu.save_as", "Save project as...", keys_of(context, Shortcut::SaveAs), why}))
         save_as(context);
-    if (item(context, {"menu.export", "Export...", keys_of(context, Command::Export), why}))
+    if (item(context, {"menu.export", "Export...", keys_of(context, Shortcut::Export), why}))
         show_panel(context.state, PanelId::Export);
     ImGui::Separator();
-    if (item(context, {"menu.quit", "Quit", keys_of(context, Command::Quit)})) quit(context);
+    if (item(context, {"menu.quit", "Quit", keys_of(context, Shortcut::Quit)})) quit(context);
 }
 
 void edit_menu(Context& context) {
@@ -67,20 +67,20 @@ void edit_menu(Context& context) {
                redo = document != nullptr && document->can_redo();
     const std::string undo_text = named("Undo", document != nullptr ? document->position() : 0, undo);
     const std::string redo_text = named("Redo", document != nullptr ? document->position() + 1 : 0, redo);
-    if (item(context, {"menu.undo", undo_text.c_str(), keys_of(context, Command::Undo),
+    if (item(context, {"menu.undo", undo_text.c_str(), keys_of(context, Shortcut::Undo),
                        undo ? "" : "There is nothing to undo"}))
-        context.actions.undo();
-    if (item(context, {"menu.redo", redo_text.c_str(), keys_of(context, Command::Redo),
+        context.emit(command::Undo{});
+    if (item(context, {"menu.redo", redo_text.c_str(), keys_of(context, Shortcut::Redo),
                        redo ? "" : "There is nothing to redo"}))
-        context.actions.redo();
+        context.emit(command::Redo{});
     ImGui::Separator();
     std::string why = why_not_label(context);
     if (why.empty() && label_count(context) == 0) why = "Nothing is labelled";
-    if (item(context, {"menu.delete", "Delete labelled splats", keys_of(context, Command::Delete), why}))
-        context.actions.delete_labelled_splats();
+    if (item(context, {"menu.delete", "Delete labelled splats", keys_of(context, Shortcut::Delete), why}))
+        context.emit(command::DeleteLabelledSplats{});
     if (item(context, {"menu.repair", "Drop what cannot be drawn", "",
                        document != nullptr ? "" : "Open a scene first"}))
-        context.actions.repair_scene();
+        context.emit(command::RepairScene{});
     ImGui::Separator();
     if (item(context, {"menu.settings", "Settings"})) show_panel(context.state, PanelId::Settings);
 }
@@ -88,37 +88,37 @@ void edit_menu(Context& context) {
 void select_menu(Context& context) {
     const std::string open = why_not_save(context), label = why_not_label(context);
     const Tool tool = context.state.viewport.tool;
-    if (item(context, {"menu.brush", "Brush", keys_of(context, Command::Brush), open, tool == Tool::Brush}))
+    if (item(context, {"menu.brush", "Brush", keys_of(context, Shortcut::Brush), open, tool == Tool::Brush}))
         set_tool(context, Tool::Brush);
-    if (item(context, {"menu.rectangle", "Rectangle", keys_of(context, Command::Rectangle), open,
+    if (item(context, {"menu.rectangle", "Rectangle", keys_of(context, Shortcut::Rectangle), open,
                        tool == Tool::Rectangle}))
         set_tool(context, Tool::Rectangle);
-    if (item(context, {"menu.lasso", "Lasso", keys_of(context, Command::Lasso), open, tool == Tool::Lasso}))
+    if (item(context, {"menu.lasso", "Lasso", keys_of(context, Shortcut::Lasso), open, tool == Tool::Lasso}))
         set_tool(context, Tool::Lasso);
     if (item(context,
-             {"menu.cut_out", "Cut out", keys_of(context, Command::CutOut), open, tool == Tool::CutOut}))
+             {"menu.cut_out", "Cut out", keys_of(context, Shortcut::CutOut), open, tool == Tool::CutOut}))
         set_tool(context, Tool::CutOut);
-    if (item(context, {"menu.front", "Front only", keys_of(context, Command::FrontOnly), "",
+    if (item(context, {"menu.front", "Front only", keys_of(context, Shortcut::FrontOnly), "",
                        context.view.front_only})) {
         context.view.front_only = !context.view.front_only;
         context.view_changed = true;
     }
     ImGui::Separator();
-    if (item(context, {"menu.grow", "Grow", "", label})) context.actions.grow_label(1);
-    if (item(context, {"menu.shrink", "Shrink", "", label})) context.actions.grow_label(-1);
-    if (item(context, {"menu.invert", "Invert", keys_of(context, Command::Invert), label}))
-        context.actions.invert_label();
-    if (item(context, {"menu.clear", "Clear", keys_of(context, Command::Clear), label}))
-        context.actions.clear_label();
+    if (item(context, {"menu.grow", "Grow", "", label})) context.emit(command::GrowLabel{1});
+    if (item(context, {"menu.shrink", "Shrink", "", label})) context.emit(command::GrowLabel{-1});
+    if (item(context, {"menu.invert", "Invert", keys_of(context, Shortcut::Invert), label}))
+        context.emit(command::InvertLabel{});
+    if (item(context, {"menu.clear", "Clear", keys_of(context, Shortcut::Clear), label}))
+        context.emit(command::ClearLabel{});
     ImGui::Separator();
     const std::string shown = why_not_hide(context);
-    if (item(context, {"menu.hide_label", "Hide", keys_of(context, Command::Hide), shown}))
+    if (item(context, {"menu.hide_label", "Hide", keys_of(context, Shortcut::Hide), shown}))
         hide_label(context);
-    if (item(context, {"menu.isolate", "Isolate", keys_of(context, Command::Isolate), shown}))
+    if (item(context, {"menu.isolate", "Isolate", keys_of(context, Shortcut::Isolate), shown}))
         isolate_label(context);
-    if (item(context, {"menu.show_hidden", "Show all", keys_of(context, Command::ShowHidden),
+    if (item(context, {"menu.show_hidden", "Show all", keys_of(context, Shortcut::ShowHidden),
                        context.model.hidden > 0 ? "" : "Nothing is hidden"}))
-        context.actions.show_hidden();
+        context.emit(command::ShowHidden{});
     ImGui::Separator();
     if (item(context, {"menu.new_label", "New label", "", open})) add_label(context);
 }
@@ -154,13 +154,13 @@ void view_menu(Context& context) {
     if (item(context, {"menu.home", "Home", "Home", why})) go_home(context);
     if (item(context, {"menu.previous", "Previous view", "Left", why})) step_view(context, -1);
     if (item(context, {"menu.next", "Next view", "Right", why})) step_view(context, 1);
-    if (item(context, {"menu.add_view", "Add this view", "", why})) context.actions.add_view();
+    if (item(context, {"menu.add_view", "Add this view", "", why})) context.emit(command::AddView{});
     ImGui::Separator();
-    if (item(context, {"menu.wipe", "Wipe before and after", keys_of(context, Command::Wipe), why,
+    if (item(context, {"menu.wipe", "Wipe before and after", keys_of(context, Shortcut::Wipe), why,
                        context.model.comparison == Comparison::Wipe}))
         toggle_wipe(context);
     flag(context, "menu.tint", "Tint what is labelled", context.view.tint_labels,
-         keys_of(context, Command::Tint));
+         keys_of(context, Shortcut::Tint));
     flag(context, "menu.axes", "Axes", context.view.show_axes);
     flag(context, "menu.bounds", "Bounds", context.view.show_bounds);
     flag(context, "menu.cameras", "Cameras", context.view.show_views);
@@ -170,35 +170,36 @@ void view_menu(Context& context) {
 void prompt_menu(Context& context) {
     const auto& job = context.model.job;
     const std::string why_waiting = context.model.result_waiting ? "" : "No finished edit waits";
-    if (item(context, {"menu.locate", "Locate", keys_of(context, Command::Locate), why_not_locate(context)}))
+    if (item(context, {"menu.locate", "Locate", keys_of(context, Shortcut::Locate), why_not_locate(context)}))
         run_locate(context);
     if (item(context, {"menu.edit", "Edit", "Shift + Enter", why_not_edit(context)})) run_edit(context);
     ImGui::Separator();
     if (item(context, {"menu.pause", job.paused ? "Resume" : "Pause", "",
                        job.running && job.can_pause ? "" : "Nothing runs that can be paused"}))
-        context.actions.pause(!job.paused);
+        context.emit(command::Pause{!job.paused});
     if (item(context, {"menu.cancel", "Cancel", "Esc", job.running ? "" : "Nothing runs"}))
         cancel_job(context);
     ImGui::Separator();
-    if (item(context, {"menu.apply", "Apply the result", "", why_waiting})) context.actions.apply_result();
+    if (item(context, {"menu.apply", "Apply the result", "", why_waiting}))
+        context.emit(command::ApplyResult{});
     if (item(context, {"menu.discard", "Discard the result", "", why_waiting}))
-        context.actions.discard_result();
+        context.emit(command::DiscardResult{});
     if (item(context, {"menu.another", "Another result, with another seed", "", why_waiting}))
-        context.actions.another_result();
+        context.emit(command::AnotherResult{});
     ImGui::Separator();
     if (item(context, {"menu.seed", "Another seed"})) roll_seed(context);
     if (item(context, {"menu.models", "Models"})) show_panel(context.state, PanelId::Models);
 }
 
 void render_menu(Context& context) {
-    if (item(context, {"menu.screenshot", "Save screenshot", keys_of(context, Command::Screenshot),
+    if (item(context, {"menu.screenshot", "Save screenshot", keys_of(context, Shortcut::Screenshot),
                        why_not_export(context, context.exports.picture_path)}))
-        context.actions.export_picture();
-    if (item(context, {"menu.turntable", "Write turntable", keys_of(context, Command::Turntable),
+        context.emit(command::ExportPicture{});
+    if (item(context, {"menu.turntable", "Write turntable", keys_of(context, Shortcut::Turntable),
                        why_not_export(context, context.exports.film_path)}))
-        context.actions.export_turntable();
+        context.emit(command::ExportTurntable{});
     if (item(context, {"menu.key", "Add a camera key", "", why_not_save(context)}))
-        context.actions.add_camera_key();
+        context.emit(command::AddCameraKey{});
     ImGui::Separator();
     if (item(context, {"menu.export_settings", "Sizes and files..."}))
         show_panel(context.state, PanelId::Export);
@@ -217,10 +218,10 @@ void window_menu(Context& context) {
     }
     ImGui::Separator();
     if (item(context,
-             {"menu.hide", "Hide the panels", keys_of(context, Command::Panels), "", layout.panels_hidden}))
+             {"menu.hide", "Hide the panels", keys_of(context, Shortcut::Panels), "", layout.panels_hidden}))
         layout.panels_hidden = !layout.panels_hidden;
-    if (item(context, {"menu.fullscreen", "Full screen", keys_of(context, Command::Fullscreen)}))
-        context.actions.toggle_fullscreen();
+    if (item(context, {"menu.fullscreen", "Full screen", keys_of(context, Shortcut::Fullscreen)}))
+        context.emit(command::ToggleFullscreen{});
     if (item(context, {"menu.larger", "Larger", "Ctrl + +"})) scale_ui(context, 1.1f);
     if (item(context, {"menu.smaller", "Smaller", "Ctrl + -"})) scale_ui(context, 1 / 1.1f);
     ImGui::Separator();

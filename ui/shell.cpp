@@ -9,9 +9,8 @@
 #include <utility>
 
 #include "engine/base/file.h"
-#include "ui/commands.h"
-#include "ui/deferred_actions.h"
-#include "ui/keyboard.h"
+#include "ui/commands/guarded.h"
+#include "ui/keys/keyboard.h"
 #include "ui/menu.h"
 #include "ui/panels/panels.h"
 #include "ui/sentence.h"
@@ -49,9 +48,9 @@ void update_sentence(Context& context) {
     const auto& request = context.request;
     const auto& model = context.model;
     std::string key =
-        fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", request.source, request.prompt, request.target,
-                    request.mode, model.known_words.size(), model.labelled_by_hand, model.words_read,
-                    model.read_target, model.drawn_words.size());
+        fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", request.source, request.prompt, request.target,
+                    request.mode, request.method, model.known_words.size(), model.labelled_by_hand,
+                    model.words_read, model.read_target, model.drawn_words.size());
     for (const auto& word : model.said_words) key += "\n" + word;
     if (key == prompt.key) return;
     prompt.key = std::move(key);
@@ -166,7 +165,7 @@ void drag_splitters(Context& context, const Plan& plan) {
 
 }  // namespace
 
-Shell::Shell() : state_(std::make_unique<UiState>()), deferred_(std::make_unique<DeferredActions>()) {}
+Shell::Shell() : state_(std::make_unique<UiState>()) {}
 Shell::~Shell() = default;
 
 std::string Shell::focused() const {
@@ -215,9 +214,10 @@ void Shell::answer_requests(Context& context) {
     question = {asked.title, asked.text, {}, true};
     for (std::size_t index = 0; index < asked.answers.size(); ++index) {
         const auto& answer = asked.answers[index];
-        question.answers.push_back({answer.text, answer.dangerous,
-                                    [&actions = context.actions, index] { actions.answer(index); },
-                                    answer.detail, answer.listed});
+        question.answers.push_back(
+            {answer.text, answer.dangerous,
+             [&commands = context.commands, index] { commands.push(command::Answer{index}); }, answer.detail,
+             answer.listed});
     }
 }
 
@@ -305,12 +305,12 @@ void Shell::draw_window(Context& context) {
     draw_dialogs(context);
 }
 
-void Shell::draw(const ViewModel& model, Actions& actions, Textures& textures) {
+std::vector<Command> Shell::draw(const ViewModel& model, Textures& textures) {
     const float em = ImGui::GetFontSize();
     if (em != styled_em_) apply_theme(ImGui::GetStyle(), em);
     styled_em_ = em;
     Context context{model,
-                    *deferred_,
+                    commands_,
                     textures,
                     *state_,
                     widgets_,
@@ -336,14 +336,14 @@ void Shell::draw(const ViewModel& model, Actions& actions, Textures& textures) {
     widgets_.clear();
     state_->pick.seen = false;
     draw_window(context);
-    if (model.picked.shown && !state_->pick.seen) deferred_->drop_picked();
+    if (model.picked.shown && !state_->pick.seen) context.emit(command::DropPicked{});
     end_keyboard(context);
-    if (context.request_changed) deferred_->set_request(context.request);
-    if (context.view_changed) deferred_->set_view_settings(context.view);
-    if (context.exports_changed) deferred_->set_exports(context.exports);
-    if (context.model_settings_changed) deferred_->set_model_settings(context.model_settings);
-    state_->animating |= !deferred_->empty();
-    deferred_->run(actions);
+    if (context.request_changed) context.emit(command::SetRequest{context.request});
+    if (context.view_changed) context.emit(command::SetViewSettings{context.view});
+    if (context.exports_changed) context.emit(command::SetExports{context.exports});
+    if (context.model_settings_changed) context.emit(command::SetModelSettings{context.model_settings});
+    state_->animating |= !commands_.empty();
+    return commands_.take();
 }
 
 void draw_panel(Context& context, PanelId panel) {

@@ -1,19 +1,18 @@
-// The whole window: menu, tools, viewport and panels. A frame is a function of the view model; what an artist
-// asks for goes to the actions after the frame is drawn.
+// The whole window: menu, tools, viewport and panels. A frame is a function of the view model; it returns the
+// commands that the artist gave.
 #pragma once
 
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
-#include "ui/actions.h"
+#include "ui/commands/command.h"
 #include "ui/context.h"
 #include "ui/layout.h"
 #include "ui/view_model.h"
 
 namespace gse::ui {
-
-class DeferredActions;
 
 class Shell {
 public:
@@ -23,9 +22,8 @@ public:
     Shell& operator=(const Shell&) = delete;
 
     /// Call between ImGui::NewFrame() and ImGui::Render(). The style follows the font size by itself; the
-    /// fonts are those of build_fonts() (theme.h). Actions are called at the end, never while the model is
-    /// being read.
-    void draw(const ViewModel& model, Actions& actions, Textures& textures);
+    /// fonts are those of build_fonts() (theme.h). Returns the commands of the frame in their order.
+    [[nodiscard]] std::vector<Command> draw(const ViewModel& model, Textures& textures);
 
     /// True when the next frame will look different even without input: a camera glides, a key is held.
     bool animating() const;
@@ -65,7 +63,7 @@ private:
     void answer_requests(Context& context);
 
     std::unique_ptr<UiState> state_;
-    std::unique_ptr<DeferredActions> deferred_;
+    CommandSink commands_;
     WidgetMap widgets_;
     ForeignGlyphs glyphs_;
     float styled_em_ = 0;

@@ -10,8 +10,8 @@
 
 #include "engine/localize/row_property.h"
 #include "ui/context.h"
-#include "ui/keyboard.h"
-#include "ui/keymap.h"
+#include "ui/keys/keyboard.h"
+#include "ui/keys/keymap.h"
 #include "ui/layout.h"
 #include "ui/viewport/camera_control.h"
 #include "ui/widgets/chips.h"
@@ -135,9 +135,9 @@ struct AdjustState {
 
 /// Keys as the artist has them.
 struct KeysState {
-    std::string read;                 // ViewModel::keymap that `keymap` was read from
-    std::optional<Command> choosing;  // its next keys are those of this command
-    std::string note;                 // what came of the last choice
+    std::string read;                  // ViewModel::keymap that `keymap` was read from
+    std::optional<Shortcut> choosing;  // its next keys are those of this command
+    std::string note;                  // what came of the last choice
 };
 
 struct ProgressState {

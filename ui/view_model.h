@@ -183,7 +183,7 @@ struct Toast {
     std::string button;  // empty = none
 };
 
-/// Something the application wants to know; what is chosen goes to Actions::answer.
+/// Something the application wants to know; the choice comes back as command::Answer.
 struct AskedQuestion {
     struct Answer {
         std::string text, detail = {};

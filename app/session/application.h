@@ -27,7 +27,7 @@
 #include "engine/pipeline/session/waiting_results.h"
 #include "engine/scene/document.h"
 #include "engine/scene/hidden_rows.h"
-#include "ui/actions.h"
+#include "ui/commands/command.h"
 #include "ui/view_model.h"
 
 namespace gse::app {
@@ -86,10 +86,10 @@ struct LiveEdit {
 /// Says what is running: name, target and recipe.
 void describe(LiveEdit& live, const EditRecipe& recipe);
 
-class Application : public ui::Actions {
+class Application {
 public:
     explicit Application(ApplicationOptions options);
-    ~Application() override;
+    ~Application();
 
     /// Runs what other threads posted, advances clocks, refreshes the view model. Call before every frame.
     void update(PreviewHost& preview);
@@ -108,94 +108,179 @@ public:
     /// is.
     std::string target() const { return current_recipe().request.target; }
 
-    // ui::Actions
-    void open(const std::filesystem::path& path) override;
-    void open_sample() override;
-    void save_project(const std::filesystem::path& path, std::function<void()> then = {}) override;
-    void leave_edit(bool keep, std::function<void()> then) override;
-    void answer(std::size_t index) override;
-    void recover(const std::string& project) override;
-    void discard_recovery(const std::string& project) override;
-    void postpone_recovery(const std::string& project) override;
-    void set_up_axis(const std::string& up) override;
-    void repair_scene() override;
-    void locate() override;
-    void label_anyway() override;
-    void edit() override;
-    void pause(bool paused) override;
-    void cancel() override;
-    void cancel_file_job() override;
-    void order_target(const edit::TargetOrder& order) override;
-    void fit_to_targets() override;
-    void apply_result() override;
-    void discard_result() override;
-    void another_result() override;
-    void show_result(std::size_t index) override;
-    void show_snapshot(int index) override;
-    void take_snapshot(int iteration) override;
-    void branch_from_snapshot(int iteration) override;
-    void set_attention_threshold(double value, bool drag_ends) override;
-    void leave_out_view(std::size_t view, bool out) override;
-    void set_label_threshold(float value, bool drag_ends) override;
-    void set_active_label(int index) override;
-    void set_reach(bool by_label) override;
-    void add_label(const std::string& name) override;
-    void rename_label(int index, const std::string& name) override;
-    void delete_label(int index) override;
-    void select(const ui::ScreenRegion& region, ui::SetOperation operation, bool stroke_ends) override;
-    void cut_out(const ui::ScreenRegion& box, ui::SetOperation operation) override;
-    void grow_label(int steps) override;
-    void invert_label() override;
-    void clear_label() override;
-    void delete_labelled_splats() override;
-    void adjust_colours(const ColourAdjustment& adjustment) override;
-    void pick_rows(const localize::RowChoice& choice) override;
-    void drop_picked() override;
-    void use_picked(ui::PickedUse use) override;
-    void hide_label() override;
-    void isolate_label() override;
-    void show_hidden() override;
-    void undo() override;
-    void redo() override;
-    void go_to(std::size_t position) override;
-    void set_edit_enabled(std::uint64_t id, bool enabled) override;
-    void set_edit_strength(std::uint64_t id, double strength, bool drag_ends) override;
-    void delete_edit(std::uint64_t id) override;
-    void move_edit(std::uint64_t id, int places) override;
-    void repeat_edit(std::uint64_t id) override;
-    void set_camera(const Camera& camera) override;
-    void set_view_settings(const ui::ViewSettings& settings) override;
-    void set_model_settings(const ui::ModelSettings& settings) override { model_.model_settings = settings; }
-    void set_comparison(ui::Comparison comparison) override;
-    void compare_with(std::size_t position) override;
-    void look_through(std::size_t view) override;
-    void add_view() override;
-    void delete_view(std::size_t view) override;
-    void set_viewport_size(int width, int height) override;
-    void set_request(const edit::EditRequest& request) override;
-    void choose_model(const std::string& path) override;
-    void add_lora(const std::string& text) override;
-    void choose_segmenter(ui::SegmenterRole role, const std::string& path) override;
-    void set_lora_strength(std::size_t index, double strength) override;
-    void remove_lora(std::size_t index) override;
-    void set_exports(const ui::ExportSettings& settings) override;
-    void export_picture() override;
-    void export_turntable() override;
-    void export_scene() override;
-    void export_viewpoints() override;
-    void add_camera_key() override;
-    void delete_camera_key(std::size_t index) override;
-    void export_camera_path(bool as_film) override;
-    void dismiss_toast(std::size_t index) override;
-    void press_toast(std::size_t index) override;
-    void toggle_fullscreen() override;
-    void set_ui_scale(float scale) override;
-    void set_keymap(const std::string& text) override;
-    void set_cache_mb(int most) override;
-    void clear_cache() override;
-    void quit() override { quit_ = true; }
+    void run(const ui::Command& wanted);
 
 private:
+    void on(const ui::command::Open& one);
+    void on(const ui::command::OpenSample& one);
+    void on(const ui::command::SaveProject& one);
+    void on(const ui::command::LeaveEdit& one);
+    void on(const ui::command::Recover& one);
+    void on(const ui::command::DiscardRecovery& one);
+    void on(const ui::command::PostponeRecovery& one);
+    void on(const ui::command::SetUpAxis& one);
+    void on(const ui::command::RepairScene& one);
+    void on(const ui::command::CancelFileJob& one);
+    void on(const ui::command::SetRequest& one);
+    void on(const ui::command::Locate& one);
+    void on(const ui::command::LabelAnyway& one);
+    void on(const ui::command::Edit& one);
+    void on(const ui::command::Pause& one);
+    void on(const ui::command::Cancel& one);
+    void on(const ui::command::OrderTarget& one);
+    void on(const ui::command::FitToTargets& one);
+    void on(const ui::command::ApplyResult& one);
+    void on(const ui::command::DiscardResult& one);
+    void on(const ui::command::AnotherResult& one);
+    void on(const ui::command::ShowResult& one);
+    void on(const ui::command::ShowSnapshot& one);
+    void on(const ui::command::TakeSnapshot& one);
+    void on(const ui::command::BranchFromSnapshot& one);
+    void on(const ui::command::SetAttentionThreshold& one);
+    void on(const ui::command::LeaveOutView& one);
+    void on(const ui::command::SetReach& one);
+    void on(const ui::command::RepeatEdit& one);
+    void on(const ui::command::SetLabelThreshold& one);
+    void on(const ui::command::SetActiveLabel& one);
+    void on(const ui::command::AddLabel& one);
+    void on(const ui::command::RenameLabel& one);
+    void on(const ui::command::DeleteLabel& one);
+    void on(const ui::command::Select& one);
+    void on(const ui::command::CutOut& one);
+    void on(const ui::command::GrowLabel& one);
+    void on(const ui::command::InvertLabel& one);
+    void on(const ui::command::ClearLabel& one);
+    void on(const ui::command::DeleteLabelledSplats& one);
+    void on(const ui::command::AdjustColours& one);
+    void on(const ui::command::PickRows& one);
+    void on(const ui::command::DropPicked& one);
+    void on(const ui::command::UsePicked& one);
+    void on(const ui::command::Undo& one);
+    void on(const ui::command::Redo& one);
+    void on(const ui::command::GoTo& one);
+    void on(const ui::command::SetEditEnabled& one);
+    void on(const ui::command::SetEditStrength& one);
+    void on(const ui::command::DeleteEdit& one);
+    void on(const ui::command::MoveEdit& one);
+    void on(const ui::command::HideLabel& one);
+    void on(const ui::command::IsolateLabel& one);
+    void on(const ui::command::ShowHidden& one);
+    void on(const ui::command::SetCamera& one);
+    void on(const ui::command::SetViewSettings& one);
+    void on(const ui::command::SetComparison& one);
+    void on(const ui::command::CompareWith& one);
+    void on(const ui::command::LookThrough& one);
+    void on(const ui::command::AddView& one);
+    void on(const ui::command::DeleteView& one);
+    void on(const ui::command::SetViewportSize& one);
+    void on(const ui::command::SetModelSettings& one);
+    void on(const ui::command::ChooseModel& one);
+    void on(const ui::command::AddLora& one);
+    void on(const ui::command::SetLoraStrength& one);
+    void on(const ui::command::RemoveLora& one);
+    void on(const ui::command::ChooseSegmenter& one);
+    void on(const ui::command::SetCacheMb& one);
+    void on(const ui::command::ClearCache& one);
+    void on(const ui::command::SetExports& one);
+    void on(const ui::command::ExportPicture& one);
+    void on(const ui::command::ExportTurntable& one);
+    void on(const ui::command::ExportScene& one);
+    void on(const ui::command::ExportViewpoints& one);
+    void on(const ui::command::AddCameraKey& one);
+    void on(const ui::command::DeleteCameraKey& one);
+    void on(const ui::command::ExportCameraPath& one);
+    void on(const ui::command::Answer& one);
+    void on(const ui::command::DismissToast& one);
+    void on(const ui::command::PressToast& one);
+    void on(const ui::command::ToggleFullscreen& one);
+    void on(const ui::command::SetUiScale& one);
+    void on(const ui::command::SetKeymap& one);
+    void on(const ui::command::Quit& one);
+    void open(const std::filesystem::path& path);
+    void open_sample();
+    void save_project(const std::filesystem::path& path, std::function<void()> then = {});
+    void leave_edit(bool keep, std::function<void()> then);
+    void answer(std::size_t index);
+    void recover(const std::string& project);
+    void discard_recovery(const std::string& project);
+    void postpone_recovery(const std::string& project);
+    void set_up_axis(const std::string& up);
+    void repair_scene();
+    void locate();
+    void label_anyway();
+    void edit();
+    void pause(bool paused);
+    void cancel();
+    void cancel_file_job();
+    void order_target(const edit::TargetOrder& order);
+    void fit_to_targets();
+    void apply_result();
+    void discard_result();
+    void another_result();
+    void show_result(std::size_t index);
+    void show_snapshot(int index);
+    void take_snapshot(int iteration);
+    void branch_from_snapshot(int iteration);
+    void set_attention_threshold(double value, bool drag_ends);
+    void leave_out_view(std::size_t view, bool out);
+    void set_label_threshold(float value, bool drag_ends);
+    void set_active_label(int index);
+    void set_reach(bool by_label);
+    void add_label(const std::string& name);
+    void rename_label(int index, const std::string& name);
+    void delete_label(int index);
+    void select(const ui::ScreenRegion& region, ui::SetOperation operation, bool stroke_ends);
+    void cut_out(const ui::ScreenRegion& box, ui::SetOperation operation);
+    void grow_label(int steps);
+    void invert_label();
+    void clear_label();
+    void delete_labelled_splats();
+    void adjust_colours(const ColourAdjustment& adjustment);
+    void pick_rows(const localize::RowChoice& choice);
+    void drop_picked();
+    void use_picked(ui::PickedUse use);
+    void hide_label();
+    void isolate_label();
+    void show_hidden();
+    void undo();
+    void redo();
+    void go_to(std::size_t position);
+    void set_edit_enabled(std::uint64_t id, bool enabled);
+    void set_edit_strength(std::uint64_t id, double strength, bool drag_ends);
+    void delete_edit(std::uint64_t id);
+    void move_edit(std::uint64_t id, int places);
+    void repeat_edit(std::uint64_t id);
+    void set_camera(const Camera& camera);
+    void set_view_settings(const ui::ViewSettings& settings);
+    void set_model_settings(const ui::ModelSettings& settings) { model_.model_settings = settings; }
+    void set_comparison(ui::Comparison comparison);
+    void compare_with(std::size_t position);
+    void look_through(std::size_t view);
+    void add_view();
+    void delete_view(std::size_t view);
+    void set_viewport_size(int width, int height);
+    void set_request(const edit::EditRequest& request);
+    void choose_model(const std::string& path);
+    void add_lora(const std::string& text);
+    void choose_segmenter(ui::SegmenterRole role, const std::string& path);
+    void set_lora_strength(std::size_t index, double strength);
+    void remove_lora(std::size_t index);
+    void set_exports(const ui::ExportSettings& settings);
+    void export_picture();
+    void export_turntable();
+    void export_scene();
+    void export_viewpoints();
+    void add_camera_key();
+    void delete_camera_key(std::size_t index);
+    void export_camera_path(bool as_film);
+    void dismiss_toast(std::size_t index);
+    void press_toast(std::size_t index);
+    void toggle_fullscreen();
+    void set_ui_scale(float scale);
+    void set_keymap(const std::string& text);
+    void set_cache_mb(int most);
+    void clear_cache();
+    void quit() { quit_ = true; }
     using Clock = std::chrono::steady_clock;
     struct Loaded;
     /// A question to the artist: an answer and what it does (empty = nothing).

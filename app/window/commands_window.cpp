@@ -57,8 +57,8 @@ public:
                 .on_fullscreen = [this] { window_.set_fullscreen(!window_.fullscreen()); }}) {
         if (const char* map = std::getenv("GSE_UI_MAP")) widget_map_ = map;
         if (app_.model().ui_scale != window_.ui_scale()) window_.set_ui_scale(app_.model().ui_scale);
-        if (options.sample) app_.open_sample();
-        else if (!options.path.empty()) app_.open(options.path);
+        if (options.sample) app_.run(ui::command::OpenSample{});
+        else if (!options.path.empty()) app_.run(ui::command::Open{options.path});
     }
 
     /// Runs until the artist leaves.
@@ -135,7 +135,7 @@ private:
         if (at_rest_) return write_map();  // the window shows what it would show
         if (!window_.begin_frame()) return;
         viewport_.record();
-        shell_.draw(app_.model(), app_, textures_);
+        for (const auto& command : shell_.draw(app_.model(), textures_)) app_.run(command);
         if (shell_.glyphs().all().size() != glyphs_dressed_) window_.renew_fonts();
         if (captures) window_.request_capture();
         window_.end_frame();

@@ -1,7 +1,7 @@
 // Colours of what is labelled, by hand: seen while the controls move, one edit of the stack.
 #include <fmt/format.h>
 
-#include "ui/commands.h"
+#include "ui/commands/guarded.h"
 #include "ui/panels/panels.h"
 #include "ui/state.h"
 #include "ui/widgets/controls.h"
@@ -62,7 +62,7 @@ void draw_adjust(Context& context) {
         adjust.values = {};
         changed = true;
     }
-    if (changed) context.actions.adjust_colours(adjust.values);
+    if (changed) context.emit(command::AdjustColours{adjust.values});
     if (adjust.frames_to_bring <= 0) return;
     --adjust.frames_to_bring;
     ImGui::SetScrollHereY(1);  // what has unfolded comes into view

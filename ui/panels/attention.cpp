@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ui/commands.h"
+#include "ui/commands/guarded.h"
 #include "ui/panels/panels.h"
 #include "ui/state.h"
 #include "ui/threshold_picture.h"
@@ -186,11 +186,11 @@ void draw_controls(Context& context, const AttentionView& view) {
     if (ImGui::SliderScalar("##attention.threshold", ImGuiDataType_Double, &threshold, &low, &high, "%.3f",
                             ImGuiSliderFlags_AlwaysClamp)) {
         state.threshold = threshold;
-        context.actions.set_attention_threshold(threshold, false);
+        context.emit(command::SetAttentionThreshold{threshold, false});
     }
     note(context, "attention.threshold");
     tooltip("Attention above this share of the maximum counts. All views and the label follow.");
-    if (ImGui::IsItemDeactivatedAfterEdit()) context.actions.set_attention_threshold(threshold, true);
+    if (ImGui::IsItemDeactivatedAfterEdit()) context.emit(command::SetAttentionThreshold{threshold, true});
     if (ImGui::IsItemDeactivated()) state.threshold = -1;
     wrapped_text(fmt::format("{} of this view is above it.", percent_text(state.above)));
     ImGui::Spacing();
@@ -208,7 +208,7 @@ void draw_controls(Context& context, const AttentionView& view) {
                          .text = "Look through",
                          .tooltip = with_key(
                              context, "Puts the camera where this view is, with its map over the picture",
-                             Command::Evidence)}))
+                             Shortcut::Evidence)}))
         look_through_attention(context, state.chosen);
 }
 
@@ -232,7 +232,7 @@ void draw_problem(Context& context) {
                 .text = anyway,
                 .why_off = why,
                 .tooltip = "The pictures show what was found. If it is what you mean, it can be labelled."}))
-        context.actions.label_anyway();
+        context.emit(command::LabelAnyway{});
 }
 
 /// How sure the search is, with what the figure is made of.

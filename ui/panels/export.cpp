@@ -7,8 +7,12 @@
 #include <cmath>
 
 #include "engine/io/cameras/cameras.h"
+<<<<<<< HEAD
 #include "engine/io/formats/scene_formats.h"
 #include "ui/commands.h"
+=======
+#include "ui/commands/guarded.h"
+>>>>>>> 1a362a2 (ui: commands in, a list of values per frame; Actions and DeferredActions go; the sentence's facts follow the method)
 #include "ui/panels/panels.h"
 #include "ui/state.h"
 #include "ui/widgets/controls.h"
@@ -41,7 +45,7 @@ void path_row(Context& context, const char* name, std::string ExportSettings::*m
     if (!icon_button(context,
                      {.name = fmt::format("{}.browse", name), .icon = Icon::Folder, .tooltip = "Choose..."}))
         return;
-    auto& actions = context.actions;
+    auto& commands = context.commands;
     const ExportSettings settings = context.exports;
     context.state.files.ask({.title = "Where to write",
                              .confirm = "Choose",
@@ -50,10 +54,10 @@ void path_row(Context& context, const char* name, std::string ExportSettings::*m
                              .replaces = false,
                              .folder_allowed = false,
                              .start = path,
-                             .answer = [&actions, settings, member](const std::filesystem::path& chosen) {
+                             .answer = [&commands, settings, member](const std::filesystem::path& chosen) {
                                  ExportSettings next = settings;
                                  next.*member = utf8_of(chosen);
-                                 actions.set_exports(next);
+                                 commands.push(command::SetExports{next});
                              }});
 }
 
@@ -124,7 +128,7 @@ void draw_picture(Context& context) {
                          .why_off = why,
                          .tooltip = "F12",
                          .look = Look::Primary}))
-        context.actions.export_picture();
+        context.emit(command::ExportPicture{});
 }
 
 std::string film_text(const ExportSettings& settings) {
@@ -167,7 +171,7 @@ void draw_turntable(Context& context) {
                          .why_off = why,
                          .tooltip = "Shift + F12; works in the background",
                          .look = Look::Primary}))
-        context.actions.export_turntable();
+        context.emit(command::ExportTurntable{});
 }
 
 void draw_camera_path(Context& context) {
@@ -177,7 +181,7 @@ void draw_camera_path(Context& context) {
                          .text = "Add key",
                          .why_off = context.scene_open() ? "" : "Open a scene first",
                          .tooltip = "The present camera, two seconds after the last key"}))
-        context.actions.add_camera_key();
+        context.emit(command::AddCameraKey{});
     if (keys.empty()) dim_text("Keys are cameras the path goes through.");
     for (std::size_t at = 0; at < keys.size(); ++at) {
         ImGui::PushID(static_cast<int>(at));
@@ -188,7 +192,7 @@ void draw_camera_path(Context& context) {
                                   .icon = Icon::Trash,
                                   .tooltip = "Delete this key",
                                   .size_em = 1.5f}))
-            context.actions.delete_camera_key(at);
+            context.emit(command::DeleteCameraKey{at});
         ImGui::PopID();
     }
     path_row(context, "export.camera_path_path", &ExportSettings::camera_path_path, {".json"});
@@ -197,13 +201,13 @@ void draw_camera_path(Context& context) {
     std::string why_film = why_not_film(context);
     if (why_film.empty() && keys.size() < 2) why_film = "A film needs two keys";
     if (button(context, {.name = "export.path", .text = "Save path", .why_off = why}))
-        context.actions.export_camera_path(false);
+        context.emit(command::ExportCameraPath{false});
     flow(button_width("Film along it"));
     if (button(context, {.name = "export.path.film",
                          .text = "Film along it",
                          .why_off = why_film,
                          .tooltip = "To the file of the turntable above"}))
-        context.actions.export_camera_path(true);
+        context.emit(command::ExportCameraPath{true});
 }
 
 /// The options of the format that the scene is written in.
@@ -244,7 +248,7 @@ void draw_scene_file(Context& context) {
     say(why, what + ".");
     if (button(context,
                {.name = "export.scene", .text = "Save scene", .why_off = why, .look = Look::Primary}))
-        context.actions.export_scene();
+        context.emit(command::ExportScene{});
 }
 
 /// The viewpoints of the project, for other programs.
@@ -262,7 +266,7 @@ void draw_viewpoints(Context& context) {
                 ? "nerfstudio's transforms.json"
                 : "the cameras.json of 3DGS; a name that begins with transforms gives nerfstudio's form"));
     if (button(context, {.name = "export.viewpoints", .text = "Save viewpoints", .why_off = why}))
-        context.actions.export_viewpoints();
+        context.emit(command::ExportViewpoints{});
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "engine/scene/strength.h"
-#include "ui/commands.h"
+#include "ui/commands/guarded.h"
 #include "ui/panels/panels.h"
 #include "ui/state.h"
 #include "ui/widgets/controls.h"
@@ -32,21 +32,21 @@ void draw_buttons(Context& context, const EditNode& edit, std::size_t place, std
                               .tooltip = "Apply later than the next one",
                               .why_off = place + 1 == count ? "It is the last one already" : "",
                               .size_em = 1.5f}))
-        context.actions.move_edit(id, 1);
+        context.emit(command::MoveEdit{id, 1});
     ImGui::SameLine(0, 0);
     if (icon_button(context, {.name = name("down"),
                               .icon = Icon::Down,
                               .tooltip = "Apply before the previous one",
                               .why_off = place == 0 ? "It is the first one already" : "",
                               .size_em = 1.5f}))
-        context.actions.move_edit(id, -1);
+        context.emit(command::MoveEdit{id, -1});
     ImGui::SameLine(0, 0);
     if (icon_button(context, {.name = name("repeat"),
                               .icon = Icon::Repeat,
                               .tooltip = "Its settings into the prompt, with a new seed",
                               .why_off = edit.recipe.empty() ? "This was not made by a prompt" : "",
                               .size_em = 1.5f})) {
-        context.actions.repeat_edit(id);
+        context.emit(command::RepeatEdit{id});
         show_panel(context.state, PanelId::Prompt);
     }
     ImGui::SameLine(0, 0);
@@ -54,7 +54,7 @@ void draw_buttons(Context& context, const EditNode& edit, std::size_t place, std
                               .icon = Icon::Trash,
                               .tooltip = "Take it off the stack (undo brings it back)",
                               .size_em = 1.5f}))
-        context.actions.delete_edit(id);
+        context.emit(command::DeleteEdit{id});
 }
 
 /// How much of the edit is seen; follows the drag.
@@ -67,7 +67,7 @@ void draw_strength(Context& context, const EditNode& edit) {
     note(context, fmt::format("history.strength.{}", edit.id));
     tooltip("1 is the edit as it was applied. Less: between before and after. More: colours go beyond it.");
     const bool ends = ImGui::IsItemDeactivatedAfterEdit();
-    if (changed || ends) context.actions.set_edit_strength(edit.id, strength, ends);
+    if (changed || ends) context.emit(command::SetEditStrength{edit.id, strength, ends});
 }
 
 void draw_edit(Context& context, std::size_t place, std::size_t count) {
@@ -90,7 +90,7 @@ void draw_edit(Context& context, std::size_t place, std::size_t count) {
     if (checkbox(context, fmt::format("history.enabled.{}", edit.id),
                  shortened(edit.name, ImGui::GetContentRegionAvail().x - context.em * 2), enabled,
                  fmt::format("{}\nOn or off; the others stay as they are.", edit.name)))
-        context.actions.set_edit_enabled(edit.id, enabled);
+        context.emit(command::SetEditEnabled{edit.id, enabled});
     const bool clean = edit.changed_outside_label == 0;
     ImGui::PushStyleColor(ImGuiCol_Text, clean ? palette::Good : palette::Warning);
     ImGui::TextUnformatted(shortened(proof_text(edit, "outside"), ImGui::GetContentRegionAvail().x).c_str());
@@ -116,11 +116,11 @@ void draw_compare(Context& context, std::size_t at, float side) {
              .icon = Icon::Wipe,
              .tooltip = compared ? "Compare with the original again"
                                  : with_key(context, "Compare with this: wipe between this step and now",
-                                            Command::Wipe),
+                                            Shortcut::Wipe),
              .active = compared,
              .why_off = !compared && at == context.model.document->position() ? "This is what is shown" : "",
              .size_em = side / context.em}))
-        context.actions.compare_with(at);
+        context.emit(command::CompareWith{at});
 }
 
 void draw_steps(Context& context) {
@@ -130,14 +130,14 @@ void draw_steps(Context& context) {
     if (button(context, {.name = "history.undo",
                          .text = "Undo",
                          .why_off = document.can_undo() ? "" : "There is nothing to undo",
-                         .tooltip = keys_of(context, Command::Undo)}))
-        context.actions.undo();
+                         .tooltip = keys_of(context, Shortcut::Undo)}))
+        context.emit(command::Undo{});
     flow(button_width("Redo"));
     if (button(context, {.name = "history.redo",
                          .text = "Redo",
                          .why_off = document.can_redo() ? "" : "There is nothing to redo",
-                         .tooltip = keys_of(context, Command::Redo)}))
-        context.actions.redo();
+                         .tooltip = keys_of(context, Shortcut::Redo)}))
+        context.emit(command::Redo{});
     flow(context.em * 8);
     dim_text(bytes_text(static_cast<double>(document.undo_bytes())) + " held");
     for (std::size_t at = names.size(); at-- > 0;) {
@@ -150,7 +150,7 @@ void draw_steps(Context& context) {
         if (ImGui::Selectable(text.c_str(), at == document.position(), ImGuiSelectableFlags_None,
                               {width, side}) &&
             at != document.position())
-            context.actions.go_to(at);
+            context.emit(command::GoTo{at});
         if (later) ImGui::PopStyleColor();
         note(context, fmt::format("history.step.{}", at));
         draw_compare(context, at, side);

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "ui/commands.h"
+#include "ui/commands/guarded.h"
 #include "ui/panels/panels.h"
 #include "ui/state.h"
 #include "ui/widgets/controls.h"
@@ -28,7 +28,7 @@ void draw_rename(Context& context, int index) {
         const bool escaped = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false);
         const auto& name = context.document().labels[static_cast<std::size_t>(index)].name;
         if (!escaped && !labels.name.empty() && labels.name != name)
-            context.actions.rename_label(index, labels.name);
+            context.emit(command::RenameLabel{index, labels.name});
         labels.renamed = -1;
     }
 }
@@ -48,7 +48,7 @@ void draw_label_row(Context& context, int index) {
     const std::string name =
         "  " + shortened(label.name.empty() ? "(no name)" : label.name, width - context.em);
     if (ImGui::Selectable(name.c_str(), active, ImGuiSelectableFlags_AllowDoubleClick, {width, icon})) {
-        if (!active) context.actions.set_active_label(index);
+        if (!active) context.emit(command::SetActiveLabel{index});
         if (ImGui::IsMouseDoubleClicked(0)) {
             labels.renamed = index;
             labels.name = label.name;
@@ -71,7 +71,7 @@ void draw_label_row(Context& context, int index) {
                               .icon = Icon::Trash,
                               .tooltip = "Delete the label (its splats stay; undo brings it back)",
                               .size_em = 1.5f}))
-        context.actions.delete_label(index);
+        context.emit(command::DeleteLabel{index});
     ImGui::PopID();
 }
 
@@ -90,10 +90,10 @@ void draw_threshold(Context& context, const NamedLabel& label) {
             "label.");
         if (drag.changed) {
             labels.threshold = threshold;
-            context.actions.set_label_threshold(threshold, false);
+            context.emit(command::SetLabelThreshold{threshold, false});
         }
         if (drag.released) {
-            if (labels.threshold >= 0) context.actions.set_label_threshold(labels.threshold, true);
+            if (labels.threshold >= 0) context.emit(command::SetLabelThreshold{labels.threshold, true});
             labels.threshold = -1;
         }
         const std::size_t above = labels.histogram.above(threshold);
@@ -109,8 +109,8 @@ void draw_tools(Context& context, const std::string& why) {
     auto& viewport = context.state.viewport;
     constexpr std::array<Icon, 4> Icons{Icon::Brush, Icon::Rectangle, Icon::Lasso, Icon::CutOut};
     constexpr std::array<Tool, 4> Tools{Tool::Brush, Tool::Rectangle, Tool::Lasso, Tool::CutOut};
-    constexpr std::array<Command, 4> Keys{Command::Brush, Command::Rectangle, Command::Lasso,
-                                          Command::CutOut};
+    constexpr std::array<Shortcut, 4> Keys{Shortcut::Brush, Shortcut::Rectangle, Shortcut::Lasso,
+                                           Shortcut::CutOut};
     for (std::size_t at = 0; at < Tools.size(); ++at) {
         if (at > 0) ImGui::SameLine();
         if (icon_button(context, {.name = fmt::format("labels.tool.{}", ToolNames[at]),
@@ -127,7 +127,7 @@ void draw_tools(Context& context, const std::string& why) {
                      .tooltip = with_key(context,
                                          context.view.front_only ? "Front only: what is behind is not touched"
                                                                  : "All the way through",
-                                         Command::FrontOnly),
+                                         Shortcut::FrontOnly),
                      .active = context.view.front_only})) {
         context.view.front_only = !context.view.front_only;
         context.view_changed = true;
@@ -151,15 +151,16 @@ void draw_operations(Context& context, const std::string& why) {
         return pressed;
     };
     if (act("labels.grow", "Grow", "Take in the splats next to the label"))
-        context.actions.grow_label(context.state.labels.steps);
+        context.emit(command::GrowLabel{context.state.labels.steps});
     flow(button_width("Shrink"));
     if (act("labels.shrink", "Shrink", "Drop the splats at its rim"))
-        context.actions.grow_label(-context.state.labels.steps);
+        context.emit(command::GrowLabel{-context.state.labels.steps});
     flow(button_width("Invert"));
-    if (act("labels.invert", "Invert", keys_of(context, Command::Invert))) context.actions.invert_label();
+    if (act("labels.invert", "Invert", keys_of(context, Shortcut::Invert)))
+        context.emit(command::InvertLabel{});
     flow(button_width("Clear"));
-    if (act("labels.clear", "Clear", with_key(context, "Nothing is labelled any more", Command::Clear)))
-        context.actions.clear_label();
+    if (act("labels.clear", "Clear", with_key(context, "Nothing is labelled any more", Shortcut::Clear)))
+        context.emit(command::ClearLabel{});
     const std::string why_hide = why_not_hide(context);
     flow(button_width("Hide"));
     if (button(context, {.name = "labels.hide",
@@ -167,13 +168,13 @@ void draw_operations(Context& context, const std::string& why) {
                          .why_off = why_hide,
                          .tooltip = with_key(
                              context, "Not seen and not picked until it is shown again; the scene keeps it",
-                             Command::Hide)}))
+                             Shortcut::Hide)}))
         hide_label(context);
     flow(button_width("Isolate"));
     if (button(context, {.name = "labels.isolate",
                          .text = "Isolate",
                          .why_off = why_hide,
-                         .tooltip = with_key(context, "Hides all else", Command::Isolate)}))
+                         .tooltip = with_key(context, "Hides all else", Shortcut::Isolate)}))
         isolate_label(context);
     flow(button_width("Delete splats"));
     std::string why_delete = why;
@@ -183,9 +184,9 @@ void draw_operations(Context& context, const std::string& why) {
                          .why_off = why_delete,
                          .tooltip = with_key(
                              context, "Removes the labelled splats from the scene; undo brings them back",
-                             Command::Delete),
+                             Shortcut::Delete),
                          .look = Look::Danger}))
-        context.actions.delete_labelled_splats();
+        context.emit(command::DeleteLabelledSplats{});
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ui/commands.h"
-#include "ui/keyboard.h"
+#include "ui/commands/guarded.h"
+#include "ui/keys/keyboard.h"
 #include "ui/panels/panels.h"
 #include "ui/state.h"
 #include "ui/widgets/controls.h"
@@ -17,15 +17,16 @@ namespace gse::ui {
 namespace {
 
 void ask_model(Context& context) {
-    auto& actions = context.actions;
-    context.state.files.ask(
-        {.title = "A model: folder in diffusers layout, or a .safetensors file",
-         .confirm = "Use",
-         .extensions = {".safetensors", "model_index.json"},
-         .saves = false,
-         .folder_allowed = true,
-         .start = context.state.model_path,
-         .answer = [&actions](const std::filesystem::path& path) { actions.choose_model(utf8_of(path)); }});
+    auto& commands = context.commands;
+    context.state.files.ask({.title = "A model: folder in diffusers layout, or a .safetensors file",
+                             .confirm = "Use",
+                             .extensions = {".safetensors", "model_index.json"},
+                             .saves = false,
+                             .folder_allowed = true,
+                             .start = context.state.model_path,
+                             .answer = [&commands](const std::filesystem::path& path) {
+                                 commands.push(command::ChooseModel{utf8_of(path)});
+                             }});
 }
 
 void draw_card(Context& context, const ModelView& model, int index) {
@@ -53,21 +54,22 @@ void draw_card(Context& context, const ModelView& model, int index) {
                    {.name = fmt::format("models.use.{}", index),
                     .text = "Use",
                     .why_off = model.usable ? "" : "This model cannot be used; the line above says why"})) {
-        context.actions.choose_model(model.path);
+        context.emit(command::ChooseModel{model.path});
     }
     end_notice();
 }
 
 void ask_lora(Context& context) {
-    auto& actions = context.actions;
-    context.state.files.ask(
-        {.title = "A LoRA: .safetensors of kohya, LyCORIS, PEFT or diffusers",
-         .confirm = "Add",
-         .extensions = {".safetensors"},
-         .saves = false,
-         .folder_allowed = false,
-         .start = context.state.lora_text,
-         .answer = [&actions](const std::filesystem::path& path) { actions.add_lora(utf8_of(path)); }});
+    auto& commands = context.commands;
+    context.state.files.ask({.title = "A LoRA: .safetensors of kohya, LyCORIS, PEFT or diffusers",
+                             .confirm = "Add",
+                             .extensions = {".safetensors"},
+                             .saves = false,
+                             .folder_allowed = false,
+                             .start = context.state.lora_text,
+                             .answer = [&commands](const std::filesystem::path& path) {
+                                 commands.push(command::AddLora{utf8_of(path)});
+                             }});
 }
 
 void draw_lora(Context& context, const LoraView& lora, std::size_t index) {
@@ -79,7 +81,7 @@ void draw_lora(Context& context, const LoraView& lora, std::size_t index) {
     if (ImGui::InputScalar(fmt::format("##{}", name).c_str(), ImGuiDataType_Double, &strength, nullptr,
                            nullptr, "%.2f", ImGuiInputTextFlags_EnterReturnsTrue) &&
         std::isfinite(strength) && strength != lora.strength)
-        context.actions.set_lora_strength(index, strength);
+        context.emit(command::SetLoraStrength{index, strength});
     note(context, name);
     tooltip(
         "How strongly it counts: 1 = as it was trained, 0 = not at all, below 0 = the opposite. Enter "
@@ -89,7 +91,7 @@ void draw_lora(Context& context, const LoraView& lora, std::size_t index) {
     if (icon_button(context, {.name = fmt::format("models.lora.remove.{}", index),
                               .icon = Icon::Trash,
                               .tooltip = "Take it off"}))
-        context.actions.remove_lora(index);
+        context.emit(command::RemoveLora{index});
 }
 
 /// What is merged into the model in use.
@@ -109,7 +111,7 @@ void draw_loras(Context& context) {
             context,
             {.name = "models.lora.add", .text = "Add", .why_off = text.empty() ? "Type a path first" : ""}) ||
         (entered && !text.empty())) {
-        context.actions.add_lora(text);
+        context.emit(command::AddLora{text});
         text.clear();
     }
     flow(button_width("Browse..."));
@@ -151,15 +153,15 @@ const SegmenterTexts& segmenter_texts(SegmenterRole role) {
 }
 
 void ask_segmenter(Context& context, const SegmenterTexts& texts) {
-    auto& actions = context.actions;
+    auto& commands = context.commands;
     context.state.files.ask({.title = texts.question,
                              .confirm = "Use",
                              .extensions = texts.extensions,
                              .saves = false,
                              .folder_allowed = true,
                              .start = context.state.segmenter_paths[static_cast<std::size_t>(texts.role)],
-                             .answer = [&actions, role = texts.role](const std::filesystem::path& path) {
-                                 actions.choose_segmenter(role, utf8_of(path));
+                             .answer = [&commands, role = texts.role](const std::filesystem::path& path) {
+                                 commands.push(command::ChooseSegmenter{role, utf8_of(path)});
                              }});
 }
 
@@ -173,7 +175,7 @@ void draw_segmenter(Context& context, const SegmenterTexts& texts) {
         ImGui::TextUnformatted(shortened(segmenter.path, ImGui::GetContentRegionAvail().x).c_str());
         tooltip(segmenter.path);
         if (button(context, {.name = name + ".none", .text = texts.back}))
-            context.actions.choose_segmenter(texts.role, {});
+            context.emit(command::ChooseSegmenter{texts.role, {}});
     }
     if (segmenter.checking) dim_text("The weights are being loaded, to see whether they can be used.");
     auto& text = context.state.segmenter_paths[static_cast<std::size_t>(texts.role)];
@@ -182,7 +184,7 @@ void draw_segmenter(Context& context, const SegmenterTexts& texts) {
     if (button(context,
                {.name = name + ".use", .text = "Use", .why_off = text.empty() ? "Type a path first" : ""}) ||
         (entered && !text.empty())) {
-        context.actions.choose_segmenter(texts.role, text);
+        context.emit(command::ChooseSegmenter{texts.role, text});
         text.clear();
     }
     flow(button_width("Browse..."));
@@ -225,7 +227,7 @@ void draw_models_panel(Context& context) {
                          .text = "Use this path",
                          .why_off = context.state.model_path.empty() ? "Type a path first" : ""}) ||
         (entered && !context.state.model_path.empty()))
-        context.actions.choose_model(context.state.model_path);
+        context.emit(command::ChooseModel{context.state.model_path});
     flow(button_width("Locate..."));
     if (button(context, {.name = "models.browse", .text = "Browse..."})) ask_model(context);
     dim_text(

@@ -2,7 +2,7 @@
 // deleted.
 #include <fmt/format.h>
 
-#include "ui/commands.h"
+#include "ui/commands/guarded.h"
 #include "ui/panels/panels.h"
 #include "ui/state.h"
 #include "ui/widgets/controls.h"
@@ -82,7 +82,7 @@ void draw_uses(Context& context) {
     const auto use = [&](const char* name, const char* text, const std::string& why, const char* help,
                          PickedUse what, Look look = Look::Normal) {
         if (button(context, {.name = name, .text = text, .why_off = why, .tooltip = help, .look = look}))
-            context.actions.use_picked(what);
+            context.emit(command::UsePicked{what});
     };
     const std::string label = none.empty() ? why_not_label(context) : none;
     use("pick.new", "New label", none, "A label of these splats", PickedUse::NewLabel);
@@ -133,7 +133,7 @@ void draw_pick(Context& context) {
     wrapped_text(fmt::format("{} of {}: {}", count_text(context.model.picked.count),
                              count_text(context.document().current.size()), localize::choice_text(choice)));
     note(context, "pick.count");
-    if (changed) context.actions.pick_rows(choice);
+    if (changed) context.emit(command::PickRows{choice});
     draw_uses(context);
     if (pick.frames_to_bring <= 0 || context.model.picked.working || context.model.picked.values == nullptr)
         return;

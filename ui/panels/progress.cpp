@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "ui/commands.h"
+#include "ui/commands/guarded.h"
 #include "ui/panels/panels.h"
 #include "ui/state.h"
 #include "ui/widgets/controls.h"
@@ -36,7 +36,7 @@ void draw_job(Context& context) {
     if (button(context, {.name = "progress.pause",
                          .text = paused ? "Resume" : "Pause",
                          .why_off = job.can_pause ? "" : "This stage cannot be paused"}))
-        context.actions.pause(!paused);
+        context.emit(command::Pause{!paused});
     flow(button_width("Cancel"));
     if (button(context,
                {.name = "progress.cancel", .text = "Cancel", .tooltip = "Esc", .look = Look::Danger}))
@@ -91,8 +91,8 @@ std::string why_not_branch(const Context& context, int iteration) {
 
 /// What is given up by it is asked about first.
 void ask_branch(Context& context, int iteration) {
-    auto& actions = context.actions;
-    const auto branch = [&actions, iteration] { actions.branch_from_snapshot(iteration); };
+    auto& commands = context.commands;
+    const auto branch = [&commands, iteration] { commands.push(command::BranchFromSnapshot{iteration}); };
     const bool running = context.model.job.running;
     if (!running && !context.model.result_waiting) return branch();
     auto& question = context.state.question;
@@ -123,7 +123,7 @@ void draw_snapshots(Context& context) {
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
     if (ImGui::SliderInt("##progress.snapshot", &shown, 0, std::max(0, last), "",
                          ImGuiSliderFlags_AlwaysClamp))
-        context.actions.show_snapshot(shown == last ? -1 : shown);
+        context.emit(command::ShowSnapshot{shown == last ? -1 : shown});
     note(context, "progress.snapshot");
     tooltip(waits ? "Drag back to look at an earlier state."
                   : "Drag back to look at an earlier state; the edit goes on meanwhile.");
@@ -132,7 +132,7 @@ void draw_snapshots(Context& context) {
                          .why_off = result   ? "The result is shown"
                                     : newest ? "The newest is shown"
                                              : ""}))
-        context.actions.show_snapshot(-1);
+        context.emit(command::ShowSnapshot{-1});
     flow(button_width("Take this state"));
     if (button(context, {.name = "progress.take",
                          .text = "Take this state",
@@ -140,7 +140,7 @@ void draw_snapshots(Context& context) {
                                     : result ? "It is the result: apply it, or drag back to an earlier state"
                                              : "",
                          .tooltip = "It is the result then, to be applied or discarded."}))
-        context.actions.take_snapshot(snapshot.iteration);
+        context.emit(command::TakeSnapshot{snapshot.iteration});
     flow(button_width("Branch from here"));
     const std::string why = why_not_branch(context, snapshot.iteration);
     const std::string help = fmt::format("Goes on from iteration {} to {} with the settings as they are now.",

@@ -11,8 +11,8 @@
 #include "engine/edit/request/method_fields.h"
 #include "engine/edit/request/vocabulary.h"
 #include "engine/scene/strength.h"
-#include "ui/commands.h"
-#include "ui/keyboard.h"
+#include "ui/commands/guarded.h"
+#include "ui/keys/keyboard.h"
 #include "ui/panels/panels.h"
 #include "ui/sentence.h"
 #include "ui/state.h"
@@ -365,7 +365,7 @@ void draw_reach(Context& context) {
                 .text = other,
                 .tooltip = by_label ? "The words say what may change: they are looked for in all views"
                                     : "What this label marks may change, whatever the words find"}))
-        context.actions.set_reach(!by_label);
+        context.emit(command::SetReach{!by_label});
 }
 
 void draw_run(Context& context) {
@@ -377,7 +377,7 @@ void draw_run(Context& context) {
                {.name = "prompt.locate",
                 .text = "Locate",
                 .why_off = why_locate,
-                .tooltip = with_key(context, "Find the source in the scene and label it", Command::Locate),
+                .tooltip = with_key(context, "Find the source in the scene and label it", Shortcut::Locate),
                 .width = stacked ? -1 : width}))
         run_locate(context);
     if (!stacked) ImGui::SameLine();
@@ -550,12 +550,12 @@ void draw_result_notice(Context& context, const char* prefix) {
                          .text = "Apply",
                          .tooltip = "Keep it as an entry of the edit stack",
                          .look = Look::Primary}))
-        context.actions.apply_result();
+        context.emit(command::ApplyResult{});
     flow(button_width("Discard"));
     if (button(context, {.name = fmt::format("{}.discard", prefix),
                          .text = "Discard",
                          .tooltip = "Leave the scene as it was"}))
-        context.actions.discard_result();
+        context.emit(command::DiscardResult{});
     end_notice();
 }
 

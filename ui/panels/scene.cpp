@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ui/commands.h"
+#include "ui/commands/guarded.h"
 #include "ui/panels/panels.h"
 #include "ui/state.h"
 #include "ui/widgets/controls.h"
@@ -51,7 +51,7 @@ void draw_findings(Context& context) {
     if (broken &&
         button(context,
                {.name = "scene.repair", .text = "Drop what cannot be drawn", .tooltip = "Can be undone"}))
-        context.actions.repair_scene();
+        context.emit(command::RepairScene{});
     if (!any && !broken) {
         bullet_dot(palette::Good);
         wrapped_text("Nothing odd was found.");
@@ -69,7 +69,7 @@ void draw_up(Context& context) {
     int chosen = info.up_known && at != UpNames.end() ? static_cast<int>(at - UpNames.begin())
                                                       : -1;  // a guess can be confirmed
     if (segmented(context, "scene.up", UpNames, chosen))
-        context.actions.set_up_axis(UpNames[static_cast<std::size_t>(chosen)]);
+        context.emit(command::SetUpAxis{UpNames[static_cast<std::size_t>(chosen)]});
 }
 
 void draw_layers(Context& context) {
@@ -81,7 +81,7 @@ void draw_layers(Context& context) {
         ImGui::PushID(static_cast<int>(edit.id));
         if (checkbox(context, fmt::format("scene.layer.{}", edit.id),
                      shortened(edit.name, ImGui::GetContentRegionAvail().x - context.em * 2), enabled))
-            context.actions.set_edit_enabled(edit.id, enabled);
+            context.emit(command::SetEditEnabled{edit.id, enabled});
         ImGui::PopID();
     }
     property(context, "Shown", fmt::format("{} splats", count_text(state.current.size())));

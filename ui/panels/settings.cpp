@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "ui/commands.h"
-#include "ui/keys_dialog.h"
+#include "ui/commands/guarded.h"
+#include "ui/keys/keys_dialog.h"
 #include "ui/panels/panels.h"
 #include "ui/state.h"
 #include "ui/widgets/controls.h"
@@ -30,7 +30,7 @@ void draw_scale(Context& context) {
     row_label(context, "Size", "Ctrl + +, Ctrl + -, Ctrl + 0");
     ImGui::BeginGroup();
     if (segmented(context, "settings.scale", names, chosen))
-        context.actions.set_ui_scale(Scales[static_cast<std::size_t>(chosen)]);
+        context.emit(command::SetUiScale{Scales[static_cast<std::size_t>(chosen)]});
     ImGui::EndGroup();
     row_label(context, "Panels");
     if (button(context, {.name = "settings.reset_layout", .text = "Reset layout"})) {
@@ -90,7 +90,7 @@ void draw_cache(Context& context) {
     row_label(context, "At most", "What was used least recently goes first");
     ImGui::BeginGroup();
     if (segmented(context, "settings.cache", names, chosen))
-        context.actions.set_cache_mb(CacheSizes[static_cast<std::size_t>(chosen)].megabytes);
+        context.emit(command::SetCacheMb{CacheSizes[static_cast<std::size_t>(chosen)].megabytes});
     ImGui::EndGroup();
     const auto held = static_cast<double>(context.model.cache_bytes);
     row_label(context, "In use");
@@ -100,7 +100,7 @@ void draw_cache(Context& context) {
                          .text = "Clear",
                          .why_off = held > 0 ? "" : "There is nothing to clear.",
                          .tooltip = "Removes all of it; the next search asks the networks again"}))
-        context.actions.clear_cache();
+        context.emit(command::ClearCache{});
 }
 
 void draw_keys(Context& context) {

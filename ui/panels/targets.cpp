@@ -57,7 +57,7 @@ void draw_pair(Context& context, const TargetView& target, const std::string& na
         ImGui::GetWindowDrawList()->AddRect(low, high, target.ordered ? palette::Accent : palette::Warning,
                                             context.em * 0.2f, 0, std::max(1.0f, context.em * 0.1f));
     if (!ImGui::IsItemHovered() || target.after == nullptr || target.before == nullptr) return;
-    if (ImGui::IsMouseDoubleClicked(0)) return context.actions.set_camera(target.camera);
+    if (ImGui::IsMouseDoubleClicked(0)) return context.emit(command::SetCamera{target.camera});
     if (ImGui::IsAnyMouseDown()) return;
     const float large = std::min(context.em * 15, ImGui::GetIO().DisplaySize.x * 0.3f);
     ImGui::BeginTooltip();
@@ -80,7 +80,7 @@ std::string state_text(const TargetView& target) {
 void draw_choices(Context& context, const TargetRound& round, const TargetView& target,
                   const std::string& name, const std::string& why) {
     const auto order = [&](TargetChoice choice) {
-        context.actions.order_target({round.round, target.view, choice});
+        context.emit(command::OrderTarget{{round.round, target.view, choice}});
     };
     const auto used = std::count_if(round.targets.begin(), round.targets.end(),
                                     [](const TargetView& other) { return !other.dropped; });
@@ -162,7 +162,7 @@ void draw_wait(Context& context) {
     begin_notice(context, "targets.wait", palette::Accent);
     wrapped_text("The edit waits for you: drop what is wrong, or have it redrawn.");
     if (button(context, {.name = "targets.fit", .text = "Fit the scene to these", .look = Look::Primary}))
-        context.actions.fit_to_targets();
+        context.emit(command::FitToTargets{});
     end_notice();
 }
 

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "engine/scene/viewpoints.h"
-#include "ui/commands.h"
+#include "ui/commands/guarded.h"
 #include "ui/panels/panels.h"
 #include "ui/state.h"
 #include "ui/widgets/controls.h"
@@ -21,7 +21,7 @@ void draw_row(Context& context, int index) {
     const std::string text = fmt::format("{}  {}x{}", name, view.camera.width, view.camera.height);
     if (ImGui::Selectable(shortened(text, width - context.em).c_str(), index == selected, 0, {width, icon})) {
         selected = index;
-        context.actions.look_through(static_cast<std::size_t>(index));
+        context.emit(command::LookThrough{static_cast<std::size_t>(index)});
     }
     note(context, fmt::format("views.row.{}", index));
     tooltip(view.distorted ? text + "\nIts lens was distorted: a viewpoint only." : text);
@@ -30,7 +30,7 @@ void draw_row(Context& context, int index) {
                               .icon = Icon::Trash,
                               .tooltip = "Delete this view",
                               .size_em = 1.5f}))
-        context.actions.delete_view(static_cast<std::size_t>(index));
+        context.emit(command::DeleteView{static_cast<std::size_t>(index)});
     ImGui::PopID();
 }
 
@@ -43,7 +43,7 @@ void draw_views_panel(Context& context) {
                          .text = "Add this view",
                          .why_off = why,
                          .tooltip = "The present camera becomes a view"}))
-        context.actions.add_view();
+        context.emit(command::AddView{});
     flow(button_width("Previous"));
     const char* why_step = !open ? why : context.document().views.empty() ? "There are no views" : "";
     if (button(context,

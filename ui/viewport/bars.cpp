@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "ui/commands.h"
+#include "ui/commands/guarded.h"
 #include "ui/state.h"
 #include "ui/viewport/viewport.h"
 #include "ui/widgets/controls.h"
@@ -54,7 +54,7 @@ void draw_results(Context& context) {
         if (i > 0) ImGui::SameLine();
         ImGui::PushID(static_cast<int>(i));
         const ImVec2 low = ImGui::GetCursorScreenPos(), high(low.x + side, low.y + side);
-        if (ImGui::InvisibleButton("result", {side, side})) context.actions.show_result(i);
+        if (ImGui::InvisibleButton("result", {side, side})) context.emit(command::ShowResult{i});
         note(context, fmt::format("result.{}", i));
         tooltip(fmt::format("Result {} of {}, seed {}", i + 1, results.size(), results[i].seed));
         ImDrawList* list = ImGui::GetWindowDrawList();
@@ -100,23 +100,23 @@ void draw_result_bar(Context& context) {
     if (one_line) ImGui::SameLine();
     if (button(context, {.name = "result.compare",
                          .text = wipes ? "Stop comparing" : "Compare",
-                         .tooltip = with_key(context, "Wipe between before and after", Command::Wipe)}))
+                         .tooltip = with_key(context, "Wipe between before and after", Shortcut::Wipe)}))
         toggle_wipe(context);
     ImGui::SameLine();
     if (button(context, {.name = "result.another",
                          .text = "Another",
                          .tooltip = "The same once more with another seed; this result is kept beside it"}))
-        context.actions.another_result();
+        context.emit(command::AnotherResult{});
     ImGui::SameLine();
     if (button(context, {.name = "result.apply",
                          .text = "Apply",
                          .tooltip = "Keep it as an entry of the edit stack",
                          .look = Look::Primary}))
-        context.actions.apply_result();
+        context.emit(command::ApplyResult{});
     ImGui::SameLine();
     if (button(context,
                {.name = "result.discard", .text = "Discard", .tooltip = "Leave the scene as it was"}))
-        context.actions.discard_result();
+        context.emit(command::DiscardResult{});
     end_foot(context);
     if (model.results.size() > 1) draw_results(context);
 }
@@ -134,9 +134,10 @@ void draw_hidden_bar(Context& context, ImVec2 at) {
         "They are still part of the scene: edits, saving and exports go on with them. Export has a choice to "
         "leave them out.");
     ImGui::SameLine();
-    if (button(context,
-               {.name = "hidden.show", .text = "Show all", .tooltip = keys_of(context, Command::ShowHidden)}))
-        context.actions.show_hidden();
+    if (button(
+            context,
+            {.name = "hidden.show", .text = "Show all", .tooltip = keys_of(context, Shortcut::ShowHidden)}))
+        context.emit(command::ShowHidden{});
     end_floating(context);
 }
 
@@ -154,7 +155,7 @@ void draw_evidence_bar(Context& context, ImVec2 at, const AttentionView& view) {
     if (segmented(context, "evidence.kind", Kinds, kind))
         state.over = kind == 1 ? Over::Mask : Over::Attention;
     ImGui::EndGroup();
-    tooltip(with_key(context, "What of this view lies over the picture", Command::Evidence));
+    tooltip(with_key(context, "What of this view lies over the picture", Shortcut::Evidence));
     ImGui::SameLine();
     draw_vote(context, "evidence.votes", state.chosen);
     ImGui::SameLine();
@@ -202,7 +203,7 @@ void draw_recovery(Context& context, const char* prefix, std::size_t index, bool
                    {.name = named("later"),
                     .text = "Later",
                     .tooltip = "It is offered again when the scene is opened or the program starts"}))
-            context.actions.postpone_recovery(file);
+            context.emit(command::PostponeRecovery{file});
     }
     ImGui::EndGroup();
 }

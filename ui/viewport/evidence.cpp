@@ -4,7 +4,7 @@
 #include <string>
 
 #include "engine/scene/viewpoints.h"
-#include "ui/commands.h"
+#include "ui/commands/guarded.h"
 #include "ui/state.h"
 #include "ui/viewport/viewport.h"
 #include "ui/widgets/controls.h"
@@ -81,7 +81,7 @@ void look_through_attention(Context& context, int index) {
     const Camera& camera = views[static_cast<std::size_t>(index)].camera;
     const Camera& shown = context.model.camera;
     if (camera.width <= 0 || shown.width <= 0) return;  // it has not come yet
-    context.actions.set_camera(fitted(camera, shown.width, shown.height));
+    context.emit(command::SetCamera{fitted(camera, shown.width, shown.height)});
 }
 
 void draw_vote(Context& context, const char* name, int index) {

@@ -4,8 +4,8 @@
 #include <numbers>
 
 #include "engine/scene/viewpoints.h"
-#include "ui/commands.h"
-#include "ui/keys.h"
+#include "ui/commands/guarded.h"
+#include "ui/keys/keys.h"
 #include "ui/state.h"
 #include "ui/viewport/viewport.h"
 
@@ -62,7 +62,7 @@ void send(Context& context) {
     const Pixels size = framebuffer_size(state);
     const Camera camera = state.camera.camera().resized(size.width, size.height);
     state.sent.sent(camera);
-    context.actions.set_camera(camera);
+    context.emit(command::SetCamera{camera});
 }
 
 /// Camera axes: right, down, forward.
@@ -130,7 +130,7 @@ void drag(Context& context) {
 void double_click(Context& context, ImVec2 mouse) {
     auto& state = context.state.viewport;
     const int view = context.view.show_views ? view_at(context, mouse) : -1;
-    if (view >= 0) return context.actions.look_through(static_cast<std::size_t>(view));
+    if (view >= 0) return context.emit(command::LookThrough{static_cast<std::size_t>(view)});
     const double depth = depth_at(context, mouse);
     if (depth > 0)
         state.camera.set_pivot(state.camera.unproject(mouse.x - state.low.x, mouse.y - state.low.y, depth));
@@ -168,7 +168,7 @@ void update_camera(Context& context, bool keys_free) {
     const Pixels size = framebuffer_size(state);
     const bool resized = size.width != state.sent_width || size.height != state.sent_height;
     if (resized) {
-        context.actions.set_viewport_size(size.width, size.height);
+        context.emit(command::SetViewportSize{size.width, size.height});
         state.sent_width = size.width;
         state.sent_height = size.height;
     }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "ui/commands.h"
+#include "ui/commands/guarded.h"
 #include "ui/glyphs.h"
 #include "ui/state.h"
 #include "ui/viewport/viewport.h"

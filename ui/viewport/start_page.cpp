@@ -4,8 +4,12 @@
 
 #include <algorithm>
 
+<<<<<<< HEAD
 #include "engine/io/formats/scene_formats.h"
 #include "ui/commands.h"
+=======
+#include "ui/commands/guarded.h"
+>>>>>>> 1a362a2 (ui: commands in, a list of values per frame; Actions and DeferredActions go; the sentence's facts follow the method)
 #include "ui/glyphs.h"
 #include "ui/state.h"
 #include "ui/viewport/viewport.h"
@@ -85,7 +89,7 @@ void draw_loading(Context& context) {
     wrapped_text(job.title.empty() ? "Opening" : job.title);
     const float share = job.total > 0 ? static_cast<float>(job.step) / static_cast<float>(job.total) : 0;
     ImGui::ProgressBar(std::clamp(share, 0.0f, 1.0f), {-1, 0}, job.stage.c_str());
-    if (button(context, {.name = "start.cancel", .text = "Cancel"})) context.actions.cancel_file_job();
+    if (button(context, {.name = "start.cancel", .text = "Cancel"})) context.emit(command::CancelFileJob{});
 }
 
 }  // namespace
@@ -112,7 +116,7 @@ void draw_start_page(Context& context) {
     ImGui::Spacing();
     if (button(context, {.name = "start.open",
                          .text = "Open...",
-                         .tooltip = keys_of(context, Command::Open),
+                         .tooltip = keys_of(context, Shortcut::Open),
                          .look = Look::Primary}))
         ask_open(context);
     flow(button_width("Open sample"));

@@ -80,11 +80,11 @@ void draw_toast(Context& context, std::size_t index, const ToastPlan& plan, ImVe
     }
     if (!toast.button.empty()) {
         if (button(context, {.name = fmt::format("toast.{}.button", index), .text = toast.button}))
-            context.actions.press_toast(index);
+            context.emit(command::PressToast{index});
         ImGui::SameLine();
     }
     if (button(context, {.name = fmt::format("toast.{}.close", index), .text = "Close", .look = Look::Quiet}))
-        context.actions.dismiss_toast(index);
+        context.emit(command::DismissToast{index});
     ImGui::EndChild();
     note(context, fmt::format("toast.{}", index));
     ImGui::PopStyleColor(2);

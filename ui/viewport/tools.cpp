@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/scene/label_ops.h"
-#include "ui/commands.h"
+#include "ui/commands/guarded.h"
 #include "ui/state.h"
 #include "ui/viewport/viewport.h"
 
@@ -37,7 +37,7 @@ void send_circles(Context& context, std::size_t first, bool ends) {
     region.radius_px = context.view.brush_px * texture_scale(context);
     // A stroke that replaces does so with its first dab, and adds with the others.
     const bool replaces = state.stroke_operation == SetOperation::Replace && first > 0;
-    context.actions.select(region, replaces ? SetOperation::Add : state.stroke_operation, ends);
+    context.emit(command::Select{region, replaces ? SetOperation::Add : state.stroke_operation, ends});
 }
 
 /// Circles from the last point to the mouse, close enough to leave no gaps.
@@ -59,7 +59,7 @@ void extend_brush(Context& context, ImVec2 mouse) {
 
 void begin_stroke(Context& context, ImVec2 mouse) {
     auto& state = context.state.viewport;
-    if (context.active_label() == nullptr) context.actions.add_label("label");
+    if (context.active_label() == nullptr) context.emit(command::AddLabel{"label"});
     show_labelled(context);
     state.stroke = true;
     state.stroke_operation = operation_now(context);
@@ -85,8 +85,8 @@ void end_stroke(Context& context, ImVec2 mouse) {
     if (state.path.size() < 3) return;
     ScreenRegion region;
     for (const auto& point : state.path) region.polygon.push_back(to_texture(context, point));
-    if (state.tool == Tool::CutOut) return context.actions.cut_out(region, state.stroke_operation);
-    context.actions.select(region, state.stroke_operation, true);
+    if (state.tool == Tool::CutOut) return context.emit(command::CutOut{region, state.stroke_operation});
+    context.emit(command::Select{region, state.stroke_operation, true});
 }
 
 /// The base colour of what is seen there, for "Select by property"; the nearest that there is a few pixels
@@ -104,7 +104,7 @@ void pick_colour(Context& context, ImVec2 mouse) {
         if (std::find(rows.begin(), rows.end(), std::uint8_t{1}) == rows.end()) continue;
         auto& choice = context.state.pick.choices[static_cast<std::size_t>(localize::RowProperty::Colour)];
         choice.colour = localize::mean_colour(set, rows);
-        return context.actions.pick_rows(choice);
+        return context.emit(command::PickRows{choice});
     }
 }
 

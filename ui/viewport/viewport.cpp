@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ui/commands.h"
+#include "ui/commands/guarded.h"
 #include "ui/glyphs.h"
-#include "ui/keys.h"
+#include "ui/keys/keys.h"
 #include "ui/state.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/icons.h"
@@ -48,7 +48,7 @@ void draw_view_list(Context& context) {
         if (ImGui::Selectable(std::string(Shown(views[index].name).text()).c_str(),
                               static_cast<int>(index) == selected)) {
             context.state.viewport.selected_view = static_cast<int>(index);
-            context.actions.look_through(index);
+            context.emit(command::LookThrough{index});
         }
         ImGui::PopID();
     }
@@ -69,7 +69,7 @@ void draw_header(Context& context) {
     flow(context.em * 1.75f);
     if (icon_button(context, {.name = "viewport.compare",
                               .icon = Icon::Wipe,
-                              .tooltip = with_key(context, "Wipe between before and after", Command::Wipe),
+                              .tooltip = with_key(context, "Wipe between before and after", Shortcut::Wipe),
                               .active = context.model.comparison == Comparison::Wipe,
                               .why_off = why}))
         toggle_wipe(context);
@@ -80,9 +80,9 @@ void draw_header(Context& context) {
                               .tooltip = "Show the original (hold `)",
                               .active = original,
                               .why_off = why}))
-        context.actions.set_comparison(original ? Comparison::None : Comparison::Original);
+        context.emit(command::SetComparison{original ? Comparison::None : Comparison::Original});
     toggle(context, "viewport.tint", Icon::Tag, context.view.tint_labels,
-           with_key(context, "Tint what is labelled", Command::Tint));
+           with_key(context, "Tint what is labelled", Shortcut::Tint));
     toggle(context, "viewport.axes", Icon::Axes, context.view.show_axes, "World axes");
     toggle(context, "viewport.bounds", Icon::Box, context.view.show_bounds, "Box around the scene");
     toggle(context, "viewport.cameras", Icon::Camera, context.view.show_views, "Cameras of the views");

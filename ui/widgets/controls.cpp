@@ -10,7 +10,7 @@
 #include <cmath>
 
 #include "ui/glyphs.h"
-#include "ui/keyboard.h"
+#include "ui/keys/keyboard.h"
 
 namespace gse::ui {
 namespace {

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ui/keyboard.h"
+#include "ui/keys/keyboard.h"
 #include "ui/widgets/controls.h"
 
 namespace gse::ui {

@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <set>
 
-#include "ui/keyboard.h"
-#include "ui/keys.h"
+#include "ui/keys/keyboard.h"
+#include "ui/keys/keys.h"
 #include "ui/state.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/icons.h"

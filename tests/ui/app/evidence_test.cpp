@@ -23,7 +23,7 @@ DOCTEST_TEST_CASE("views come in while a search looks; one can be left out, put 
     Session session;
     session.open_bear();
     auto& app = session.app;
-    app.locate();
+    app.run(command::Locate{});
     bool some = false;  // were there while it still looked
     DOCTEST_REQUIRE(session.until([&] {
         const auto& views = app.model().attention;
@@ -40,7 +40,7 @@ DOCTEST_TEST_CASE("views come in while a search looks; one can be left out, put 
     const auto all = *active(app).weight;
     const auto at = app.document().position();
     const auto render = app.model().attention[2].render;
-    app.leave_out_view(2, true);
+    app.run(command::LeaveOutView{2, true});
     DOCTEST_REQUIRE(session.settled());
     DOCTEST_CHECK(app.document().names().back() == "Leave out " + app.model().attention[2].name);
     DOCTEST_CHECK(app.document().position() == at + 1);
@@ -49,25 +49,25 @@ DOCTEST_TEST_CASE("views come in while a search looks; one can be left out, put 
     DOCTEST_CHECK(app.model().request.left_out == "2");
     const auto without = *active(app).weight;
     DOCTEST_CHECK(without != all);
-    app.undo();
+    app.run(command::Undo{});
     DOCTEST_CHECK(*active(app).weight == all);
     DOCTEST_CHECK(app.model().request.left_out.empty());
     DOCTEST_REQUIRE(session.settled());
     DOCTEST_CHECK(app.model().attention[2].step != edit::ViewStep::LeftOut);  // the evidence follows
     DOCTEST_CHECK(app.document().position() == at);
-    app.redo();
+    app.run(command::Redo{});
     DOCTEST_CHECK(*active(app).weight == without);
     DOCTEST_REQUIRE(session.settled());
     DOCTEST_CHECK(app.model().attention[2].step == edit::ViewStep::LeftOut);
-    app.leave_out_view(2, false);
+    app.run(command::LeaveOutView{2, false});
     DOCTEST_REQUIRE(session.settled());
     DOCTEST_CHECK(*active(app).weight == all);  // to the bit
     DOCTEST_CHECK(app.document().names().back() == "Put back " + app.model().attention[2].name);
-    app.leave_out_view(5, true);
+    app.run(command::LeaveOutView{5, true});
     DOCTEST_REQUIRE(session.settled());
     auto request = app.model().request;
     request.prompt = "a red bear on the grass", request.target = "red";
-    app.set_request(request);
+    app.run(command::SetRequest{request});
     DOCTEST_CHECK(app.model().request.left_out.empty());  // another search has other views
 }
 
@@ -77,12 +77,12 @@ DOCTEST_TEST_CASE("a search that is stopped gives back the views of the one befo
     Session session;
     session.open_bear();
     auto& app = session.app;
-    app.locate();
+    app.run(command::Locate{});
     DOCTEST_REQUIRE(session.settled());
     const auto map = *app.model().attention[1].map;
-    app.locate();
+    app.run(command::Locate{});
     DOCTEST_REQUIRE(session.until([&] { return app.model().attention_arriving; }));
-    app.cancel();
+    app.run(command::Cancel{});
     DOCTEST_REQUIRE(session.settled());
     DOCTEST_CHECK_FALSE(app.model().attention_arriving);
     DOCTEST_REQUIRE(app.model().attention.size() == 8);

@@ -31,21 +31,21 @@ DOCTEST_TEST_CASE(
     auto& app = session.app;
     auto request = app.model().request;
     request.iterations = 2;
-    app.set_request(request);
+    app.run(command::SetRequest{request});
     const auto looked = [&] { return app.document().state().labels.at(0).looked_from; };
-    app.locate();
+    app.run(command::Locate{});
     DOCTEST_REQUIRE(session.settled());
     DOCTEST_CHECK(looked().empty());  // nobody has turned to a side
-    app.set_camera(turned(app, 90));
-    app.locate();
+    app.run(command::SetCamera{turned(app, 90)});
+    app.run(command::Locate{});
     DOCTEST_REQUIRE(session.settled());
     DOCTEST_CHECK(looked() == "90");
     DOCTEST_REQUIRE(app.model().search.front.has_value());
     const double away = std::abs(std::remainder(*app.model().search.front, 360));
     DOCTEST_CHECK(away < 45);  // the pictures of the bear are sure
     const auto searches = app.model().search.number;
-    app.set_camera(turned(app, 200));
-    app.edit();
+    app.run(command::SetCamera{turned(app, 200)});
+    app.run(command::Edit{});
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK(app.model().result_waiting);
     DOCTEST_CHECK(app.model().search.number == searches);

@@ -62,33 +62,33 @@ DOCTEST_TEST_CASE(
         Session session;
         session.open_bear();
         auto& app = session.app;
-        app.add_lora(good.string() + ":0.5");
+        app.run(command::AddLora{good.string() + ":0.5"});
         DOCTEST_REQUIRE(session.settled());
         DOCTEST_REQUIRE(app.model().loras.size() == 1);
         DOCTEST_CHECK(app.model().loras[0].name == "style");
         DOCTEST_CHECK(app.model().loras[0].strength == 0.5);
-        app.set_lora_strength(0, -0.25);
+        app.run(command::SetLoraStrength{0, -0.25});
         DOCTEST_REQUIRE(session.settled());
         DOCTEST_CHECK(app.model().loras[0].strength == -0.25);
         for (const auto& bad : {other, place.folder / "gone.safetensors"}) {
-            app.add_lora(bad.string());
+            app.run(command::AddLora{bad.string()});
             DOCTEST_REQUIRE(session.settled());
             DOCTEST_CHECK(app.model().loras.size() == 1);
             DOCTEST_CHECK(app.model().toasts.back().is_error);
             DOCTEST_CHECK(app.model().toasts.back().text.find("LoRA") != std::string::npos);
         }
         const int rounds = app.model().request.rounds;
-        app.add_lora(fast.string());  // brings settings of its own
+        app.run(command::AddLora{fast.string()});  // brings settings of its own
         DOCTEST_REQUIRE(session.settled());
         DOCTEST_REQUIRE(app.model().loras.size() == 2);
         DOCTEST_CHECK(app.model().request.rounds == 2);
-        app.remove_lora(1);
+        app.run(command::RemoveLora{1});
         DOCTEST_REQUIRE(session.settled());
         DOCTEST_CHECK(app.model().loras.size() == 1);
         DOCTEST_CHECK(app.model().request.rounds == rounds);
-        app.save_project(project);
+        app.run(command::SaveProject{project});
         DOCTEST_REQUIRE(session.settled());
-        app.remove_lora(0);
+        app.run(command::RemoveLora{0});
         DOCTEST_REQUIRE(session.settled());
         DOCTEST_CHECK(app.model().loras.empty());
         app.shut_down();
@@ -96,7 +96,7 @@ DOCTEST_TEST_CASE(
     {
         Session again;
         DOCTEST_CHECK(again.app.model().loras.empty());
-        again.app.open(project);
+        again.app.run(command::Open{project});
         DOCTEST_REQUIRE(again.settled());
         DOCTEST_REQUIRE(again.app.model().loras.size() == 1);
         DOCTEST_CHECK(again.app.model().loras[0].strength == -0.25);

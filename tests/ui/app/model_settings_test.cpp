@@ -40,7 +40,7 @@ DOCTEST_TEST_CASE("a model's settings are taken where the artist changed nothing
         session.open_bear();  // with 8 views
         auto& app = session.app;
         const auto steps = app.model().model_settings.learning.steps;
-        app.choose_model(stating.string());
+        app.run(command::ChooseModel{stating.string()});
         DOCTEST_REQUIRE(session.settled());
         DOCTEST_CHECK(app.model().request.tau == 0.6);
         DOCTEST_CHECK(app.model().request_defaults.views == 5);
@@ -48,17 +48,17 @@ DOCTEST_TEST_CASE("a model's settings are taken where the artist changed nothing
         DOCTEST_CHECK(app.model().request.views == 8);
         DOCTEST_CHECK(app.model().request.prompt == "a blue bear on the grass");
         DOCTEST_CHECK(app.model().model_settings.learning.steps == 333);
-        app.choose_model(app::starter_model_path().string());
+        app.run(command::ChooseModel{app::starter_model_path().string()});
         DOCTEST_REQUIRE(session.settled());
         DOCTEST_CHECK(app.model().request.tau == usual.tau);
         DOCTEST_CHECK(app.model().request_defaults.views == usual.views);
         DOCTEST_CHECK(app.model().request.views == 8);
         DOCTEST_CHECK(app.model().model_settings.learning.steps == steps);
-        app.choose_model(wrong.string());
+        app.run(command::ChooseModel{wrong.string()});
         DOCTEST_REQUIRE(session.settled());
         DOCTEST_CHECK(app.model().toasts.back().text.find("\"tao\"") != std::string::npos);
         DOCTEST_CHECK(app.model().request.tau == usual.tau);
-        app.choose_model(stating.string());
+        app.run(command::ChooseModel{stating.string()});
         DOCTEST_REQUIRE(session.settled());
         app.shut_down();
     }
@@ -81,27 +81,27 @@ DOCTEST_TEST_CASE(
         settings.guidance.guidance_scale = 6;
         settings.attention.strength = 0.5;
         settings.learning.batch = 1;
-        app.set_model_settings(settings);
+        app.run(command::SetModelSettings{settings});
         auto request = app.model().request;
         request.iterations = 2;
         request.views = 6;
         request.edited_views = 2;
-        app.set_request(request);
-        app.edit();
+        app.run(command::SetRequest{request});
+        app.run(command::Edit{});
         DOCTEST_REQUIRE(session.idle());
         DOCTEST_CHECK(app.model().job.error.empty());
-        app.apply_result();
+        app.run(command::ApplyResult{});
         const auto recipe = nlohmann::ordered_json::parse(app.document().state().stack[0].recipe);
         DOCTEST_CHECK(recipe["job"]["front"] == "45");
         DOCTEST_CHECK(recipe["job"]["threads"] == 2);
         DOCTEST_CHECK(recipe["guidance"]["guidance_scale"] == 6);
         DOCTEST_CHECK(recipe["attention"]["strength"] == 0.5);
-        app.save_project(place.folder / "bear.gsep");
+        app.run(command::SaveProject{place.folder / "bear.gsep"});
         DOCTEST_REQUIRE(session.idle());
         app.shut_down();
     }
     Session again;
-    again.app.open(place.folder / "bear.gsep");
+    again.app.run(command::Open{place.folder / "bear.gsep"});
     DOCTEST_REQUIRE(again.until([&] { return again.app.model().document != nullptr; }));
     const auto& settings = again.app.model().model_settings;
     DOCTEST_CHECK(settings.front == "45");
@@ -140,11 +140,11 @@ DOCTEST_TEST_CASE(
         settings.learn_scene = learns;
         settings.learning.steps = 1;
         settings.learning.class_images = 2;
-        app.set_model_settings(settings);
+        app.run(command::SetModelSettings{settings});
         auto request = app.model().request;
         change(request);
-        app.set_request(request);
-        app.locate();
+        app.run(command::SetRequest{request});
+        app.run(command::Locate{});
         DOCTEST_REQUIRE(session.settled());
         DOCTEST_CHECK(app.model().job.error.empty());
     };

@@ -41,31 +41,31 @@ DOCTEST_TEST_CASE("what an addition left behind is not what the next edit of ano
     request.mode = "add";
     request.iterations = 2;
     request.place_views = 4;
-    app.set_request(request);
-    app.edit();
+    app.run(command::SetRequest{request});
+    app.run(command::Edit{});
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_REQUIRE(app.model().result_waiting);
-    app.discard_result();
-    app.select(stroke_over_bear(5), ui::SetOperation::Remove,
-               true);  // says nothing of where the hat goes, and that is said
-    app.edit();
+    app.run(command::DiscardResult{});
+    app.run(command::Select{stroke_over_bear(5), ui::SetOperation::Remove,
+                            true});  // says nothing of where the hat goes, and that is said
+    app.run(command::Edit{});
     DOCTEST_REQUIRE(session.idle());
     app.update(session.preview);
     bool said = false;
     for (const auto& line : app.model().log)
         said |= line.text == app::AddsElsewhere;  // its toast is gone where the edit took long
     DOCTEST_CHECK(said);
-    app.apply_result();
+    app.run(command::ApplyResult{});
     DOCTEST_REQUIRE(active(app).name == "hat");
     request = app.model().request;
     request.mode = "auto";
     request.prompt = "a golden bear";
-    app.set_request(request);
+    app.run(command::SetRequest{request});
     app.update(session.preview);
     DOCTEST_CHECK_FALSE(app.model().reach.by_label);
     DOCTEST_CHECK(app.model().reach.label == "hat");  // offered
     const auto hat = *active(app).bits;
-    app.edit();
+    app.run(command::Edit{});
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_REQUIRE(active(app).name == "bear");
     std::size_t in_hat = 0;
@@ -85,37 +85,37 @@ DOCTEST_TEST_CASE(
     auto& app = session.app;
     auto request = app.model().request;
     request.iterations = 2;
-    app.set_request(request);
-    app.locate();
+    app.run(command::SetRequest{request});
+    app.run(command::Locate{});
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK_FALSE(app.model().attention_corrected);
-    app.select(stroke_over_bear(5), ui::SetOperation::Remove, true);
+    app.run(command::Select{stroke_over_bear(5), ui::SetOperation::Remove, true});
     app.update(session.preview);
     DOCTEST_CHECK(app.model().attention_corrected);  // the masks are from before
     const auto corrected = *active(app).bits;
-    app.rename_label(app.document().state().active_label, "Bruno");
+    app.run(command::RenameLabel{app.document().state().active_label, "Bruno"});
     app.update(session.preview);
     DOCTEST_CHECK(app.model().reach.by_label);
     DOCTEST_CHECK(app.model().reach.label == "Bruno");
     DOCTEST_CHECK(app.model().reach.splats == count_labelled(active(app)));
-    app.edit();
+    app.run(command::Edit{});
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK(app.document().state().labels.size() == 1);
     DOCTEST_CHECK(*active(app).bits == corrected);
     DOCTEST_CHECK_FALSE(app.model().view.tint_labels);  // what was made is to be seen
     auto view = app.model().view;
     view.tint_labels = true;  // by T, a tool or a stroke
-    app.set_view_settings(view);
+    app.run(command::SetViewSettings{view});
     app.update(session.preview);
     DOCTEST_CHECK(session.preview.last.values != nullptr);
-    app.discard_result();
-    app.locate();  // another search corrects the same label
+    app.run(command::DiscardResult{});
+    app.run(command::Locate{});  // another search corrects the same label
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK(app.document().state().labels.size() == 1);
     DOCTEST_CHECK(active(app).name == "Bruno");
-    app.save_project(place.folder / "bruno.gsep");
+    app.run(command::SaveProject{place.folder / "bruno.gsep"});
     DOCTEST_REQUIRE(session.idle());
-    app.open(place.folder / "bruno.gsep");
+    app.run(command::Open{place.folder / "bruno.gsep"});
     DOCTEST_REQUIRE(session.idle());
     app.update(session.preview);
     DOCTEST_CHECK(app.model().reach.by_label);  // the project keeps the connection
@@ -128,22 +128,22 @@ DOCTEST_TEST_CASE(
     Session session;
     session.open_bear();
     auto& app = session.app;
-    app.add_label("label");
-    app.select(stroke_over_bear(20), ui::SetOperation::Add, true);
+    app.run(command::AddLabel{"label"});
+    app.run(command::Select{stroke_over_bear(20), ui::SetOperation::Add, true});
     app.update(session.preview);
     DOCTEST_CHECK(app.model().reach.by_label);
-    app.set_reach(false);
+    app.run(command::SetReach{false});
     app.update(session.preview);
     DOCTEST_CHECK_FALSE(app.model().reach.by_label);
-    app.set_reach(true);
+    app.run(command::SetReach{true});
     app.update(session.preview);
     DOCTEST_CHECK(app.model().reach.by_label);
     auto request = app.model().request;
     request.source = "grass";
-    app.set_request(request);
+    app.run(command::SetRequest{request});
     app.update(session.preview);
     DOCTEST_CHECK_FALSE(app.model().reach.by_label);
-    app.open_sample();  // another document: nothing is labelled there
+    app.run(command::OpenSample{});  // another document: nothing is labelled there
     DOCTEST_REQUIRE(session.until([&] { return app.document().state().labels.empty(); }));
     app.update(session.preview);
     DOCTEST_CHECK(app.model().reach.label.empty());

@@ -18,7 +18,7 @@ app::Application& opened(Session& session) {
     auto request = session.app.model().request;
     request.method = "views";
     request.edited_views = 2;
-    session.app.set_request(request);
+    session.app.run(command::SetRequest{request});
     return session.app;
 }
 
@@ -30,32 +30,32 @@ DOCTEST_TEST_CASE(
     const Place place;
     Session session;
     auto& app = opened(session);
-    app.another_result();  // of nothing
+    app.run(command::AnotherResult{});  // of nothing
     DOCTEST_CHECK_FALSE(app.model().job.running);
-    app.edit();
+    app.run(command::Edit{});
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_REQUIRE(app.model().result_waiting);
     const auto seed = app.model().request.seed;
     const auto base = app.document().state().current, first = session.preview.last.set;
-    app.another_result();
+    app.run(command::AnotherResult{});
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_REQUIRE(app.model().results.size() == 2);
     DOCTEST_CHECK(app.model().request.seed == seed + 1);
     const auto second = session.preview.last.set;
     DOCTEST_CHECK_FALSE(second.shares_all_with(first));
-    app.another_result();
+    app.run(command::AnotherResult{});
     DOCTEST_REQUIRE(session.until([&] { return app.model().edit_running; }));
     DOCTEST_CHECK_FALSE(app.model().result_waiting);
     DOCTEST_CHECK(app.model().unsaved);
-    app.cancel();
+    app.run(command::Cancel{});
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK(app.model().results.size() >= 2);
     DOCTEST_REQUIRE(app.model().result_waiting);  // stopped before its first step, or after some
-    app.show_result(0);
+    app.run(command::ShowResult{0});
     app.update(session.preview);
     DOCTEST_CHECK(session.preview.last.set.shares_all_with(first));
     DOCTEST_CHECK(app.model().request.seed == seed);
-    app.apply_result();
+    app.run(command::ApplyResult{});
     app.update(session.preview);
     const auto& state = app.document().state();
     DOCTEST_REQUIRE(state.stack.size() == 1);
@@ -72,15 +72,15 @@ DOCTEST_TEST_CASE(
     auto& app = opened(session);
     auto view = app.model().view;
     view.tint_labels = true;
-    app.set_view_settings(view);
+    app.run(command::SetViewSettings{view});
     const auto base = app.document().state().current;
-    app.edit();
+    app.run(command::Edit{});
     DOCTEST_REQUIRE(session.idle());
-    app.another_result();
+    app.run(command::AnotherResult{});
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_REQUIRE(app.model().results.size() == 2);
     DOCTEST_CHECK_FALSE(app.model().view.tint_labels);
-    app.discard_result();
+    app.run(command::DiscardResult{});
     app.update(session.preview);
     DOCTEST_CHECK(app.model().results.empty());
     DOCTEST_CHECK(app.model().view.tint_labels);

@@ -27,7 +27,7 @@ DOCTEST_TEST_CASE(
         session.open_bear();
         auto& app = session.app;
         for (const auto& path : {bad, place.folder / "gone.pth"}) {
-            app.choose_segmenter(ui::SegmenterRole::Clicks, path.string());
+            app.run(command::ChooseSegmenter{ui::SegmenterRole::Clicks, path.string()});
             DOCTEST_CHECK(app.model().segmenters[0].checking);
             DOCTEST_REQUIRE(session.settled());
             DOCTEST_CHECK(!app.model().segmenters[0].checking);
@@ -35,22 +35,22 @@ DOCTEST_TEST_CASE(
             DOCTEST_CHECK(app.model().toasts.back().is_error);
             DOCTEST_CHECK(app.model().toasts.back().text.find("segmenter") != std::string::npos);
         }
-        app.choose_segmenter(ui::SegmenterRole::Words, place.folder.string());  // no CLIPSeg
+        app.run(command::ChooseSegmenter{ui::SegmenterRole::Words, place.folder.string()});  // no CLIPSeg
         DOCTEST_CHECK(app.model().segmenters[1].checking);
         DOCTEST_REQUIRE(session.settled());
         DOCTEST_CHECK(app.model().segmenters[1].path.empty());
         DOCTEST_CHECK(app.model().toasts.back().text.find("segmenter") != std::string::npos);
-        app.choose_segmenter(ui::SegmenterRole::Clicks, weights.string());
+        app.run(command::ChooseSegmenter{ui::SegmenterRole::Clicks, weights.string()});
         DOCTEST_REQUIRE(session.settled());
         DOCTEST_CHECK(app.model().segmenters[0].path == weights.string());
-        app.locate();
+        app.run(command::Locate{});
         DOCTEST_REQUIRE(
             session.settled());  // of weights drawn at random; whether they find anything is theirs
         app.shut_down();
     }
     Session again;
     DOCTEST_CHECK(again.app.model().segmenters[0].path == weights.string());
-    again.app.choose_segmenter(ui::SegmenterRole::Clicks, {});
+    again.app.run(command::ChooseSegmenter{ui::SegmenterRole::Clicks, {}});
     DOCTEST_CHECK(again.app.model().segmenters[0].path.empty());
     again.app.shut_down();
 }
@@ -65,7 +65,7 @@ DOCTEST_TEST_CASE(
     const auto camera = app.model().camera;
     const auto cx = static_cast<float>(camera.width) / 2, cy = static_cast<float>(camera.height) / 2;
     box.polygon = {{cx - 40, cy - 40}, {cx + 40, cy - 40}, {cx + 40, cy + 40}, {cx - 40, cy + 40}};
-    app.cut_out(box, ui::SetOperation::Replace);
+    app.run(command::CutOut{box, ui::SetOperation::Replace});
     DOCTEST_REQUIRE(session.settled());
     DOCTEST_CHECK(app.model().job.error.empty());
     const auto& state = app.document().state();
@@ -78,22 +78,22 @@ DOCTEST_TEST_CASE(
     const auto looked = [&] { return app.document().state().labels.at(0).looked_from; };
     const auto first = fmt::format("{:.0f}", pipeline::looked_from(camera, state.info.up));
     DOCTEST_CHECK(looked() == first);
-    app.set_camera(Camera::look_at(camera.centre() + camera.rotation.row(0) * 2.0,
-                                   camera.centre() + camera.forward() * 4.0, state.info.up, 0.9, camera.width,
-                                   camera.height));
+    app.run(command::SetCamera{Camera::look_at(camera.centre() + camera.rotation.row(0) * 2.0,
+                                               camera.centre() + camera.forward() * 4.0, state.info.up, 0.9,
+                                               camera.width, camera.height)});
     app.update(session.preview);
-    app.select(box, ui::SetOperation::Add, true);
+    app.run(command::Select{box, ui::SetOperation::Add, true});
     DOCTEST_CHECK(looked() == first);
-    app.select(box, ui::SetOperation::Replace, true);
+    app.run(command::Select{box, ui::SetOperation::Replace, true});
     DOCTEST_CHECK(looked() != first);
-    app.set_camera(camera);
+    app.run(command::SetCamera{camera});
     app.update(session.preview);
-    app.undo();
-    app.undo();
-    app.undo();
+    app.run(command::Undo{});
+    app.run(command::Undo{});
+    app.run(command::Undo{});
     DOCTEST_CHECK(app.document().state().labels.empty());
-    app.cut_out(box, ui::SetOperation::Replace);
-    app.cancel();
+    app.run(command::CutOut{box, ui::SetOperation::Replace});
+    app.run(command::Cancel{});
     DOCTEST_REQUIRE(session.settled());
     DOCTEST_CHECK(app.document().state().labels.empty());
     for (const auto& toast : app.model().toasts)

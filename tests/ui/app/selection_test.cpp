@@ -33,10 +33,10 @@ std::size_t invisible(const GaussianSet& set) {
 struct Labelled : Session {
     Labelled() {
         open_bear();
-        app.pick_rows(large(0.5f));
+        app.run(command::PickRows{large(0.5f)});
         DOCTEST_REQUIRE(until([&] { return app.model().picked.count > 0; }));
-        app.use_picked(ui::PickedUse::NewLabel);
-        app.drop_picked();
+        app.run(command::UsePicked{ui::PickedUse::NewLabel});
+        app.run(command::DropPicked{});
         app.update(preview);
     }
     static localize::RowChoice large(float threshold) {
@@ -55,7 +55,7 @@ DOCTEST_TEST_CASE(
     const auto before = app.document().state().current;
     const auto at = app.document().position();
     for (const double hue : {20.0, 60.0, 90.0}) {
-        app.adjust_colours({hue});
+        app.run(command::AdjustColours{{hue}});
         app.update(session.preview);
         DOCTEST_CHECK(app.model().adjusting);
     }
@@ -68,15 +68,15 @@ DOCTEST_TEST_CASE(
         outside +=
             labelled(app)[row] == 0 && !same_row(before.spans(), row, state.current.spans(), row) ? 1 : 0;
     DOCTEST_CHECK(outside == 0);
-    app.adjust_colours({});  // as it was
+    app.run(command::AdjustColours{{}});  // as it was
     app.update(session.preview);
     DOCTEST_CHECK(app.document().position() == at);
     DOCTEST_CHECK_FALSE(app.model().adjusting);
-    app.adjust_colours({90});
-    app.clear_label();
+    app.run(command::AdjustColours{{90}});
+    app.run(command::ClearLabel{});
     app.update(session.preview);
     DOCTEST_CHECK_FALSE(app.model().adjusting);
-    app.adjust_colours({0, 0});  // a second edit, of everything
+    app.run(command::AdjustColours{{0, 0}});  // a second edit, of everything
     app.update(session.preview);
     DOCTEST_CHECK(app.document().state().stack.size() == 2);
     DOCTEST_CHECK(app.document().state().stack[1].delta->changed.size() >
@@ -93,14 +93,14 @@ DOCTEST_TEST_CASE(
     const auto at = app.document().position();
     const std::size_t all = app.document().state().current.size();
     localize::RowChoice choice{localize::RowProperty::Isolation, {}, 0.0f, false, false};
-    app.pick_rows(choice);
+    app.run(command::PickRows{choice});
     DOCTEST_REQUIRE(
         session.until([&] { return app.model().picked.values != nullptr && !app.model().picked.working; }));
     const auto values = *app.model().picked.values;
     auto sorted = values;
     std::sort(sorted.begin(), sorted.end());
     choice.threshold = sorted[all / 2];
-    app.pick_rows(choice);
+    app.run(command::PickRows{choice});
     app.update(session.preview);
     const auto nearer = static_cast<std::size_t>(
         std::count_if(values.begin(), values.end(), [&](float value) { return value <= choice.threshold; }));
@@ -111,30 +111,30 @@ DOCTEST_TEST_CASE(
                              1.0f) == static_cast<std::ptrdiff_t>(nearer));
     DOCTEST_CHECK(app.document().position() == at);  // looking changes nothing
     choice.above = true;
-    app.pick_rows(choice);
+    app.run(command::PickRows{choice});
     app.update(session.preview);
     const auto chosen = app.model().picked.count;
     DOCTEST_CHECK((chosen > 0 && chosen <= all - nearer + all / 10));
-    app.use_picked(ui::PickedUse::NewLabel);
+    app.run(command::UsePicked{ui::PickedUse::NewLabel});
     DOCTEST_CHECK(count(labelled(app)) == chosen);
     DOCTEST_CHECK(app.document().names().back().starts_with("Label: above "));
     choice.within_label = true, choice.threshold = sorted[all * 3 / 4];
-    app.pick_rows(choice);
+    app.run(command::PickRows{choice});
     app.update(session.preview);
     const auto within = app.model().picked.count;
     DOCTEST_REQUIRE((within > 0 && within < chosen));
-    app.use_picked(ui::PickedUse::Remove);
+    app.run(command::UsePicked{ui::PickedUse::Remove});
     app.update(session.preview);
     DOCTEST_CHECK(count(labelled(app)) == chosen - within);
-    app.undo();
+    app.run(command::Undo{});
     app.update(session.preview);
     DOCTEST_CHECK(count(labelled(app)) == chosen);
     DOCTEST_CHECK(app.model().picked.count == within);  // follows the label
-    app.use_picked(ui::PickedUse::Delete);
+    app.run(command::UsePicked{ui::PickedUse::Delete});
     DOCTEST_CHECK(app.document().state().current.size() == all - within);
-    app.undo();
+    app.run(command::Undo{});
     DOCTEST_CHECK(app.document().state().current.size() == all);
-    app.drop_picked();
+    app.run(command::DropPicked{});
     app.update(session.preview);
     DOCTEST_CHECK_FALSE(app.model().picked.shown);
 }
@@ -151,7 +151,7 @@ DOCTEST_TEST_CASE(
     DOCTEST_REQUIRE(some > 0);
     DOCTEST_REQUIRE(some < set.size());
     const auto faint = invisible(set);
-    app.hide_label();
+    app.run(command::HideLabel{});
     app.update(session.preview);
     DOCTEST_CHECK(app.model().hidden == some);
     DOCTEST_CHECK(invisible(session.preview.last.set) == faint + some);
@@ -161,19 +161,19 @@ DOCTEST_TEST_CASE(
     DOCTEST_CHECK(invisible(session.preview.last.original) == faint + some);  // comparisons show as much
     DOCTEST_CHECK(app.document().revision() == revision);
     DOCTEST_CHECK(app.document().state().current.shares_all_with(set));
-    app.pick_rows(Labelled::large(0.0f));
+    app.run(command::PickRows{Labelled::large(0.0f)});
     DOCTEST_REQUIRE(
         session.until([&] { return !app.model().picked.working && app.model().picked.count > 0; }));
     DOCTEST_CHECK(app.model().picked.count == set.size() - some);
-    app.drop_picked();
-    app.isolate_label();
+    app.run(command::DropPicked{});
+    app.run(command::IsolateLabel{});
     app.update(session.preview);
     DOCTEST_CHECK(app.model().hidden == set.size() - some);
-    app.delete_labelled_splats();  // what is seen goes; the rest is still hidden
+    app.run(command::DeleteLabelledSplats{});  // what is seen goes; the rest is still hidden
     app.update(session.preview);
     DOCTEST_CHECK(app.model().hidden == app.document().state().current.size());
-    app.undo();
-    app.show_hidden();
+    app.run(command::Undo{});
+    app.run(command::ShowHidden{});
     app.update(session.preview);
     DOCTEST_CHECK(app.model().hidden == 0);
     DOCTEST_CHECK(session.preview.last.set.shares_all_with(app.document().state().current));
@@ -184,14 +184,14 @@ DOCTEST_TEST_CASE("an export leaves out what is hidden only when that is said") 
     Labelled session;
     auto& app = session.app;
     const auto all = app.document().state().current.size(), some = count(labelled(app));
-    app.hide_label();
+    app.run(command::HideLabel{});
     auto exports = app.model().exports;
     const auto written = [&](const char* name, bool visible_only) {
         exports.scene_path = (place.folder / name).string();
         exports.visible_only = visible_only;
         exports.with_labels = true;
-        app.set_exports(exports);
-        app.export_scene();
+        app.run(command::SetExports{exports});
+        app.run(command::ExportScene{});
         DOCTEST_REQUIRE(session.idle());
         return load_scene(exports.scene_path);
     };
@@ -204,15 +204,15 @@ DOCTEST_TEST_CASE("an export leaves out what is hidden only when that is said") 
     DOCTEST_CHECK(std::any_of(toasts.begin(), toasts.end(), [](const auto& toast) {
         return toast.text.find("without what is hidden") != std::string::npos;
     }));
-    app.isolate_label();
-    app.delete_labelled_splats();
+    app.run(command::IsolateLabel{});
+    app.run(command::DeleteLabelledSplats{});
     app.update(session.preview);
     exports.scene_path = (place.folder / "none.ply").string();
-    app.set_exports(exports);
-    app.export_scene();
+    app.run(command::SetExports{exports});
+    app.run(command::ExportScene{});
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK_FALSE(fs::exists(place.folder / "none.ply"));
-    app.show_hidden();
+    app.run(command::ShowHidden{});
     app.update(session.preview);
     DOCTEST_CHECK_FALSE(app.model().exports.visible_only);  // a choice for what was hidden then
 }
@@ -222,27 +222,27 @@ DOCTEST_TEST_CASE("any step can be what comparisons show as before") {
     Labelled session;
     auto& app = session.app;
     const auto opened = app.document().state().current;
-    app.delete_labelled_splats();
+    app.run(command::DeleteLabelledSplats{});
     const auto first = app.document().state().current;
     const auto step = app.document().position();
-    app.pick_rows(Labelled::large(0.4f));
+    app.run(command::PickRows{Labelled::large(0.4f)});
     DOCTEST_REQUIRE(
         session.until([&] { return !app.model().picked.working && app.model().picked.count > 0; }));
-    app.use_picked(ui::PickedUse::Delete);
-    app.drop_picked();
+    app.run(command::UsePicked{ui::PickedUse::Delete});
+    app.run(command::DropPicked{});
     app.update(session.preview);
     DOCTEST_CHECK(session.preview.last.original.shares_all_with(opened));
-    app.compare_with(step);
+    app.run(command::CompareWith{step});
     app.update(session.preview);
     DOCTEST_CHECK(app.model().comparison == ui::Comparison::Wipe);
     DOCTEST_CHECK(app.model().compared_name == app.document().names()[step]);
     DOCTEST_CHECK(session.preview.last.original.shares_all_with(first));
-    app.undo();
-    app.undo();  // beyond it: it is compared with all the same
+    app.run(command::Undo{});
+    app.run(command::Undo{});  // beyond it: it is compared with all the same
     app.update(session.preview);
     DOCTEST_CHECK(session.preview.last.original.shares_all_with(first));
     DOCTEST_CHECK(session.preview.last.set.shares_all_with(opened));
-    app.compare_with(step);
+    app.run(command::CompareWith{step});
     app.update(session.preview);
     DOCTEST_CHECK(app.model().compared_revision == 0);
     DOCTEST_CHECK(app.model().comparison == ui::Comparison::None);
@@ -261,15 +261,15 @@ DOCTEST_TEST_CASE("toasts of steps take them back, but not what came after") {
         DOCTEST_REQUIRE(found != toasts.rend());
         return static_cast<std::size_t>(toasts.rend() - found) - 1;
     };
-    app.delete_labelled_splats();
+    app.run(command::DeleteLabelledSplats{});
     app.update(session.preview);
-    app.press_toast(undo_button());
+    app.run(command::PressToast{undo_button()});
     DOCTEST_CHECK(app.document().state().current.shares_all_with(before));
-    app.delete_labelled_splats();
-    app.add_label("more");
+    app.run(command::DeleteLabelledSplats{});
+    app.run(command::AddLabel{"more"});
     app.update(session.preview);
     const auto revision = app.document().revision();
-    app.press_toast(undo_button());
+    app.run(command::PressToast{undo_button()});
     DOCTEST_CHECK(app.document().revision() == revision);  // History leads back
 }
 

@@ -16,6 +16,8 @@
 namespace gse::test {
 
 namespace fs = std::filesystem;
+namespace command = ui::command;
+namespace command = ui::command;
 
 /// A viewport that paints nothing and remembers what was wanted.
 class NoPreview : public app::PreviewHost {
@@ -45,7 +47,7 @@ struct Session {
     NoPreview preview;
     app::Application app;
     explicit Session(bool autosave = true) : app({.autosave = autosave, .autosave_seconds = 0.2}) {
-        app.set_viewport_size(320, 240);
+        app.run(command::SetViewportSize{320, 240});
     }
     /// Frames until the condition holds; false after `seconds`, times GSE_PATIENCE: instrumented builds are
     /// that much slower.
@@ -73,7 +75,7 @@ struct Session {
             600);
     }
     void open_bear() {
-        app.open_sample();
+        app.run(command::OpenSample{});
         DOCTEST_REQUIRE(until([&] { return app.model().document != nullptr; }));
         ask_for_blue();
     }
@@ -86,7 +88,7 @@ struct Session {
         request.image_size = 64;
         request.method = "sds";  // goes on for as many steps as a test needs
         request.iterations = 30;
-        app.set_request(request);
+        app.run(command::SetRequest{request});
     }
 };
 

@@ -53,10 +53,10 @@ DOCTEST_TEST_CASE("open, locate, correct, edit, apply, undo, save and reopen") {
         typed.source = "Bear";
         typed.prompt = sentence;
         typed.target.clear();  // guessed
-        app.set_request(typed);
+        app.run(command::SetRequest{typed});
         auto same = job_of(app);
         same.locate();
-        app.locate();
+        app.run(command::Locate{});
         DOCTEST_REQUIRE(session.idle());
         DOCTEST_CHECK(app.model().job.error.empty());
         DOCTEST_CHECK(app.model().attention.size() == 8);
@@ -76,15 +76,15 @@ DOCTEST_TEST_CASE("open, locate, correct, edit, apply, undo, save and reopen") {
         ui::ScreenRegion stroke;
         stroke.circles = {{160, 120}};
         stroke.radius_px = 5;  // part of the bear, which is small in the home view
-        app.select(stroke, ui::SetOperation::Remove, true);
+        app.run(command::Select{stroke, ui::SetOperation::Remove, true});
         const auto corrected = count_labelled(app.document().state().labels[active]);
         DOCTEST_CHECK(corrected < found);
-        app.undo();
+        app.run(command::Undo{});
         DOCTEST_CHECK(count_labelled(app.document().state().labels[active]) == found);
-        app.redo();
+        app.run(command::Redo{});
         DOCTEST_CHECK(count_labelled(app.document().state().labels[active]) == corrected);
 
-        app.edit();
+        app.run(command::Edit{});
         DOCTEST_REQUIRE(session.idle());
         DOCTEST_CHECK(app.model().job.error.empty());
         DOCTEST_REQUIRE(app.model().result_waiting);
@@ -92,7 +92,7 @@ DOCTEST_TEST_CASE("open, locate, correct, edit, apply, undo, save and reopen") {
         DOCTEST_CHECK(app.model().search.number == searches);  // what was found is used, not looked for again
         DOCTEST_CHECK_FALSE(session.preview.last.set.shares_all_with(base));  // the waiting result is shown
         const auto label = *app.document().state().labels[active].bits;
-        app.apply_result();
+        app.run(command::ApplyResult{});
         const auto& state = app.document().state();
         DOCTEST_REQUIRE(state.stack.size() == 1);
         DOCTEST_CHECK(nlohmann::ordered_json::parse(state.stack[0].recipe)["request"] ==
@@ -110,22 +110,22 @@ DOCTEST_TEST_CASE("open, locate, correct, edit, apply, undo, save and reopen") {
         }
         DOCTEST_CHECK(changed_outside == 0);
         DOCTEST_CHECK(kept == base.size() - corrected);
-        app.set_edit_enabled(state.stack[0].id, false);
+        app.run(command::SetEditEnabled{state.stack[0].id, false});
         DOCTEST_CHECK(app.document().state().current.shares_all_with(base));
-        app.undo();
+        app.run(command::Undo{});
         // Of what is applied, more or less can be seen: a drag is one step, and the step can be undone.
         const auto position = app.document().position();
-        app.set_edit_strength(app.document().state().stack[0].id, 0.5, false);
+        app.run(command::SetEditStrength{app.document().state().stack[0].id, 0.5, false});
         const auto half = app.document().state().current;
-        app.set_edit_strength(app.document().state().stack[0].id, 0.25, true);
+        app.run(command::SetEditStrength{app.document().state().stack[0].id, 0.25, true});
         DOCTEST_CHECK(app.document().position() == position + 1);
         DOCTEST_CHECK_FALSE(app.document().state().current.shares_all_with(half));
-        app.undo();
+        app.run(command::Undo{});
         DOCTEST_CHECK(app.document().state().stack[0].strength == 1);
         applied_rows = app.document().state().current.size();
         applied_colours.assign(app.document().state().current.sh().begin(),
                                app.document().state().current.sh().end());
-        app.save_project(place.folder / "bear.gsep");
+        app.run(command::SaveProject{place.folder / "bear.gsep"});
         DOCTEST_REQUIRE(session.idle());
         session.until([&] { return !app.model().unsaved; }, 5);
         DOCTEST_CHECK_FALSE(app.model().unsaved);
@@ -133,7 +133,7 @@ DOCTEST_TEST_CASE("open, locate, correct, edit, apply, undo, save and reopen") {
     }
     Session again;
     DOCTEST_CHECK(again.app.model().recoverable.empty());
-    again.app.open(place.folder / "bear.gsep");
+    again.app.run(command::Open{place.folder / "bear.gsep"});
     DOCTEST_REQUIRE(again.until([&] { return again.app.model().document != nullptr; }));
     const auto& current = again.app.document().state().current;
     DOCTEST_REQUIRE(current.size() == applied_rows);
@@ -154,38 +154,38 @@ DOCTEST_TEST_CASE(
     typed.target.clear();
     typed.method = "sds";
     typed.iterations = 2;
-    app.set_request(typed);
+    app.run(command::SetRequest{typed});
     DOCTEST_CHECK(app.target() == "red");  // all that the sentence alone can say
-    app.locate();
+    app.run(command::Locate{});
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK(app.model().read_target == "snow");  // the bear is red already
     typed.source = "grass";
     typed.prompt = "a bear on the snow";
-    app.set_request(typed);
+    app.run(command::SetRequest{typed});
     DOCTEST_CHECK(app.target() == "snow");  // what things stand on for what they stood on
-    app.locate();
+    app.run(command::Locate{});
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK(app.model().read_target == "snow");
     DOCTEST_CHECK(app.target() == "snow");
     DOCTEST_CHECK(app.model().request.target.empty());  // still for the pictures to say
     const auto searches = app.model().search.number;
-    app.edit();
+    app.run(command::Edit{});
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK(app.model().search.number == searches);
     DOCTEST_REQUIRE(app.model().result_waiting);
-    app.apply_result();
+    app.run(command::ApplyResult{});
     const auto recipe = nlohmann::ordered_json::parse(app.document().state().stack[0].recipe);
     DOCTEST_CHECK(recipe["request"]["target"] == "snow");
     typed.prompt =
         "a bear on the sand";  // another sentence: what was read of the last one says nothing of it
-    app.set_request(typed);
+    app.run(command::SetRequest{typed});
     session.until([&] { return app.model().read_target.empty(); }, 5);
     DOCTEST_CHECK(app.model().read_target.empty());
     DOCTEST_CHECK(app.target() == "sand");  // the bear was said already
     typed.prompt = "a blue bear on the snow";
     typed.source = "bear";
-    app.set_request(typed);
-    app.edit();  // without a search before: it reads the word too, and says so
+    app.run(command::SetRequest{typed});
+    app.run(command::Edit{});  // without a search before: it reads the word too, and says so
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK(app.model().read_target == "blue");
     app.shut_down();
@@ -198,17 +198,17 @@ DOCTEST_TEST_CASE("a running edit pauses, shows snapshots, is cancelled and keep
     session.open_bear();
     auto request = session.app.model().request;
     request.iterations = 5000;
-    session.app.set_request(request);
-    session.app.edit();
+    session.app.run(command::SetRequest{request});
+    session.app.run(command::Edit{});
     DOCTEST_REQUIRE(session.until([&] { return session.app.model().snapshots.size() >= 2; }));
-    session.app.pause(true);
+    session.app.run(command::Pause{true});
     session.app.update(session.preview);
     const auto standing = session.app.model().losses.size();
     std::this_thread::sleep_for(600ms);
     session.app.update(session.preview);
     DOCTEST_CHECK(session.app.model().losses.size() <= standing + 1);  // the step under way may end
     DOCTEST_CHECK(session.app.model().job.paused);
-    session.app.pause(false);
+    session.app.run(command::Pause{false});
     DOCTEST_REQUIRE(session.until([&] { return session.app.model().losses.size() > standing + 3; }));
     // A brush stroke corrects the label of the running edit: what it takes away is as it was in the next
     // snapshot.
@@ -219,12 +219,12 @@ DOCTEST_TEST_CASE("a running edit pauses, shows snapshots, is cancelled and keep
                     0);  // the edit's own search shows what it found
     const auto active = static_cast<std::size_t>(session.app.document().state().active_label);
     const auto before = *session.app.document().state().labels[active].bits;
-    session.app.select(stroke, ui::SetOperation::Remove, true);
+    session.app.run(command::Select{stroke, ui::SetOperation::Remove, true});
     const auto corrected = *session.app.document().state().labels[active].bits;
     DOCTEST_REQUIRE(corrected != before);
     const auto taken = session.app.model().losses.size() + 40;
     DOCTEST_REQUIRE(session.until([&] { return session.app.model().losses.size() > taken; }));
-    session.app.cancel();
+    session.app.run(command::Cancel{});
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_REQUIRE(session.app.model().result_waiting);
     session.app.update(session.preview);
@@ -237,10 +237,10 @@ DOCTEST_TEST_CASE("a running edit pauses, shows snapshots, is cancelled and keep
     DOCTEST_CHECK(outside == 0);
     DOCTEST_CHECK(session.app.model().gate.pictures.size() ==
                   4);  // what the model makes of it was shown first
-    session.app.take_snapshot(session.app.model().snapshots.front().iteration);
-    session.app.apply_result();
+    session.app.run(command::TakeSnapshot{session.app.model().snapshots.front().iteration});
+    session.app.run(command::ApplyResult{});
     DOCTEST_CHECK(session.app.document().state().stack.size() == 1);
-    session.app.undo();
+    session.app.run(command::Undo{});
     DOCTEST_CHECK(session.app.document().state().stack.empty());
 }
 
@@ -253,41 +253,41 @@ DOCTEST_TEST_CASE(
     auto& app = session.app;
     auto request = app.model().request;
     request.iterations = 5000;
-    app.set_request(request);
-    app.edit();
+    app.run(command::SetRequest{request});
+    app.run(command::Edit{});
     DOCTEST_REQUIRE(session.until([&] { return app.model().snapshots.size() >= 3; }));
     const int from = app.model().snapshots[1].iteration;
     request = app.model().request;
     request.iterations = from;
-    app.set_request(request);
-    app.branch_from_snapshot(from);  // nothing would be left to do: the edit is not even stopped
+    app.run(command::SetRequest{request});
+    app.run(command::BranchFromSnapshot{from});  // nothing would be left to do: the edit is not even stopped
     app.update(session.preview);
     DOCTEST_CHECK(app.model().job.running);
     DOCTEST_CHECK(app.model().toasts.back().text.find("iterations") != std::string::npos);
     request.iterations = from + 12;
     request.guidance_weight = 0.5;
-    app.set_request(request);
-    app.branch_from_snapshot(from);
+    app.run(command::SetRequest{request});
+    app.run(command::BranchFromSnapshot{from});
     DOCTEST_REQUIRE(session.until([&] { return app.model().result_waiting; }));
     DOCTEST_CHECK(app.model().losses.back().iteration == from + 11);
     for (std::size_t i = 1; i < app.model().losses.size();
          ++i)  // the curve goes through, without what was given up
         DOCTEST_CHECK(app.model().losses[i].iteration > app.model().losses[i - 1].iteration);
     DOCTEST_CHECK(app.model().snapshots.back().iteration <= from + 12);
-    app.branch_from_snapshot(from - 1000000);  // before all of them: nothing happens
+    app.run(command::BranchFromSnapshot{from - 1000000});  // before all of them: nothing happens
     DOCTEST_CHECK(app.model().result_waiting);
     // Out of the finished edit, once more.
     request.iterations = from + 20;
-    app.set_request(request);
-    app.branch_from_snapshot(from);
+    app.run(command::SetRequest{request});
+    app.run(command::BranchFromSnapshot{from});
     DOCTEST_REQUIRE(session.settled());
     DOCTEST_CHECK(app.model().losses.back().iteration == from + 19);
     DOCTEST_REQUIRE(app.model().result_waiting);
-    app.apply_result();
+    app.run(command::ApplyResult{});
     DOCTEST_REQUIRE(app.document().state().stack.size() == 1);
     DOCTEST_CHECK(app.document().state().stack[0].changed_outside_label == 0);
     const auto revision = app.document().revision();
-    app.branch_from_snapshot(from);  // they were states of another scene
+    app.run(command::BranchFromSnapshot{from});  // they were states of another scene
     DOCTEST_CHECK_FALSE(app.model().job.running);
     DOCTEST_CHECK(app.document().revision() == revision);
 }
@@ -298,7 +298,7 @@ DOCTEST_TEST_CASE("a threshold drag is one step of undo with its value, and undo
     Session session;
     session.open_bear();
     auto& app = session.app;
-    app.locate();
+    app.run(command::Locate{});
     DOCTEST_REQUIRE(session.settled());
     const auto at = app.document().position();
     const auto bits = [&] {
@@ -310,10 +310,10 @@ DOCTEST_TEST_CASE("a threshold drag is one step of undo with its value, and undo
     DOCTEST_CHECK(stated > 0);
     const auto drag = [&](std::initializer_list<double> values) {
         for (const double value : values) {
-            app.set_attention_threshold(value, false);
+            app.run(command::SetAttentionThreshold{value, false});
             session.until([] { return false; }, 0.05);
         }
-        app.set_attention_threshold(*(values.end() - 1), true);
+        app.run(command::SetAttentionThreshold{*(values.end() - 1), true});
         DOCTEST_REQUIRE(session.settled());
     };
     drag({0.6, 0.75, 0.85, 0.9});  // the bear is found whole with any up to 0.8
@@ -327,31 +327,31 @@ DOCTEST_TEST_CASE("a threshold drag is one step of undo with its value, and undo
     DOCTEST_CHECK(wide != strict);
     DOCTEST_CHECK(app.model().request.attention_threshold == 0.3);
     const auto masks = app.model().attention[0].mask_picture;
-    app.undo();
+    app.run(command::Undo{});
     DOCTEST_CHECK(bits() == strict);
     DOCTEST_CHECK(app.model().request.attention_threshold == 0.9);
     DOCTEST_REQUIRE(session.settled());
     DOCTEST_CHECK(app.model().attention[0].mask_picture != masks);  // the evidence follows
     DOCTEST_CHECK(app.document().position() == at + 1);             // and makes no step of its own
-    app.undo();
+    app.run(command::Undo{});
     DOCTEST_CHECK(bits() == found);
     DOCTEST_CHECK(app.model().request.attention_threshold == 0);  // as the model states
     DOCTEST_REQUIRE(session.settled());
     DOCTEST_CHECK(app.model().attention_threshold == stated);
-    app.redo();
+    app.run(command::Redo{});
     DOCTEST_CHECK(app.model().request.attention_threshold == 0.9);
     DOCTEST_REQUIRE(session.settled());
     // The label's own threshold is what the recipe calls tau.
     const double tau = app.model().request.tau;
-    app.set_label_threshold(0.5f, false);
-    app.set_label_threshold(0.55f, true);
+    app.run(command::SetLabelThreshold{0.5f, false});
+    app.run(command::SetLabelThreshold{0.55f, true});
     DOCTEST_CHECK(app.document().position() == at + 2);
     DOCTEST_CHECK(app.document().names().back() == "Threshold 0.55");
     DOCTEST_CHECK(app.model().request.tau == 0.55);
-    app.set_label_threshold(0.6f, true);
+    app.run(command::SetLabelThreshold{0.6f, true});
     DOCTEST_CHECK(app.document().position() == at + 3);
-    app.undo();
-    app.undo();
+    app.run(command::Undo{});
+    app.run(command::Undo{});
     DOCTEST_CHECK(app.model().request.tau == tau);
 }
 
@@ -383,7 +383,7 @@ DOCTEST_TEST_CASE("a model that cannot be used is never in use: its row says why
     fs::permissions(weights, fs::perms::owner_all);
     fs::resize_file(weights, fs::file_size(weights) / 2);
     for (const auto& bad : {empty, cut, place.folder / "not there"}) {
-        app.choose_model(bad.string());
+        app.run(command::ChooseModel{bad.string()});
         DOCTEST_REQUIRE(session.settled());
         DOCTEST_CHECK(chosen() == starter.string());
         DOCTEST_CHECK_FALSE(row_of(bad).usable);
@@ -395,7 +395,7 @@ DOCTEST_TEST_CASE("a model that cannot be used is never in use: its row says why
     // A whole copy is taken; once it is gone, the one that comes with the program works again.
     const fs::path good = place.folder / "good model";
     fs::copy(starter, good, fs::copy_options::recursive);
-    app.choose_model(good.string());
+    app.run(command::ChooseModel{good.string()});
     DOCTEST_REQUIRE(session.settled());
     DOCTEST_CHECK(chosen() == good.string());
     app.shut_down();
@@ -419,8 +419,8 @@ DOCTEST_TEST_CASE("a search is known after a restart, unless the cache was clear
         request.source = "bear";
         request.prompt = "a blue bear on the grass";
         request.target = "blue";
-        app.set_request(request);
-        app.locate();
+        app.run(command::SetRequest{request});
+        app.run(command::Locate{});
         DOCTEST_REQUIRE(session.idle());
         DOCTEST_CHECK(app.model().job.error.empty());
         const auto& state = app.document().state();
@@ -435,8 +435,8 @@ DOCTEST_TEST_CASE("a search is known after a restart, unless the cache was clear
     const auto first = start(nothing);
     DOCTEST_CHECK(first > 0);
     DOCTEST_CHECK(start([](app::Application& app) { DOCTEST_CHECK(app.model().cache_bytes > 0); }) == 0);
-    DOCTEST_CHECK(start([](app::Application& app) { app.clear_cache(); }) == first);
-    DOCTEST_CHECK(start([](app::Application& app) { app.set_cache_mb(0); }) == first);
+    DOCTEST_CHECK(start([](app::Application& app) { app.run(command::ClearCache{}); }) == first);
+    DOCTEST_CHECK(start([](app::Application& app) { app.run(command::SetCacheMb{0}); }) == first);
     DOCTEST_CHECK(start([](app::Application& app) { DOCTEST_CHECK(app.model().cache_mb == 0); }) ==
                   first);  // it is remembered
     DOCTEST_CHECK(fs::is_empty(folder.path() / "answers"));
@@ -452,11 +452,11 @@ DOCTEST_TEST_CASE(
         auto view = app.model().view;
         view.background = "#ffffff", view.fov_degrees = 70, view.move_speed = 3, view.show_hud = false;
         view.mode = 4;
-        app.set_view_settings(view);
+        app.run(command::SetViewSettings{view});
         auto exports = app.model().exports;
         exports.width = 640, exports.height = 360, exports.frames = 48;
         exports.picture_path = "/somewhere/else.png";
-        app.set_exports(exports);
+        app.run(command::SetExports{exports});
         app.shut_down();
     }
     const ui::ViewModel untouched;
@@ -487,7 +487,7 @@ DOCTEST_TEST_CASE("a scale for one start is not kept, a chosen one is") {
     DOCTEST_CHECK(scale_of(0) == 1.25f);
     {
         app::Application app({.autosave = false});
-        app.set_ui_scale(1.5f);
+        app.run(command::SetUiScale{1.5f});
     }
     DOCTEST_CHECK(scale_of(0) == 1.5f);
     DOCTEST_CHECK(scale_of(3) == 3);
@@ -501,8 +501,8 @@ DOCTEST_TEST_CASE("work that was not saved is found again, a running edit includ
     session.open_bear();
     auto request = session.app.model().request;
     request.iterations = 5000;
-    session.app.set_request(request);
-    session.app.edit();
+    session.app.run(command::SetRequest{request});
+    session.app.run(command::Edit{});
     DOCTEST_REQUIRE(session.until([&] { return session.app.model().snapshots.size() >= 2; }));
     const auto folder = autosave_folder();
     DOCTEST_REQUIRE(session.until(
@@ -516,14 +516,14 @@ DOCTEST_TEST_CASE("work that was not saved is found again, a running edit includ
             return false;
         },
         30));
-    session.app.cancel();
+    session.app.run(command::Cancel{});
     DOCTEST_REQUIRE(session.idle());
 }
 
 DOCTEST_TEST_CASE("pictures, films, scenes and camera paths are written; mistakes are told") {
     const Place place;
     Session session;
-    session.app.open_sample();
+    session.app.run(command::OpenSample{});
     DOCTEST_REQUIRE(session.until([&] { return session.app.model().document != nullptr; }));
     auto exports = session.app.model().exports;
     exports.width = 96;
@@ -534,10 +534,15 @@ DOCTEST_TEST_CASE("pictures, films, scenes and camera paths are written; mistake
     exports.film_path = (place.folder / "turn").string();
     exports.scene_path = (place.folder / "out.spz").string();
     exports.camera_path_path = (place.folder / "path.json").string();
+<<<<<<< HEAD
     exports.format_choices["spz_version"] = 4;
     session.app.set_exports(exports);
+=======
+    exports.spz_version = 4;
+    session.app.run(command::SetExports{exports});
+>>>>>>> 1a362a2 (ui: commands in, a list of values per frame; Actions and DeferredActions go; the sentence's facts follow the method)
     session.app.update(session.preview);
-    session.app.export_picture();
+    session.app.run(command::ExportPicture{});
     DOCTEST_REQUIRE(session.idle());
     const Image shot = read_image(place.folder / "shot.png");
     DOCTEST_CHECK(shot.width == 96);
@@ -546,19 +551,19 @@ DOCTEST_TEST_CASE("pictures, films, scenes and camera paths are written; mistake
     DOCTEST_CHECK(read_png_text(place.folder / "shot.png").count("Recipe") == 1);
     DOCTEST_CHECK(read_png_text(place.folder / "shot.png").at("parameters").find("Seed: ") !=
                   std::string::npos);
-    session.app.export_turntable();
+    session.app.run(command::ExportTurntable{});
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK(fs::exists(place.folder / "turn/frame_0003.png"));
     for (const char* film : {"turn.mp4", "turn.webm"}) {
         exports.film_path = (place.folder / film).string();
         exports.before_after = true;
-        session.app.set_exports(exports);
-        session.app.export_turntable();
+        session.app.run(command::SetExports{exports});
+        session.app.run(command::ExportTurntable{});
         DOCTEST_REQUIRE(session.idle());
         DOCTEST_CHECK(session.app.model().file_job.error.empty());
         DOCTEST_CHECK(fs::file_size(place.folder / film) > 500);
     }
-    session.app.export_scene();
+    session.app.run(command::ExportScene{});
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK(load_scene(place.folder / "out.spz").gaussians.size() ==
                   session.app.document().state().current.size());
@@ -566,16 +571,16 @@ DOCTEST_TEST_CASE("pictures, films, scenes and camera paths are written; mistake
     const auto& views = session.app.document().state().views;
     for (const char* name : {"cameras.json", "transforms.json"}) {
         exports.viewpoints_path = (place.folder / name).string();
-        session.app.set_exports(exports);
-        session.app.export_viewpoints();
+        session.app.run(command::SetExports{exports});
+        session.app.run(command::ExportViewpoints{});
         DOCTEST_REQUIRE(session.idle());
         const auto written = load_cameras(place.folder / name);
         DOCTEST_REQUIRE(written.size() == views.size());
         DOCTEST_CHECK(length(written[0].camera.centre() - views[0].camera.centre()) < 1e-9);
     }
-    session.app.add_camera_key();
-    session.app.add_camera_key();
-    session.app.export_camera_path(false);
+    session.app.run(command::AddCameraKey{});
+    session.app.run(command::AddCameraKey{});
+    session.app.run(command::ExportCameraPath{false});
     DOCTEST_REQUIRE(session.idle());
     const auto keys = app::load_camera_path(place.folder / "path.json", 320, 240);
     DOCTEST_REQUIRE(keys.size() == 2);
@@ -583,11 +588,11 @@ DOCTEST_TEST_CASE("pictures, films, scenes and camera paths are written; mistake
     DOCTEST_CHECK(app::path_cameras(keys, 10, 64, 64).size() == 21);
 
     exports.film_path = (place.folder / "turn.avi").string();
-    session.app.set_exports(exports);
-    session.app.export_turntable();
+    session.app.run(command::SetExports{exports});
+    session.app.run(command::ExportTurntable{});
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK(session.app.model().file_job.error.find(".webm") != std::string::npos);
-    session.app.open(place.folder / "nothing.ply");
+    session.app.run(command::Open{place.folder / "nothing.ply"});
     DOCTEST_REQUIRE(session.idle());
     session.app.update(session.preview);
     DOCTEST_CHECK(session.app.model().toasts.back().is_error);

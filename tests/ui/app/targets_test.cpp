@@ -23,11 +23,11 @@ void ask_for_views(Session& session, bool review, int fit_steps) {
     request.edited_views = 4;
     request.view_steps = 2;
     request.fit_steps = fit_steps;
-    session.app.set_request(request);
+    session.app.run(command::SetRequest{request});
     auto settings = session.app.model().model_settings;
     settings.review = review;
     settings.gate = false;
-    session.app.set_model_settings(settings);
+    session.app.run(command::SetModelSettings{settings});
 }
 
 }  // namespace
@@ -40,36 +40,36 @@ DOCTEST_TEST_CASE(
     auto& app = session.app;
     const auto& model = app.model();
     ask_for_views(session, true, 12);
-    app.edit();
+    app.run(command::Edit{});
     DOCTEST_REQUIRE(session.until([&] { return model.targets_wait; }));
     DOCTEST_REQUIRE(model.target_rounds.size() == 1);
     DOCTEST_REQUIRE(model.target_rounds[0].targets.size() == 4);
     const auto view = [&](std::size_t i) { return model.target_rounds.back().targets[i]; };
     const auto first = view(1).after;
-    app.order_target({0, view(0).view, TargetChoice::Drop});
-    app.order_target({0, view(1).view, TargetChoice::Redo});
+    app.run(command::OrderTarget{{0, view(0).view, TargetChoice::Drop}});
+    app.run(command::OrderTarget{{0, view(1).view, TargetChoice::Redo}});
     session.app.update(session.preview);
     DOCTEST_REQUIRE(session.until([&] { return view(0).dropped && view(1).attempt == 1; }, 60));
     DOCTEST_CHECK(view(1).after->data != first->data);
     DOCTEST_CHECK(model.targets_wait);
     DOCTEST_CHECK(model.losses.empty());
-    app.fit_to_targets();
+    app.run(command::FitToTargets{});
     DOCTEST_REQUIRE(session.until([&] { return model.result_waiting; }));
     DOCTEST_CHECK(model.job.error.empty());
     DOCTEST_CHECK(model.losses.size() == 12);
     DOCTEST_CHECK(model.cost.unet > 0);
     DOCTEST_CHECK(model.cost.tflop > 0);
     DOCTEST_CHECK(!model.targets_wait);
-    DOCTEST_CHECK(view(0).dropped);                             // still to be seen
-    app.order_target({0, view(0).view, TargetChoice::Accept});  // too late: said, not done
+    DOCTEST_CHECK(view(0).dropped);                                          // still to be seen
+    app.run(command::OrderTarget{{0, view(0).view, TargetChoice::Accept}});  // too late: said, not done
     DOCTEST_CHECK(session.until(
         [&] { return !model.toasts.empty() && model.toasts.back().text.find("over") != std::string::npos; },
         5));
-    app.discard_result();
+    app.run(command::DiscardResult{});
     // Cancelled while it waits.
-    app.edit();
+    app.run(command::Edit{});
     DOCTEST_REQUIRE(session.until([&] { return model.targets_wait; }));
-    app.cancel();
+    app.run(command::Cancel{});
     DOCTEST_REQUIRE(session.idle());
     session.app.update(session.preview);
     DOCTEST_CHECK(!model.result_waiting);
@@ -83,15 +83,15 @@ DOCTEST_TEST_CASE("a branch out of a fit asks the networks nothing") {
     auto& app = session.app;
     const auto& model = app.model();
     ask_for_views(session, false, 100000);
-    app.edit();
+    app.run(command::Edit{});
     DOCTEST_REQUIRE(session.until([&] { return model.snapshots.size() >= 2; }));
     DOCTEST_CHECK(model.cost.unet > 0);
     const auto pictures = model.target_rounds.back().targets;
     const int from = model.snapshots[0].iteration;
     auto request = model.request;
     request.fit_steps = from + 10;
-    app.set_request(request);
-    app.branch_from_snapshot(from);
+    app.run(command::SetRequest{request});
+    app.run(command::BranchFromSnapshot{from});
     DOCTEST_REQUIRE(session.until([&] { return model.result_waiting; }));
     DOCTEST_CHECK(model.losses.back().iteration == from + 9);
     DOCTEST_CHECK(model.cost.unet == 0);
@@ -106,26 +106,26 @@ DOCTEST_TEST_CASE("a search after a discarded edit shows the scene, not what the
     auto& app = session.app;
     const auto& model = app.model();
     ask_for_views(session, false, 100000);
-    app.edit();
+    app.run(command::Edit{});
     DOCTEST_REQUIRE(session.until([&] { return !model.snapshots.empty(); }));
-    app.cancel();
+    app.run(command::Cancel{});
     DOCTEST_REQUIRE(session.until([&] { return model.result_waiting && !model.job.running; }));
-    app.discard_result();
+    app.run(command::DiscardResult{});
     app.update(session.preview);
     const GaussianSet scene = session.preview.last.set;
     auto request = model.request;
     request.source = "grass";
     request.prompt = "a bear on the snow";
-    app.set_request(request);
-    app.locate();
+    app.run(command::SetRequest{request});
+    app.run(command::Locate{});
     DOCTEST_REQUIRE(session.until([&] { return model.job.running; }, 60));
     auto view = model.view;
     view.mode = static_cast<int>(ui::DisplayMode::Depth);
-    app.set_view_settings(view);
+    app.run(command::SetViewSettings{view});
     app.update(session.preview);
     DOCTEST_REQUIRE(model.job.running);
     DOCTEST_CHECK(session.preview.last.set.shares_all_with(scene));
-    app.cancel();
+    app.run(command::Cancel{});
     DOCTEST_REQUIRE(session.idle());
 }
 
@@ -141,15 +141,15 @@ DOCTEST_TEST_CASE("what an edit is estimated to take after the search, beside wh
         request.method = method;
         request.iterations = 60;
         request.image_size = 96;
-        app.set_request(request);
-        app.locate();
+        app.run(command::SetRequest{request});
+        app.run(command::Locate{});
         DOCTEST_REQUIRE(session.idle());
         session.until([] { return false; }, 1.2);  // the estimate is refreshed
         const ui::Estimate estimate = model.estimate;
         DOCTEST_CHECK(estimate.seconds > 0);
         DOCTEST_CHECK(estimate.memory_mb > current_rss_mb() * 0.9);
         const PeakMemory peak;
-        app.edit();
+        app.run(command::Edit{});
         DOCTEST_REQUIRE(session.until([&] { return model.result_waiting; }));
         DOCTEST_MESSAGE(std::string(method)
                         << ": estimated " << estimate.seconds << " s, " << estimate.tflop << " TFLOP, "
@@ -163,7 +163,7 @@ DOCTEST_TEST_CASE("what an edit is estimated to take after the search, beside wh
         constexpr double busy = 10;
         DOCTEST_CHECK(estimate.seconds < busy * model.job.seconds);
         DOCTEST_CHECK(estimate.seconds > model.job.seconds / busy);
-        app.discard_result();
+        app.run(command::DiscardResult{});
     }
 }
 

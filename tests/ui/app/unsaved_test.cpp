@@ -33,15 +33,15 @@ void start_edit(Session& session, int iterations) {
     session.ask_for_blue();
     auto request = session.app.model().request;
     request.iterations = iterations;
-    session.app.set_request(request);
-    session.app.edit();
+    session.app.run(command::SetRequest{request});
+    session.app.run(command::Edit{});
     session.app.update(session.preview);
 }
 
 void open_and_save(Session& session, const fs::path& scene) {
-    session.app.open(scene);
+    session.app.run(command::Open{scene});
     DOCTEST_REQUIRE(session.until([&] { return session.app.model().document != nullptr; }));
-    session.app.save_project(fs::path(scene).replace_extension(".gsep"));
+    session.app.run(command::SaveProject{fs::path(scene).replace_extension(".gsep")});
     DOCTEST_REQUIRE(session.until([&] { return !session.app.model().project_path.empty(); }));
     session.app.update(session.preview);
     DOCTEST_REQUIRE_FALSE(session.app.model().unsaved);
@@ -73,9 +73,9 @@ DOCTEST_TEST_CASE(
         DOCTEST_CHECK(session.app.model().unsaved);
         edited = colours(session.preview.last.set);
         bool left = false;
-        session.app.leave_edit(true, [&] { left = true; });
+        session.app.run(command::LeaveEdit{true, [&] { left = true; }});
         DOCTEST_REQUIRE(session.until([&] { return left; }));
-        session.app.quit();
+        session.app.run(command::Quit{});
         session.app.shut_down();
     }
     Session again;
@@ -87,20 +87,20 @@ DOCTEST_TEST_CASE(
     DOCTEST_CHECK(found.running.find("not applied") != std::string::npos);
     DOCTEST_REQUIRE(found.thumbnail != nullptr);
     DOCTEST_CHECK(found.thumbnail->width > 100);
-    again.app.open(scene);  // the same scene: the offer comes along
+    again.app.run(command::Open{scene});  // the same scene: the offer comes along
     DOCTEST_REQUIRE(again.until([&] { return again.app.model().document != nullptr; }));
     DOCTEST_CHECK(count_offered(again.app) == 1);
-    again.app.recover(found.file);
+    again.app.run(command::Recover{found.file});
     DOCTEST_REQUIRE(again.until([&] { return again.app.model().result_waiting; }));
     DOCTEST_CHECK(again.app.model().recoverable.empty());
     DOCTEST_CHECK(again.app.model().unsaved);
     DOCTEST_CHECK(colours(again.app.document().state().current) == base);
-    again.app.apply_result();
+    again.app.run(command::ApplyResult{});
     DOCTEST_CHECK(colours(again.app.document().state().current) == edited);
     DOCTEST_REQUIRE(again.app.document().state().stack.size() == 1);
     DOCTEST_CHECK(again.app.document().state().stack[0].name == "a blue bear on the grass");
     DOCTEST_CHECK_FALSE(again.app.document().state().stack[0].recipe.empty());
-    again.app.save_project({});
+    again.app.run(command::SaveProject{});
     DOCTEST_REQUIRE(again.until([&] { return !again.app.model().unsaved; }));
     again.until([&] { return find_recoverable().empty() && fs::is_empty(autosave_folder()); }, 10);
     DOCTEST_CHECK(fs::is_empty(autosave_folder()));  // recovered and saved: nothing is offered any more
@@ -120,17 +120,17 @@ DOCTEST_TEST_CASE("a program that is ended in the middle of an edit loses none o
         session.app.shut_down();  // as SIGTERM does: nobody can be asked
     }
     Session again;
-    again.app.open(scene);  // named on the command line: no start page was seen
+    again.app.run(command::Open{scene});  // named on the command line: no start page was seen
     DOCTEST_REQUIRE(again.until([&] { return again.app.model().document != nullptr; }));
     DOCTEST_REQUIRE(count_offered(again.app) == 1);
     DOCTEST_CHECK(again.app.model().recoverable[0].running.find("of 5000") != std::string::npos);
-    again.app.postpone_recovery(again.app.model().recoverable[0].file);
+    again.app.run(command::PostponeRecovery{again.app.model().recoverable[0].file});
     DOCTEST_CHECK(count_offered(again.app) == 0);
-    again.app.open(scene);  // opened again, offered again
+    again.app.run(command::Open{scene});  // opened again, offered again
     DOCTEST_REQUIRE(again.until([&] { return count_offered(again.app) == 1; }));
-    again.app.recover(again.app.model().recoverable[0].file);
+    again.app.run(command::Recover{again.app.model().recoverable[0].file});
     DOCTEST_REQUIRE(again.until([&] { return again.app.model().result_waiting; }));
-    again.app.apply_result();
+    again.app.run(command::ApplyResult{});
     const auto& name = again.app.document().state().stack.at(0).name;
     DOCTEST_CHECK(name.find("interrupted at iteration") != std::string::npos);
     DOCTEST_CHECK(std::stoi(name.substr(name.find("iteration") + 9)) >= reached);
@@ -147,26 +147,26 @@ DOCTEST_TEST_CASE("a discarded edit is gone, the scene stays; another scene is o
     start_edit(session, 5000);
     DOCTEST_REQUIRE(session.until([&] { return session.app.model().snapshots.size() >= 2; }));
     bool left = false;
-    session.app.leave_edit(false, [&] { left = true; });
+    session.app.run(command::LeaveEdit{false, [&] { left = true; }});
     DOCTEST_REQUIRE(session.until([&] { return left; }));
     session.app.update(session.preview);
     DOCTEST_CHECK_FALSE(session.app.model().result_waiting);
     // What its search labelled is a step of its own, which stays until it is saved or undone.
-    session.app.save_project(fs::path(scene).replace_extension(".gsep"));
+    session.app.run(command::SaveProject{fs::path(scene).replace_extension(".gsep")});
     DOCTEST_REQUIRE(session.until([&] { return !session.app.model().unsaved; }, 60));
     DOCTEST_REQUIRE(session.until([&] { return fs::is_empty(autosave_folder()); }, 60));
     // Kept, and another scene opened: it is offered when the first scene is opened again, also in this
     // session.
     start_edit(session, 5000);
     DOCTEST_REQUIRE(session.until([&] { return session.app.model().snapshots.size() >= 2; }));
-    session.app.leave_edit(true, [&] { session.app.open(other); });
+    session.app.run(command::LeaveEdit{true, [&] { session.app.run(command::Open{other}); }});
     DOCTEST_REQUIRE(session.until([&] { return session.app.model().scene_path == other.string(); }));
     DOCTEST_CHECK(session.app.model().recoverable.size() == 1);
     DOCTEST_CHECK(count_offered(session.app) == 0);
     DOCTEST_CHECK_FALSE(session.app.model().result_waiting);
-    session.app.open(scene);
+    session.app.run(command::Open{scene});
     DOCTEST_REQUIRE(session.until([&] { return count_offered(session.app) == 1; }));
-    session.app.discard_recovery(session.app.model().recoverable[0].file);
+    session.app.run(command::DiscardRecovery{session.app.model().recoverable[0].file});
     DOCTEST_CHECK(session.app.model().recoverable.empty());
     DOCTEST_CHECK(fs::is_empty(autosave_folder()));
 }
@@ -177,10 +177,10 @@ DOCTEST_TEST_CASE("what was given up on purpose is not offered again") {
     {
         Session session;
         open_and_save(session, scene);
-        session.app.add_label("unsaved");
+        session.app.run(command::AddLabel{"unsaved"});
         DOCTEST_REQUIRE(session.until(
             [&] { return fs::exists(autosave_folder()) && !fs::is_empty(autosave_folder()); }, 20));
-        session.app.quit();  // the window asked before
+        session.app.run(command::Quit{});  // the window asked before
         session.app.shut_down();
     }
     const Session again;
@@ -192,22 +192,22 @@ DOCTEST_TEST_CASE("a folder with a scene and its cameras opens; several scenes a
     const auto scene = own_scene(place);
     const auto folder = scene.parent_path();
     Session session;
-    session.app.open_sample();
+    session.app.run(command::OpenSample{});
     DOCTEST_REQUIRE(session.until([&] { return session.app.model().document != nullptr; }));
     save_cameras_json(folder / "cameras.json", orbit_views(session.app.model().orbit, 7, 64, 64));
-    session.app.open(folder);
+    session.app.run(command::Open{folder});
     DOCTEST_REQUIRE(session.until([&] { return session.app.model().scene_path == scene.string(); }));
     DOCTEST_CHECK(session.app.document().state().views.size() == 7);
     fs::copy_file(scene, folder / "another.ply");
-    session.app.open(folder);
+    session.app.run(command::Open{folder});
     DOCTEST_REQUIRE(session.until([&] { return session.app.model().question.number == 1; }));
     const auto& asked = session.app.model().question;
     DOCTEST_REQUIRE(asked.answers.size() == 3);
     DOCTEST_CHECK(asked.answers[0].text == "another.ply");
     DOCTEST_CHECK(asked.answers[0].listed);
     DOCTEST_CHECK(session.app.model().scene_path == scene.string());
-    session.app.answer(0);
-    session.app.answer(0);  // a question is answered once
+    session.app.run(command::Answer{0});
+    session.app.run(command::Answer{0});  // a question is answered once
     DOCTEST_REQUIRE(
         session.until([&] { return session.app.model().scene_path == (folder / "another.ply").string(); }));
     DOCTEST_CHECK(session.app.model().toasts.empty());
@@ -219,23 +219,23 @@ DOCTEST_TEST_CASE("cameras that are opened are those of the open scene; without 
     auto& app = session.app;
     OrbitParameters around;
     save_cameras_json(place.folder / "cameras.json", orbit_views(around, 7, 64, 64));
-    app.open(place.folder / "cameras.json");
+    app.run(command::Open{place.folder / "cameras.json"});
     DOCTEST_REQUIRE(session.until([&] { return !app.model().toasts.empty(); }, 10));
     DOCTEST_CHECK(app.model().toasts[0].text.find("open their scene first") != std::string::npos);
     DOCTEST_CHECK(app.model().document == nullptr);
-    app.open_sample();
+    app.run(command::OpenSample{});
     DOCTEST_REQUIRE(session.until([&] { return app.model().document != nullptr; }));
     save_cameras_json(place.folder / "cameras.json", orbit_views(app.model().orbit, 7, 64, 64));
     const auto before = app.document().state().views.size();
     DOCTEST_REQUIRE(before != 7);
-    app.open(place.folder / "cameras.json");
+    app.run(command::Open{place.folder / "cameras.json"});
     DOCTEST_REQUIRE(session.until([&] { return app.document().state().views.size() == 7; }, 30));
-    app.undo();
+    app.run(command::Undo{});
     DOCTEST_CHECK(app.document().state().views.size() == before);
     auto elsewhere = orbit_views(app.model().orbit, 7, 64, 64);
     for (auto& view : elsewhere) view.camera.translation.x += 1000;
     save_cameras_json(place.folder / "cameras.json", elsewhere);
-    app.open(place.folder);  // the folder is as good
+    app.run(command::Open{place.folder});  // the folder is as good
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK(app.document().state().views.size() == before);
     DOCTEST_CHECK(app.model().toasts.back().is_error);
@@ -247,25 +247,25 @@ DOCTEST_TEST_CASE("an up axis that was chosen is known, written, and undone with
     const auto scene = own_scene(place);
     Session session;
     auto& app = session.app;
-    app.open(scene);
+    app.run(command::Open{scene});
     DOCTEST_REQUIRE(session.until([&] { return app.model().document != nullptr; }));
     app.update(session.preview);
     const auto orbit = app.model().orbit;
     const auto camera = app.model().camera;
-    app.set_up_axis("z");
+    app.run(command::SetUpAxis{"z"});
     app.update(session.preview);
     DOCTEST_CHECK(app.document().state().info.up_known);
     DOCTEST_CHECK(app.model().orbit.up.z > 0.99);
     DOCTEST_CHECK_FALSE(app.model().camera.rotation == camera.rotation);
     auto exports = app.model().exports;
     exports.scene_path = (place.folder / "upright.ply").string();
-    app.set_exports(exports);
-    app.export_scene();
+    app.run(command::SetExports{exports});
+    app.run(command::ExportScene{});
     DOCTEST_REQUIRE(session.idle());
     const auto written = load_scene(place.folder / "upright.ply").info;
     DOCTEST_CHECK(written.up_known);
     DOCTEST_CHECK(written.up.z > 0.99);
-    app.undo();
+    app.run(command::Undo{});
     app.update(session.preview);
     DOCTEST_CHECK(app.model().orbit.up == orbit.up);
     DOCTEST_CHECK(app.model().camera.rotation == camera.rotation);
@@ -276,18 +276,18 @@ DOCTEST_TEST_CASE("the statistics are those of the scene as it is, after a delet
     const Place place;
     Session session;
     auto& app = session.app;
-    app.open_sample();
+    app.run(command::OpenSample{});
     DOCTEST_REQUIRE(session.until([&] { return app.model().document != nullptr; }));
     const auto count = app.model().statistics.count;
     ui::ScreenRegion stroke;
     stroke.circles = {{160, 120}};
     stroke.radius_px = 20;
-    app.select(stroke, ui::SetOperation::Add, true);
-    app.delete_labelled_splats();
+    app.run(command::Select{stroke, ui::SetOperation::Add, true});
+    app.run(command::DeleteLabelledSplats{});
     const auto left = app.document().state().current.size();
     DOCTEST_REQUIRE(left < count);
     DOCTEST_CHECK(session.until([&] { return app.model().statistics.count == left; }, 10));
-    app.undo();
+    app.run(command::Undo{});
     DOCTEST_CHECK(session.until([&] { return app.model().statistics.count == count; }, 10));
     app.shut_down();
 }
@@ -295,7 +295,7 @@ DOCTEST_TEST_CASE("the statistics are those of the scene as it is, after a delet
 DOCTEST_TEST_CASE("every export numbers its files, a scene is replaced only when that is said") {
     const Place place;
     Session session;
-    session.app.open(own_scene(place));
+    session.app.run(command::Open{own_scene(place)});
     DOCTEST_REQUIRE(session.until([&] { return session.app.model().document != nullptr; }));
     auto exports = session.app.model().exports;
     exports.width = 64;
@@ -305,37 +305,38 @@ DOCTEST_TEST_CASE("every export numbers its files, a scene is replaced only when
     exports.film_path = (place.folder / "turn").string();
     exports.scene_path = (place.folder / "out.compressed.ply").string();
     exports.camera_path_path = (place.folder / "path-9.json").string();
-    session.app.set_exports(exports);
+    session.app.run(command::SetExports{exports});
     session.app.update(session.preview);
-    session.app.add_camera_key();
+    session.app.run(command::AddCameraKey{});
     for (int time = 0; time < 3; ++time)
-        for (const auto act : {&app::Application::export_picture, &app::Application::export_turntable}) {
-            (session.app.*act)();
+        for (const ui::Command& act :
+             {ui::Command(command::ExportPicture{}), ui::Command(command::ExportTurntable{})}) {
+            session.app.run(act);
             DOCTEST_REQUIRE(session.idle());
         }
     for (const char* name :
          {"shot.png", "shot-2.png", "shot-3.png", "turn/frame_0001.png", "turn-3/frame_0001.png"})
         DOCTEST_CHECK_MESSAGE(fs::exists(place.folder / name), name);
     for (int time = 0; time < 2; ++time) {
-        session.app.export_camera_path(false);
+        session.app.run(command::ExportCameraPath{false});
         DOCTEST_REQUIRE(session.idle());
     }
     DOCTEST_CHECK(fs::exists(place.folder / "path-10.json"));
-    session.app.export_scene();
+    session.app.run(command::ExportScene{});
     DOCTEST_REQUIRE(session.idle());
     const auto first = read_file(place.folder / "out.compressed.ply");
-    session.app.export_scene();
+    session.app.run(command::ExportScene{});
     session.app.update(session.preview);
     DOCTEST_REQUIRE(session.app.model().question.answers.size() == 3);
     DOCTEST_CHECK(session.app.model().question.answers[0].text == "Write out-2.compressed.ply");
-    session.app.answer(0);
+    session.app.run(command::Answer{0});
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK(fs::exists(place.folder / "out-2.compressed.ply"));
     DOCTEST_CHECK(read_file(place.folder / "out.compressed.ply") == first);
     // The scene that is open is never replaced.
     exports.scene_path = session.app.model().scene_path;
-    session.app.set_exports(exports);
-    session.app.export_scene();
+    session.app.run(command::SetExports{exports});
+    session.app.run(command::ExportScene{});
     for (const auto& answer : session.app.model().question.answers) DOCTEST_CHECK_FALSE(answer.dangerous);
 }
 
@@ -344,7 +345,7 @@ DOCTEST_TEST_CASE("one piece of news makes one toast") {
     write_file(place.folder / "scene.ply", "ply\nno scene at all\n");
     Session session;
     for (int time = 0; time < 3; ++time) {
-        session.app.open(place.folder / "scene.ply");
+        session.app.run(command::Open{place.folder / "scene.ply"});
         DOCTEST_REQUIRE(session.idle());
         session.app.update(session.preview);
     }
@@ -356,8 +357,8 @@ DOCTEST_TEST_CASE("one piece of news makes one toast") {
     data.position[0] = std::numeric_limits<float>::quiet_NaN();
     broken.gaussians = GaussianSet(std::move(data));
     save_scene(place.folder / "broken.ply", broken);
-    session.app.dismiss_toast(0);
-    session.app.open(place.folder / "broken.ply");
+    session.app.run(command::DismissToast{0});
+    session.app.run(command::Open{place.folder / "broken.ply"});
     DOCTEST_REQUIRE(session.until([&] { return session.app.model().document != nullptr; }));
     session.until([] { return false; }, 0.3);
     const auto& toasts = session.app.model().toasts;

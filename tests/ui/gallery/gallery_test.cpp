@@ -10,7 +10,7 @@
 #include "engine/io/image/image_file.h"
 #include "tests/test_paths.h"
 #include "tests/ui/support/harness.h"
-#include "ui/keys.h"
+#include "ui/keys/keys.h"
 
 namespace gse::test::gallery_test {
 namespace {

@@ -286,12 +286,6 @@ void FakeApplication::make_targets() {
     model_.target_rounds.back().targets[5].attempt = 1;
 }
 
-void FakeApplication::order_target(const edit::TargetOrder& order) {
-    constexpr std::array<const char*, 3> names{"accept", "drop", "redo"};
-    calls.push_back(fmt::format("order_target {} {} {}", order.round, order.view,
-                                names[static_cast<std::size_t>(order.choice)]));
-}
-
 void FakeApplication::make_rest() {
     model_.cannot_edit = "";
     model_.request.source = "bear";
@@ -368,93 +362,6 @@ ui::TextureId FakeApplication::texture(const std::shared_ptr<const Image>& image
 bool FakeApplication::asked(const std::string& start) const {
     return std::any_of(calls.begin(), calls.end(),
                        [&start](const std::string& call) { return call.starts_with(start); });
-}
-
-void FakeApplication::leave_out_view(std::size_t view, bool out) {
-    calls.push_back(fmt::format("leave_out_view {} {}", view, out ? "out" : "back"));
-    model_.attention[view].failed = out;
-    model_.attention[view].step = out ? edit::ViewStep::LeftOut : edit::ViewStep::Found;
-}
-
-void FakeApplication::pick_rows(const localize::RowChoice& choice) {
-    calls.push_back("pick_rows " + localize::choice_text(choice) + (choice.within_label ? " within" : ""));
-    const auto values =
-        localize::row_values(document_->state().current, choice.property, choice.colour, nullptr);
-    const auto rows = localize::chosen_rows(choice, values, {});
-    model_.picked = {true, false, static_cast<std::size_t>(std::count(rows.begin(), rows.end(), 1)),
-                     std::make_shared<const std::vector<float>>(values)};
-}
-
-void FakeApplication::set_attention_threshold(double value, bool drag_ends) {
-    calls.push_back(fmt::format("set_attention_threshold {:.3f}{}", value, drag_ends ? " end" : ""));
-    model_.attention_threshold = value;
-}
-
-void FakeApplication::set_label_threshold(float value, bool drag_ends) {
-    calls.push_back(fmt::format("set_label_threshold {:.3f}{}", value, drag_ends ? " end" : ""));
-    auto state = document_->state();
-    auto& label = state.labels[static_cast<std::size_t>(state.active_label)];
-    label.threshold = value;
-    label = with_bits(label);
-    document_->apply("Threshold", state, "threshold");
-}
-
-/// At once, as badly timed as it can be: the window must not be reading the list now.
-void FakeApplication::delete_label(int index) {
-    calls.push_back("delete_label " + std::to_string(index));
-    auto state = document_->state();
-    state.labels.erase(state.labels.begin() + index);
-    state.active_label = state.labels.empty() ? -1 : 0;
-    document_->apply("Delete label", state);
-}
-
-void FakeApplication::select(const ui::ScreenRegion& region, ui::SetOperation operation, bool stroke_ends) {
-    calls.push_back(fmt::format("select {} {} {}{}", region.polygon.size(), region.circles.size(),
-                                static_cast<int>(operation), stroke_ends ? " end" : ""));
-    regions.push_back(region);
-    operations.push_back(operation);
-}
-
-void FakeApplication::set_camera(const Camera& camera) {
-    calls.push_back("set_camera");
-    model_.camera = camera;
-}
-
-void FakeApplication::set_view_settings(const ui::ViewSettings& settings) {
-    calls.push_back("set_view_settings");
-    model_.view = settings;
-}
-
-void FakeApplication::set_comparison(ui::Comparison comparison) {
-    calls.push_back("set_comparison " + std::to_string(static_cast<int>(comparison)));
-    model_.comparison = comparison;
-}
-
-void FakeApplication::look_through(std::size_t view) {
-    calls.push_back("look_through " + std::to_string(view));
-    const int width = std::max(model_.viewport_width, 1), height = std::max(model_.viewport_height, 1);
-    model_.camera = fitted(document_->state().views[view].camera, width, height);  // as the application does
-}
-
-void FakeApplication::set_viewport_size(int width, int height) {
-    calls.push_back(fmt::format("set_viewport_size {} {}", width, height));
-    model_.viewport_width = width;
-    model_.viewport_height = height;
-}
-
-void FakeApplication::set_request(const edit::EditRequest& request) {
-    calls.push_back("set_request");
-    model_.request = request;
-}
-
-void FakeApplication::set_exports(const ui::ExportSettings& settings) {
-    calls.push_back("set_exports");
-    model_.exports = settings;
-}
-
-void FakeApplication::set_ui_scale(float scale) {
-    calls.push_back(fmt::format("set_ui_scale {:.2f}", scale));
-    model_.ui_scale = scale;
 }
 
 }  // namespace gse::test

@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "tests/ui/support/soft_renderer.h"
-#include "ui/keys.h"
+#include "ui/keys/keys.h"
 #include "ui/theme.h"
 
 namespace gse::test {
@@ -57,7 +57,7 @@ void Harness::frame(int count) {
     for (int index = 0; index < count; ++index) {
         application.refresh(options_.pictures);
         ImGui::NewFrame();
-        shell.draw(application.model(), application, application);
+        for (const auto& command : shell.draw(application.model(), application)) application.run(command);
         ImGui::Render();
     }
 }
@@ -126,6 +126,18 @@ void Harness::modifiers(bool shift, bool control, bool alt) {
 void Harness::type(const std::string& text) {
     ImGui::GetIO().AddInputCharactersUTF8(text.c_str());
     frame(2);
+}
+
+bool Harness::asks(const std::string& widget, const std::string& call) {
+    application.calls.clear();
+    click(widget);
+    return application.asked(call);
+}
+
+bool Harness::key_asks(int index, const std::string& call) {
+    application.calls.clear();
+    key(index);
+    return application.asked(call);
 }
 
 const ui::Rect* Harness::find(const std::string& name) const {

@@ -38,6 +38,9 @@ public:
     void hold(int index, bool down);
     void modifiers(bool shift, bool control, bool alt);
     void type(const std::string& text);
+    /// True when a click on the widget, or the key, asks for what begins with `call`.
+    bool asks(const std::string& widget, const std::string& call);
+    bool key_asks(int index, const std::string& call);
 
     const ui::Rect* find(const std::string& name) const;
     ui::Rect rect(const std::string& name) const;  // fails the test when absent

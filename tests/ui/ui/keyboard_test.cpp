@@ -6,7 +6,7 @@
 #include <set>
 
 #include "tests/ui/support/harness.h"
-#include "ui/keys.h"
+#include "ui/keys/keys.h"
 #include "ui/state.h"
 
 namespace gse::test::keyboard_test {

@@ -5,7 +5,7 @@
 #include <set>
 #include <string>
 
-#include "ui/keymap.h"
+#include "ui/keys/keymap.h"
 
 namespace gse::test::keymap_test {
 
@@ -17,7 +17,7 @@ DOCTEST_TEST_CASE("every convention gives every command keys of its own that can
         std::set<std::string> seen;
         std::size_t commands = 0;
         for (const auto& line : KeyTable) {
-            if (line.command == NoCommand) continue;
+            if (line.command == NoShortcut) continue;
             ++commands;
             DOCTEST_REQUIRE(line.name != nullptr);
             const std::string keys = chord_text(map.of(line.command));
@@ -29,19 +29,19 @@ DOCTEST_TEST_CASE("every convention gives every command keys of its own that can
             DOCTEST_CHECK(map.user_of(map.of(line.command)) == line.command);
             if (preset == KeyPreset::Splat) DOCTEST_CHECK(keys == line.keys);  // what the table says
         }
-        DOCTEST_CHECK(commands == CommandCount);
+        DOCTEST_CHECK(commands == ShortcutCount);
     }
 }
 
 DOCTEST_TEST_CASE("a chosen key is taken from the command that had it, and comes back from text") {
     Keymap map(KeyPreset::Blender);
-    DOCTEST_CHECK(map.bind(Command::Lasso, *parse_chord("Ctrl + Shift + K")) == std::nullopt);
-    DOCTEST_CHECK(map.bind(Command::Wipe, *parse_chord("B")) == Command::Rectangle);
-    DOCTEST_CHECK(map.of(Command::Rectangle) == Chord{});
+    DOCTEST_CHECK(map.bind(Shortcut::Lasso, *parse_chord("Ctrl + Shift + K")) == std::nullopt);
+    DOCTEST_CHECK(map.bind(Shortcut::Wipe, *parse_chord("B")) == Shortcut::Rectangle);
+    DOCTEST_CHECK(map.of(Shortcut::Rectangle) == Chord{});
     const Keymap again = Keymap::parse(map.text());
     DOCTEST_CHECK(again.preset() == KeyPreset::Blender);
     for (const auto& line : KeyTable)
-        if (line.command != NoCommand) DOCTEST_CHECK(again.of(line.command) == map.of(line.command));
+        if (line.command != NoShortcut) DOCTEST_CHECK(again.of(line.command) == map.of(line.command));
 }
 
 DOCTEST_TEST_CASE("text that is no keymap changes nothing; keys with a fixed meaning are refused by name") {

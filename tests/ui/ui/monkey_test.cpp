@@ -8,7 +8,7 @@
 
 #include "engine/base/random.h"
 #include "tests/ui/support/harness.h"
-#include "ui/keys.h"
+#include "ui/keys/keys.h"
 
 namespace gse::test::monkey_test {
 namespace {

@@ -4,7 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "tests/ui/support/harness.h"
-#include "ui/keys.h"
+#include "ui/keys/keys.h"
 #include "ui/state.h"
 
 namespace gse::test::targets_test {

@@ -5,7 +5,7 @@
 #include "engine/base/file.h"
 #include "tests/test_paths.h"
 #include "tests/ui/support/harness.h"
-#include "ui/keys.h"
+#include "ui/keys/keys.h"
 #include "ui/state.h"
 
 namespace gse::test::unsaved_test {

@@ -8,7 +8,7 @@
 #include "engine/localize/row_property.h"
 #include "engine/scene/framing.h"
 #include "tests/ui/support/harness.h"
-#include "ui/keys.h"
+#include "ui/keys/keys.h"
 #include "ui/state.h"
 
 namespace gse::test::viewport_test {

@@ -11,7 +11,7 @@
 #include "engine/base/random.h"
 #include "tests/test_paths.h"
 #include "tests/ui/support/harness.h"
-#include "ui/keys.h"
+#include "ui/keys/keys.h"
 #include "ui/sentence.h"
 #include "ui/state.h"
 #include "ui/threshold_picture.h"

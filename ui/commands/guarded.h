@@ -5,13 +5,13 @@
 #include <string>
 
 #include "ui/context.h"
-#include "ui/keys.h"
+#include "ui/keys/keys.h"
 
 namespace gse::ui {
 
 /// The keys of a command, empty where it has none; "Brush (B)".
-std::string keys_of(const Context& context, Command command);
-std::string with_key(const Context& context, std::string text, Command command);
+std::string keys_of(const Context& context, Shortcut command);
+std::string with_key(const Context& context, std::string text, Shortcut command);
 
 /// Why these are off; empty = they are on.
 std::string why_not_work(const Context& context);  // what is common to both

@@ -1,5 +1,5 @@
 // What menus, keys and buttons share: when a thing can be done, why not, and doing it.
-#include "ui/commands.h"
+#include "ui/commands/guarded.h"
 
 #include <fmt/format.h>
 
@@ -23,13 +23,13 @@ constexpr float SmallestScale = 0.6f, LargestScale = 4.0f;
 
 /// What was typed in this very frame goes first.
 void send_request(Context& context) {
-    if (context.request_changed) context.actions.set_request(context.request);
+    if (context.request_changed) context.emit(command::SetRequest{context.request});
     context.request_changed = false;
 }
 
 /// A running or finished edit that is not applied: keep it for later, wait, or let it go.
 void ask_about_edit(Context& context, const std::string& what, const std::function<void()>& act) {
-    auto& actions = context.actions;
+    auto& commands = context.commands;
     auto& question = context.state.question;
     const auto& model = context.model;
     const bool running = model.edit_running;
@@ -40,16 +40,20 @@ void ask_about_edit(Context& context, const std::string& what, const std::functi
     if (running && model.job.total <= 0)
         question.text = fmt::format("{} \"{}\" still works.", what, model.job.title);
     question.text += " What is kept is offered when the scene is opened again or the program starts.";
-    question.answers = {
-        {!running                  ? "Keep it for later"
-         : model.snapshots.empty() ? "Stop and keep the settings"
-                                   : "Stop and keep the snapshot",
-         false, [&actions, act] { actions.leave_edit(true, act); }},
-        {running ? "Wait" : "Stay", false, {}},
-        // What else is unsaved is asked about next.
-        {"Discard it", true, [&actions, state = &context.state, what, act] {
-             actions.leave_edit(false, [state, what, act] { state->leave_asked = {what, act}; });
-         }}};
+    question.answers = {{!running                  ? "Keep it for later"
+                         : model.snapshots.empty() ? "Stop and keep the settings"
+                                                   : "Stop and keep the snapshot",
+                         false,
+                         [&commands, act] {
+                             commands.push(command::LeaveEdit{true, act});
+                         }},
+                        {running ? "Wait" : "Stay", false, {}},
+                        // What else is unsaved is asked about next.
+                        {"Discard it", true, [&commands, state = &context.state, what, act] {
+                             commands.push(command::LeaveEdit{false, [state, what, act] {
+                                                                  state->leave_asked = {what, act};
+                                                              }});
+                         }}};
     question.pending = true;
 }
 
@@ -58,7 +62,7 @@ void ask_about_edit(Context& context, const std::string& what, const std::functi
 void with_unsaved_work(Context& context, const std::string& what, std::function<void()> act) {
     if (!context.model.unsaved) return act();
     if (context.model.edit_running || context.model.result_waiting) return ask_about_edit(context, what, act);
-    auto& actions = context.actions;
+    auto& commands = context.commands;
     auto& question = context.state.question;
     question.title = "Unsaved changes";
     question.text = fmt::format("{} The changes since the last save would be lost.", what);
@@ -69,8 +73,9 @@ void with_unsaved_work(Context& context, const std::string& what, std::function<
                                         state->after_save = act;
                                     }});
     } else {
-        question.answers.push_back(
-            {"Save, then go on", false, [&actions, act] { actions.save_project({}, act); }});
+        question.answers.push_back({"Save, then go on", false, [&commands, act] {
+                                        commands.push(command::SaveProject{{}, act});
+                                    }});
     }
     question.answers.push_back({"Go on without saving", true, act});
     question.answers.push_back({"Stay", false, {}});
@@ -91,11 +96,11 @@ const std::vector<std::string>& film_extensions() {
     return Endings;
 }
 
-std::string keys_of(const Context& context, Command command) {
+std::string keys_of(const Context& context, Shortcut command) {
     return chord_text(context.state.keymap.of(command));
 }
 
-std::string with_key(const Context& context, std::string text, Command command) {
+std::string with_key(const Context& context, std::string text, Shortcut command) {
     const std::string keys = keys_of(context, command);
     return keys.empty() ? text : fmt::format("{} ({})", text, keys);
 }
@@ -130,11 +135,11 @@ std::string why_not_hide(Context& context) {
 }
 
 void hide_label(Context& context) {
-    if (why_not_hide(context).empty()) context.actions.hide_label();
+    if (why_not_hide(context).empty()) context.emit(command::HideLabel{});
 }
 
 void isolate_label(Context& context) {
-    if (why_not_hide(context).empty()) context.actions.isolate_label();
+    if (why_not_hide(context).empty()) context.emit(command::IsolateLabel{});
 }
 
 std::string why_not_vote(const Context& context) {
@@ -146,7 +151,7 @@ void toggle_vote(Context& context, int index) {
     const auto& views = context.model.attention;
     if (index < 0 || index >= static_cast<int>(views.size()) || !why_not_vote(context).empty()) return;
     const auto view = static_cast<std::size_t>(index);
-    context.actions.leave_out_view(view, views[view].step != edit::ViewStep::LeftOut);
+    context.emit(command::LeaveOutView{view, views[view].step != edit::ViewStep::LeftOut});
 }
 
 std::string why_not_save(const Context& context) {
@@ -185,9 +190,9 @@ void run_locate(Context& context) {
     if (!why_not_locate(context).empty()) return;
     context.request.left_out.clear();  // views of the search before
     // Only this run sees the sentence that was made up for it.
-    context.actions.set_request(locate_request(context.request, context.state.prompt.problem));
-    context.actions.locate();
-    context.actions.set_request(context.request);
+    context.emit(command::SetRequest{locate_request(context.request, context.state.prompt.problem)});
+    context.emit(command::Locate{});
+    context.emit(command::SetRequest{context.request});
     context.request_changed = false;
     show_panel(context.state, PanelId::Attention);
 }
@@ -196,40 +201,41 @@ void run_edit(Context& context) {
     if (!why_not_edit(context).empty()) return;
     if (!context.state.prompt.seed_locked) roll_seed(context);
     send_request(context);
-    context.actions.edit();
+    context.emit(command::Edit{});
     show_panel(context.state, PanelId::Progress);
 }
 
 void cancel_job(Context& context) {
     const auto& job = context.model.job;
-    auto& actions = context.actions;
+    auto& commands = context.commands;
     if (!job.running) {
-        if (context.model.file_job.running) actions.cancel_file_job();
+        if (context.model.file_job.running) commands.push(command::CancelFileJob{});
         return;
     }
-    if (job.seconds < AskAfterSeconds) return actions.cancel();
+    if (job.seconds < AskAfterSeconds) return commands.push(command::Cancel{});
     auto& question = context.state.question;
     question.title = "Cancel the job?";
     question.text = fmt::format("\"{}\" has worked for {:.0f} s. Its snapshots stay until the next run.",
                                 job.title, job.seconds);
-    question.answers = {{"Cancel the job", true, [&actions] { actions.cancel(); }},
+    question.answers = {{"Cancel the job", true, [&commands] { commands.push(command::Cancel{}); }},
                         {"Let it work", false, {}}};
     question.pending = true;
 }
 
 void open_path(Context& context, const std::string& path) {
-    auto& actions = context.actions;
+    auto& commands = context.commands;
     if (has_extension(path, std::vector<std::string>{".png"}))
-        return actions.open(path_of(path));  // a prompt, no scene
+        return commands.push(command::Open{path_of(path)});  // a prompt, no scene
     if (context.scene_open() && only_cameras(path_of(path)))
-        return actions.open(path_of(path));  // for this scene
+        return commands.push(command::Open{path_of(path)});  // for this scene
     with_unsaved_work(context, "Another scene is to be opened.",
-                      [&actions, path] { actions.open(path_of(path)); });
+                      [&commands, path] { commands.push(command::Open{path_of(path)}); });
 }
 
 void open_sample(Context& context) {
-    auto& actions = context.actions;
-    with_unsaved_work(context, "The sample is to be opened.", [&actions] { actions.open_sample(); });
+    auto& commands = context.commands;
+    with_unsaved_work(context, "The sample is to be opened.",
+                      [&commands] { commands.push(command::OpenSample{}); });
 }
 
 void ask_open(Context& context) {
@@ -245,24 +251,25 @@ void ask_open(Context& context) {
 }
 
 void recover(Context& context, const std::string& file) {
-    auto& actions = context.actions;
+    auto& commands = context.commands;
     with_unsaved_work(context, "The work of another session is to be opened.",
-                      [&actions, file] { actions.recover(file); });
+                      [&commands, file] { commands.push(command::Recover{file}); });
 }
 
 void discard_recovery(Context& context, const RecoveryView& found) {
-    auto& actions = context.actions;
+    auto& commands = context.commands;
     auto& question = context.state.question;
     question.title = "Discard the unsaved work?";
     question.text = fmt::format("{}, {}. It cannot be brought back.", found.name, found.facts);
-    question.answers = {{"Discard", true, [&actions, file = found.file] { actions.discard_recovery(file); }},
-                        {"Keep", false, {}}};
+    question.answers = {
+        {"Discard", true, [&commands, file = found.file] { commands.push(command::DiscardRecovery{file}); }},
+        {"Keep", false, {}}};
     question.pending = true;
 }
 
 void save_as(Context& context, std::function<void()> then) {
     if (!context.scene_open()) return;
-    auto& actions = context.actions;
+    auto& commands = context.commands;
     std::filesystem::path start = path_of(context.model.project_path);
     if (start.empty() && !context.model.scene_path.empty()) start = path_of(context.model.suggested_project);
     if (start.empty()) start = home_folder() / "scene.gsep";
@@ -272,31 +279,32 @@ void save_as(Context& context, std::function<void()> then) {
                              .saves = true,
                              .folder_allowed = false,
                              .start = utf8_of(start),
-                             .answer = [&actions, then](const std::filesystem::path& path) {
-                                 actions.save_project(path, then);
+                             .answer = [&commands, then](const std::filesystem::path& path) {
+                                 commands.push(command::SaveProject{path, then});
                              }});
 }
 
 void save(Context& context) {
     if (!context.scene_open()) return;
     if (context.model.project_path.empty()) return save_as(context);
-    context.actions.save_project({});
+    context.emit(command::SaveProject{});
 }
 
 void quit(Context& context) {
-    auto& actions = context.actions;
+    auto& commands = context.commands;
     const auto& files = context.model.file_job;
     if (!files.running)
-        return with_unsaved_work(context, "The window is to be closed.", [&actions] { actions.quit(); });
+        return with_unsaved_work(context, "The window is to be closed.",
+                                 [&commands] { commands.push(command::Quit{}); });
     auto& question = context.state.question;
     question.title = "A file is not done";
     question.text = fmt::format("\"{}\" is still at work.", files.title);
-    question.answers = {
-        {"Wait", false, {}},
-        {"Stop it", true, [&actions, state = &context.state] {
-             actions.cancel_file_job();
-             state->leave_asked = {"The window is to be closed.", [&actions] { actions.quit(); }};
-         }}};
+    question.answers = {{"Wait", false, {}}, {"Stop it", true, [&commands, state = &context.state] {
+                                                  commands.push(command::CancelFileJob{});
+                                                  state->leave_asked = {
+                                                      "The window is to be closed.",
+                                                      [&commands] { commands.push(command::Quit{}); }};
+                                              }}};
     question.pending = true;
 }
 
@@ -308,7 +316,7 @@ void add_label(Context& context) {
                                      [&name](const NamedLabel& label) { return label.name == name; });
          ++number)
         name = fmt::format("label {}", number);
-    context.actions.add_label(name);
+    context.emit(command::AddLabel{name});
     context.state.labels.renamed = static_cast<int>(labels.size());
     context.state.labels.name = name;
     context.state.labels.focus_name = true;
@@ -320,8 +328,8 @@ void label_by_hand(Context& context, const std::string& name) {
     const auto& labels = context.document().labels;
     const auto found = std::find_if(labels.begin(), labels.end(),
                                     [&](const NamedLabel& label) { return label.name == name; });
-    if (found == labels.end()) context.actions.add_label(name);
-    else context.actions.set_active_label(static_cast<int>(found - labels.begin()));
+    if (found == labels.end()) context.emit(command::AddLabel{name});
+    else context.emit(command::SetActiveLabel{static_cast<int>(found - labels.begin())});
     show_labelled(context);
     context.state.viewport.tool =
         Tool::CutOut;  // a box is the quickest way to a thing; the other tools correct it
@@ -343,8 +351,8 @@ void show_labelled(Context& context) {
 }
 
 void toggle_wipe(Context& context) {
-    context.actions.set_comparison(context.model.comparison == Comparison::Wipe ? Comparison::None
-                                                                                : Comparison::Wipe);
+    context.emit(command::SetComparison{context.model.comparison == Comparison::Wipe ? Comparison::None
+                                                                                     : Comparison::Wipe});
 }
 
 void frame_selection(Context& context) {
@@ -366,12 +374,12 @@ void step_view(Context& context, int step) {
     const int count = static_cast<int>(context.document().views.size());
     int& selected = context.state.viewport.selected_view;
     selected = selected < 0 ? (step > 0 ? 0 : count - 1) : ((selected + step) % count + count) % count;
-    context.actions.look_through(static_cast<std::size_t>(selected));
+    context.emit(command::LookThrough{static_cast<std::size_t>(selected)});
 }
 
 void scale_ui(Context& context, float factor) {
     const float wanted = factor == 0 ? 1.0f : context.model.ui_scale * factor;
-    context.actions.set_ui_scale(std::clamp(std::round(wanted * 20) / 20, SmallestScale, LargestScale));
+    context.emit(command::SetUiScale{std::clamp(std::round(wanted * 20) / 20, SmallestScale, LargestScale)});
 }
 
 std::size_t label_count(Context& context) {

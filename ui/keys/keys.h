@@ -15,7 +15,7 @@ inline constexpr int Space = 32, LeftBracket = 91, RightBracket = 93, Grave = 96
 }  // namespace key
 
 /// What keys can be chosen for (keymap.h).
-enum class Command {
+enum class Shortcut {
     Frame,
     Home,
     Brush,
@@ -46,16 +46,16 @@ enum class Command {
     Turntable,
     Quit
 };
-inline constexpr std::size_t CommandCount = 29;
-inline constexpr Command NoCommand = static_cast<Command>(-1);
+inline constexpr std::size_t ShortcutCount = 29;
+inline constexpr Shortcut NoShortcut = static_cast<Shortcut>(-1);
 
 /// One line of the list of keys.
 struct KeyHelp {
     const char* group;
     const char* keys;  // of a command: those that it has by default
     const char* what;
-    Command command = NoCommand;  // those without one are fixed
-    const char* name = nullptr;   // of the command, in the settings
+    Shortcut command = NoShortcut;  // those without one are fixed
+    const char* name = nullptr;     // of the command, in the settings
 };
 
 /// All keys; what the shortcuts and the camera do must agree with it.
@@ -65,32 +65,32 @@ inline constexpr std::array<KeyHelp, 52> KeyTable{{
     {"Camera", "Wheel", "Zoom to the cursor"},
     {"Camera", "Double click", "Turn around what is under the cursor"},
     {"Camera", "W A S D, E up, Q down", "Fly (Shift fast, Alt slow)"},
-    {"Camera", "F", "Frame what is labelled, else the scene", Command::Frame, "frame"},
-    {"Camera", "Home", "Home", Command::Home, "home"},
+    {"Camera", "F", "Frame what is labelled, else the scene", Shortcut::Frame, "frame"},
+    {"Camera", "Home", "Home", Shortcut::Home, "home"},
     {"Camera", "Left, Right (nothing has the focus)", "Previous, next view"},
-    {"Labels", "B", "Brush", Command::Brush, "brush"},
-    {"Labels", "R", "Rectangle", Command::Rectangle, "rectangle"},
-    {"Labels", "L", "Lasso", Command::Lasso, "lasso"},
-    {"Labels", "C", "Cut out the thing in a box", Command::CutOut, "cut_out"},
+    {"Labels", "B", "Brush", Shortcut::Brush, "brush"},
+    {"Labels", "R", "Rectangle", Shortcut::Rectangle, "rectangle"},
+    {"Labels", "L", "Lasso", Shortcut::Lasso, "lasso"},
+    {"Labels", "C", "Cut out the thing in a box", Shortcut::CutOut, "cut_out"},
     {"Labels", "Shift", "Add"},
     {"Labels", "Ctrl", "Remove"},
     {"Labels", "Alt, Shift + Ctrl", "Intersect"},
     {"Labels", "[ ], Alt + wheel", "Brush size"},
-    {"Labels", "N", "Front only, or all the way through", Command::FrontOnly, "front_only"},
-    {"Labels", "Ctrl + I", "Invert the label", Command::Invert, "invert"},
-    {"Labels", "Ctrl + D", "Clear the label", Command::Clear, "clear"},
+    {"Labels", "N", "Front only, or all the way through", Shortcut::FrontOnly, "front_only"},
+    {"Labels", "Ctrl + I", "Invert the label", Shortcut::Invert, "invert"},
+    {"Labels", "Ctrl + D", "Clear the label", Shortcut::Clear, "clear"},
     {"Labels", "Ctrl + click on a view of the search", "Leave it out of the vote, or put it back"},
-    {"Labels", "H", "Hide what is labelled; the scene keeps it", Command::Hide, "hide"},
-    {"Labels", "I", "Isolate what is labelled: hide all else", Command::Isolate, "isolate"},
-    {"Labels", "Shift + H", "Show what is hidden", Command::ShowHidden, "show_hidden"},
-    {"Labels", "Delete", "Delete the labelled splats", Command::Delete, "delete"},
-    {"Show", "M", "Chosen view of the search: its attention, its mask, nothing", Command::Evidence,
+    {"Labels", "H", "Hide what is labelled; the scene keeps it", Shortcut::Hide, "hide"},
+    {"Labels", "I", "Isolate what is labelled: hide all else", Shortcut::Isolate, "isolate"},
+    {"Labels", "Shift + H", "Show what is hidden", Shortcut::ShowHidden, "show_hidden"},
+    {"Labels", "Delete", "Delete the labelled splats", Shortcut::Delete, "delete"},
+    {"Show", "M", "Chosen view of the search: its attention, its mask, nothing", Shortcut::Evidence,
      "evidence"},
-    {"Show", "T", "Tint of what is labelled on, off", Command::Tint, "tint"},
-    {"Show", "V", "Wipe between before and after", Command::Wipe, "wipe"},
+    {"Show", "T", "Tint of what is labelled on, off", Shortcut::Tint, "tint"},
+    {"Show", "V", "Wipe between before and after", Shortcut::Wipe, "wipe"},
     {"Show", "hold `", "Flip to the original"},
-    {"Show", "Ctrl + Space", "Hide the panels", Command::Panels, "panels"},
-    {"Show", "F11", "Full screen", Command::Fullscreen, "fullscreen"},
+    {"Show", "Ctrl + Space", "Hide the panels", Shortcut::Panels, "panels"},
+    {"Show", "F11", "Full screen", Shortcut::Fullscreen, "fullscreen"},
     {"Show", "Ctrl + +, Ctrl + -, Ctrl + 0", "Size of the interface"},
     {"Show", "F1", "This list"},
     {"Keyboard", "Tab, Shift + Tab", "Next, previous control"},
@@ -98,19 +98,19 @@ inline constexpr std::array<KeyHelp, 52> KeyTable{{
     {"Keyboard", "Space, Enter", "Press what has the focus; change a slider"},
     {"Keyboard", "F6, Shift + F6", "Next, previous panel"},
     {"Keyboard", "Alt", "Open the menus"},
-    {"Work", "P", "Type in the prompt", Command::Prompt, "prompt"},
+    {"Work", "P", "Type in the prompt", Shortcut::Prompt, "prompt"},
     {"Work", "Shift + Enter, Ctrl + Enter", "Edit"},
-    {"Work", "Ctrl + L", "Locate", Command::Locate, "locate"},
+    {"Work", "Ctrl + L", "Locate", Shortcut::Locate, "locate"},
     {"Work", "Esc", "Leave the control, the tool; cancel the job (asks after 30 s of work)"},
-    {"Work", "Ctrl + Z", "Undo", Command::Undo, "undo"},
-    {"Work", "Ctrl + Shift + Z", "Redo (Ctrl + Y, too, where that is free)", Command::Redo, "redo"},
-    {"Files", "Ctrl + O", "Open", Command::Open, "open"},
-    {"Files", "Ctrl + S", "Save the project", Command::Save, "save"},
-    {"Files", "Ctrl + Shift + S", "Save the project as", Command::SaveAs, "save_as"},
-    {"Files", "Ctrl + E", "Export the scene", Command::Export, "export"},
-    {"Files", "F12", "Screenshot", Command::Screenshot, "screenshot"},
-    {"Files", "Shift + F12", "Turntable", Command::Turntable, "turntable"},
-    {"Files", "Ctrl + Q", "Quit", Command::Quit, "quit"},
+    {"Work", "Ctrl + Z", "Undo", Shortcut::Undo, "undo"},
+    {"Work", "Ctrl + Shift + Z", "Redo (Ctrl + Y, too, where that is free)", Shortcut::Redo, "redo"},
+    {"Files", "Ctrl + O", "Open", Shortcut::Open, "open"},
+    {"Files", "Ctrl + S", "Save the project", Shortcut::Save, "save"},
+    {"Files", "Ctrl + Shift + S", "Save the project as", Shortcut::SaveAs, "save_as"},
+    {"Files", "Ctrl + E", "Export the scene", Shortcut::Export, "export"},
+    {"Files", "F12", "Screenshot", Shortcut::Screenshot, "screenshot"},
+    {"Files", "Shift + F12", "Turntable", Shortcut::Turntable, "turntable"},
+    {"Files", "Ctrl + Q", "Quit", Shortcut::Quit, "quit"},
     {"Numbers", "Ctrl + click on a slider", "Type the number"},
     {"Numbers", "Right click on a setting", "Back to its default"},
 }};

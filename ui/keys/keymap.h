@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "ui/keys.h"
+#include "ui/keys/keys.h"
 
 namespace gse::ui {
 
@@ -34,22 +34,22 @@ public:
     KeyPreset preset() const { return preset_; }
     /// Alt with the left, middle and right button orbits, pans and zooms, with a tool in hand, too.
     bool alt_navigates() const { return preset_ == KeyPreset::Maya; }
-    Chord of(Command command) const { return chords_[static_cast<std::size_t>(command)]; }
-    bool changed(Command command) const;
+    Chord of(Shortcut command) const { return chords_[static_cast<std::size_t>(command)]; }
+    bool changed(Shortcut command) const;
     /// The command that has these keys.
-    std::optional<Command> user_of(const Chord& chord) const;
+    std::optional<Shortcut> user_of(const Chord& chord) const;
     /// Gives a command its keys; the one that had them has none any more, and is returned. Keys with a fixed
     /// meaning are refused: `why_not`.
-    std::optional<Command> bind(Command command, const Chord& chord);
+    std::optional<Shortcut> bind(Shortcut command, const Chord& chord);
     /// Why these keys cannot be chosen: "W flies"; empty = they can.
     static std::string why_not(const Chord& chord);
 
 private:
     KeyPreset preset_;
-    std::array<Chord, CommandCount> chords_{};
+    std::array<Chord, ShortcutCount> chords_{};
 };
 
 /// The line of KeyTable of a command.
-const KeyHelp& help_of(Command command);
+const KeyHelp& help_of(Shortcut command);
 
 }  // namespace gse::ui

@@ -47,6 +47,8 @@ void takes_letters(Context& context);
 /// Gives the last item the focus.
 void focus_last_item(Context& context);
 
+/// Whether a key went down in this frame.
+bool pressed(int index, bool repeats = false);
 /// Whether the last item has the focus and shows it.
 bool has_focus();
 /// The same for a control of the last frame, and by its name.

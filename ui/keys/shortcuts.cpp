@@ -2,8 +2,9 @@
 #include <array>
 #include <utility>
 
-#include "ui/commands.h"
-#include "ui/keys.h"
+#include "ui/commands/guarded.h"
+#include "ui/keys/keyboard.h"
+#include "ui/keys/keys.h"
 #include "ui/menu.h"
 #include "ui/state.h"
 #include "ui/viewport/viewport.h"
@@ -11,12 +12,10 @@
 namespace gse::ui {
 namespace {
 
-bool pressed(int index) { return ImGui::IsKeyPressed(index, false); }
-
 bool enter_pressed() { return pressed(key::Enter) || pressed(key::KeypadEnter); }
 
 /// Whether the keys of a command were pressed in this frame, with just these modifiers.
-bool hit(const Context& context, Command command) {
+bool hit(const Context& context, Shortcut command) {
     const Chord chord = context.state.keymap.of(command);
     const auto& io = ImGui::GetIO();
     return chord.key != 0 && io.KeyCtrl == chord.ctrl && io.KeyShift == chord.shift &&
@@ -24,29 +23,29 @@ bool hit(const Context& context, Command command) {
 }
 
 void export_shot(Context& context) {
-    if (why_not_export(context, context.exports.picture_path).empty()) context.actions.export_picture();
+    if (why_not_export(context, context.exports.picture_path).empty()) context.emit(command::ExportPicture{});
 }
 
 void export_turn(Context& context) {
-    if (why_not_export(context, context.exports.film_path).empty()) context.actions.export_turntable();
+    if (why_not_export(context, context.exports.film_path).empty()) context.emit(command::ExportTurntable{});
 }
 
 /// Those that do no harm to text that is typed, where their keys do not type.
 void file_keys(Context& context, bool typing) {
-    const auto free = [&](Command command) {
+    const auto free = [&](Shortcut command) {
         const Chord chord = context.state.keymap.of(command);
         const bool types = !chord.ctrl && (chord.key < key::F1 || chord.key > key::F12);
         return hit(context, command) && !(typing && types);
     };
-    if (free(Command::Open)) ask_open(context);
-    if (free(Command::Save)) save(context);
-    if (free(Command::SaveAs)) save_as(context);
-    if (free(Command::Export)) show_panel(context.state, PanelId::Export);
-    if (free(Command::Locate)) run_locate(context);
-    if (free(Command::Quit)) quit(context);
-    if (free(Command::Fullscreen)) context.actions.toggle_fullscreen();
-    if (free(Command::Screenshot)) export_shot(context);
-    if (free(Command::Turntable)) export_turn(context);
+    if (free(Shortcut::Open)) ask_open(context);
+    if (free(Shortcut::Save)) save(context);
+    if (free(Shortcut::SaveAs)) save_as(context);
+    if (free(Shortcut::Export)) show_panel(context.state, PanelId::Export);
+    if (free(Shortcut::Locate)) run_locate(context);
+    if (free(Shortcut::Quit)) quit(context);
+    if (free(Shortcut::Fullscreen)) context.emit(command::ToggleFullscreen{});
+    if (free(Shortcut::Screenshot)) export_shot(context);
+    if (free(Shortcut::Turntable)) export_turn(context);
 }
 
 /// Fixed ones; they work while text is typed.
@@ -60,7 +59,7 @@ void control_keys(Context& context) {
 bool redo_hit(const Context& context) {
     const bool other = !context.state.keymap.user_of({'Y', true});
     const auto& io = ImGui::GetIO();
-    return hit(context, Command::Redo) || (other && io.KeyCtrl && !io.KeyAlt && pressed('Y'));
+    return hit(context, Shortcut::Redo) || (other && io.KeyCtrl && !io.KeyAlt && pressed('Y'));
 }
 
 void toggle(Context& context, bool ViewSettings::*member) {
@@ -88,10 +87,10 @@ void step_evidence(Context& context) {
 }
 
 void tool_keys(Context& context) {
-    constexpr std::array<std::pair<Command, Tool>, 4> Tools{{{Command::Brush, Tool::Brush},
-                                                             {Command::Rectangle, Tool::Rectangle},
-                                                             {Command::Lasso, Tool::Lasso},
-                                                             {Command::CutOut, Tool::CutOut}}};
+    constexpr std::array<std::pair<Shortcut, Tool>, 4> Tools{{{Shortcut::Brush, Tool::Brush},
+                                                              {Shortcut::Rectangle, Tool::Rectangle},
+                                                              {Shortcut::Lasso, Tool::Lasso},
+                                                              {Shortcut::CutOut, Tool::CutOut}}};
     for (const auto& [command, tool] : Tools)
         if (hit(context, command)) set_tool(context, tool);
     if (ImGui::GetIO().KeyCtrl || ImGui::GetIO().KeyAlt) return;
@@ -101,22 +100,22 @@ void tool_keys(Context& context) {
 
 void label_keys(Context& context) {
     const bool labelled = context.active_label() != nullptr;
-    if (hit(context, Command::Invert) && labelled) context.actions.invert_label();
-    if (hit(context, Command::Clear) && labelled) context.actions.clear_label();
-    if (hit(context, Command::Hide)) hide_label(context);
-    if (hit(context, Command::ShowHidden)) context.actions.show_hidden();
-    if (hit(context, Command::Isolate)) isolate_label(context);
-    if (hit(context, Command::Delete) && labelled && label_count(context) > 0)
-        context.actions.delete_labelled_splats();
+    if (hit(context, Shortcut::Invert) && labelled) context.emit(command::InvertLabel{});
+    if (hit(context, Shortcut::Clear) && labelled) context.emit(command::ClearLabel{});
+    if (hit(context, Shortcut::Hide)) hide_label(context);
+    if (hit(context, Shortcut::ShowHidden)) context.emit(command::ShowHidden{});
+    if (hit(context, Shortcut::Isolate)) isolate_label(context);
+    if (hit(context, Shortcut::Delete) && labelled && label_count(context) > 0)
+        context.emit(command::DeleteLabelledSplats{});
 }
 
 void view_keys(Context& context) {
-    if (hit(context, Command::Frame)) frame_selection(context);
-    if (hit(context, Command::Home)) go_home(context);
-    if (hit(context, Command::FrontOnly)) toggle(context, &ViewSettings::front_only);
-    if (hit(context, Command::Tint)) toggle(context, &ViewSettings::tint_labels);
-    if (hit(context, Command::Wipe)) toggle_wipe(context);
-    if (hit(context, Command::Evidence)) step_evidence(context);
+    if (hit(context, Shortcut::Frame)) frame_selection(context);
+    if (hit(context, Shortcut::Home)) go_home(context);
+    if (hit(context, Shortcut::FrontOnly)) toggle(context, &ViewSettings::front_only);
+    if (hit(context, Shortcut::Tint)) toggle(context, &ViewSettings::tint_labels);
+    if (hit(context, Shortcut::Wipe)) toggle_wipe(context);
+    if (hit(context, Shortcut::Evidence)) step_evidence(context);
     const bool arrows_free = !context.state.keyboard.on || has_focus(context, "viewport");
     if (ImGui::GetIO().KeyCtrl || ImGui::GetIO().KeyAlt) return;
     if (arrows_free && pressed(key::Left)) step(context, -1);
@@ -125,13 +124,13 @@ void view_keys(Context& context) {
 
 /// Those that mean something else while text is typed.
 void free_keys(Context& context) {
-    if (hit(context, Command::Prompt)) {
+    if (hit(context, Shortcut::Prompt)) {
         show_panel(context.state, PanelId::Prompt);
         context.state.focus = "prompt.sentence";
     }
-    if (hit(context, Command::Undo)) context.actions.undo();
-    if (redo_hit(context)) context.actions.redo();
-    if (hit(context, Command::Panels))
+    if (hit(context, Shortcut::Undo)) context.emit(command::Undo{});
+    if (redo_hit(context)) context.emit(command::Redo{});
+    if (hit(context, Shortcut::Panels))
         context.state.layout.panels_hidden = !context.state.layout.panels_hidden;
     if (!context.scene_open()) return;
     tool_keys(context);
@@ -145,7 +144,7 @@ void hold_to_flip(Context& context, bool free) {
     if (held == state.flipped) return;
     if (held) state.before_flip = context.model.comparison;
     state.flipped = held;
-    context.actions.set_comparison(held ? Comparison::Original : state.before_flip);
+    context.emit(command::SetComparison{held ? Comparison::Original : state.before_flip});
 }
 
 void escape(Context& context) {

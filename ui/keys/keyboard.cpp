@@ -1,20 +1,18 @@
 // Moving the focus: Tab over the noted controls, F6 over the areas, Alt into the menus.
-#include "ui/keyboard.h"
+#include "ui/keys/keyboard.h"
 
 #include <imgui_internal.h>
 
 #include <algorithm>
 
 #include "ui/context.h"
-#include "ui/keys.h"
+#include "ui/keys/keys.h"
 #include "ui/state.h"
 
 namespace gse::ui {
 namespace {
 
 constexpr std::string_view FirstStop = "prompt.source";
-
-bool pressed(int index, bool repeats = false) { return ImGui::IsKeyPressed(index, repeats); }
 
 bool focus_shown() {
     const ImGuiContext& g = *ImGui::GetCurrentContext();
@@ -170,6 +168,8 @@ void leave(Context& context) {
 }
 
 }  // namespace
+
+bool pressed(int index, bool repeats) { return ImGui::IsKeyPressed(index, repeats); }
 
 void begin_keyboard(Context& context) {
     auto& keyboard = context.state.keyboard;

@@ -1,5 +1,5 @@
 // Presets, and reading and writing keys as text.
-#include "ui/keymap.h"
+#include "ui/keys/keymap.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -33,7 +33,7 @@ constexpr int LastFunctionKey = key::F1 + 11;
 /// What a convention does otherwise; "" = no key.
 struct Override {
     KeyPreset preset;
-    Command command;
+    Shortcut command;
     const char* keys;
 };
 
@@ -41,17 +41,17 @@ struct Override {
 // frames, Ctrl + I inverts. Maya: its marquee and lasso keys are letters that fly here; H hides with Ctrl,
 // Shift + H shows; F frames, A (all) flies, so Home it is.
 constexpr std::array<Override, 11> Overrides{{
-    {KeyPreset::Blender, Command::Rectangle, "B"},
-    {KeyPreset::Blender, Command::Brush, "C"},
-    {KeyPreset::Blender, Command::CutOut, "K"},
-    {KeyPreset::Blender, Command::Frame, "Keypad ."},
-    {KeyPreset::Blender, Command::ShowHidden, "Alt + H"},
-    {KeyPreset::Blender, Command::Isolate, "/"},
-    {KeyPreset::Blender, Command::Delete, "X"},
-    {KeyPreset::Maya, Command::Hide, "Ctrl + H"},
-    {KeyPreset::Maya, Command::ShowHidden, "Shift + H"},
-    {KeyPreset::Maya, Command::Isolate, "Shift + I"},
-    {KeyPreset::Maya, Command::Invert, "Ctrl + Shift + I"},
+    {KeyPreset::Blender, Shortcut::Rectangle, "B"},
+    {KeyPreset::Blender, Shortcut::Brush, "C"},
+    {KeyPreset::Blender, Shortcut::CutOut, "K"},
+    {KeyPreset::Blender, Shortcut::Frame, "Keypad ."},
+    {KeyPreset::Blender, Shortcut::ShowHidden, "Alt + H"},
+    {KeyPreset::Blender, Shortcut::Isolate, "/"},
+    {KeyPreset::Blender, Shortcut::Delete, "X"},
+    {KeyPreset::Maya, Shortcut::Hide, "Ctrl + H"},
+    {KeyPreset::Maya, Shortcut::ShowHidden, "Shift + H"},
+    {KeyPreset::Maya, Shortcut::Isolate, "Shift + I"},
+    {KeyPreset::Maya, Shortcut::Invert, "Ctrl + Shift + I"},
 }};
 
 std::string key_name(int code) {
@@ -90,27 +90,27 @@ std::optional<Chord> parse_chord(const std::string& text) {
     return chord.key != 0 ? std::optional(chord) : std::nullopt;
 }
 
-const KeyHelp& help_of(Command command) {
+const KeyHelp& help_of(Shortcut command) {
     return *std::find_if(KeyTable.begin(), KeyTable.end(),
                          [&](const KeyHelp& line) { return line.command == command; });
 }
 
 Keymap::Keymap(KeyPreset preset) : preset_(preset) {
     for (const auto& line : KeyTable)
-        if (line.command != NoCommand)
+        if (line.command != NoShortcut)
             chords_[static_cast<std::size_t>(line.command)] = parse_chord(line.keys).value_or(Chord{});
     for (const auto& other : Overrides)
         if (other.preset == preset)
             chords_[static_cast<std::size_t>(other.command)] = parse_chord(other.keys).value_or(Chord{});
 }
 
-bool Keymap::changed(Command command) const { return of(command) != Keymap(preset_).of(command); }
+bool Keymap::changed(Shortcut command) const { return of(command) != Keymap(preset_).of(command); }
 
-std::optional<Command> Keymap::user_of(const Chord& chord) const {
+std::optional<Shortcut> Keymap::user_of(const Chord& chord) const {
     const auto found = std::find(chords_.begin(), chords_.end(), chord);
     return chord.key == 0 || found == chords_.end()
                ? std::nullopt
-               : std::optional(static_cast<Command>(found - chords_.begin()));
+               : std::optional(static_cast<Shortcut>(found - chords_.begin()));
 }
 
 std::string Keymap::why_not(const Chord& chord) {
@@ -130,7 +130,7 @@ std::string Keymap::why_not(const Chord& chord) {
     return fixed ? name + " has a fixed meaning" : std::string();
 }
 
-std::optional<Command> Keymap::bind(Command command, const Chord& chord) {
+std::optional<Shortcut> Keymap::bind(Shortcut command, const Chord& chord) {
     const auto had = user_of(chord);
     if (had && *had != command) chords_[static_cast<std::size_t>(*had)] = {};
     chords_[static_cast<std::size_t>(command)] = chord;
@@ -140,7 +140,7 @@ std::optional<Command> Keymap::bind(Command command, const Chord& chord) {
 std::string Keymap::text() const {
     nlohmann::ordered_json json{{"preset", KeyPresetNames[static_cast<std::size_t>(preset_)]}};
     for (const auto& line : KeyTable)
-        if (line.command != NoCommand && changed(line.command))
+        if (line.command != NoShortcut && changed(line.command))
             json["keys"][line.name] = chord_text(of(line.command));
     return json.dump();
 }
@@ -156,7 +156,7 @@ Keymap Keymap::parse(const std::string& text) {
                                               : static_cast<KeyPreset>(preset - KeyPresetNames.begin()));
     if (!json.contains("keys") || !json["keys"].is_object()) return map;
     for (const auto& line : KeyTable) {
-        if (line.command == NoCommand || !json["keys"].contains(line.name) ||
+        if (line.command == NoShortcut || !json["keys"].contains(line.name) ||
             !json["keys"][line.name].is_string())
             continue;
         const auto chord = parse_chord(json["keys"][line.name].get<std::string>());

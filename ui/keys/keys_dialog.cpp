@@ -1,18 +1,18 @@
 // Conventions, and one button per command that waits for keys.
-#include "ui/keys_dialog.h"
+#include "ui/keys/keys_dialog.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "ui/commands.h"
+#include "ui/commands/guarded.h"
 #include "ui/state.h"
 #include "ui/widgets/controls.h"
 
 namespace gse::ui {
 namespace {
 
-void send(Context& context) { context.actions.set_keymap(context.state.keymap.text()); }
+void send(Context& context) { context.emit(command::SetKeymap{context.state.keymap.text()}); }
 
 /// The keys that are pressed now become those of the command that waits for them; Esc leaves it as it was.
 void choose_keys(Context& context) {
@@ -21,7 +21,7 @@ void choose_keys(Context& context) {
     constexpr int FirstModifier = 340, LastModifier = 347;
     for (int code = key::Space; code < IM_ARRAYSIZE(io.KeysDown); ++code) {
         if ((code >= FirstModifier && code <= LastModifier) || !ImGui::IsKeyPressed(code, false)) continue;
-        const Command command = *keys.choosing;
+        const Shortcut command = *keys.choosing;
         if (code == key::Escape) return keys.choosing.reset();
         const Chord chord{code, io.KeyCtrl, io.KeyShift, io.KeyAlt};
         keys.note = Keymap::why_not(chord);
@@ -63,10 +63,10 @@ void draw_group(Context& context, const char* group) {
         if (std::string_view(line.group) != group) continue;
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
-        if (line.command == NoCommand) wrapped_text(line.keys);
+        if (line.command == NoShortcut) wrapped_text(line.keys);
         else draw_command_key(context, line);
         ImGui::TableNextColumn();
-        const bool changed = line.command != NoCommand && context.state.keymap.changed(line.command);
+        const bool changed = line.command != NoShortcut && context.state.keymap.changed(line.command);
         dim_text(fmt::format("{}{}", changed ? "* " : "", line.what));
     }
     ImGui::EndTable();

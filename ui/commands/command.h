@@ -1,0 +1,342 @@
+// Commands: everything that an artist can ask for, as values. Panels push them into a sink; after the frame
+// the application takes them in their order. Work goes to job threads, and its outcome is in a later
+// ViewModel.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "engine/localize/row_property.h"
+#include "engine/scene/colour_adjustment.h"
+#include "ui/view_model.h"
+
+namespace gse::ui {
+
+/// A region of the viewport, in pixels of its texture, that splats are selected with.
+struct ScreenRegion {
+    std::vector<std::array<float, 2>> polygon;  // closed; empty = use the circles
+    std::vector<std::array<float, 2>> circles;  // centres of a brush stroke
+    float radius_px = 0;
+};
+
+/// Uses of splats that were chosen by a property.
+enum class PickedUse { NewLabel, Add, Remove, Delete };
+
+namespace command {
+
+// Files and recovery.
+/// Opens a scene, a folder, a project, cameras of the open scene, or a PNG with a recipe.
+struct Open {
+    std::filesystem::path path;
+};
+struct OpenSample {};
+/// Saves the project; an empty path = where it was saved last. Calls `then` (may be empty) once it is saved.
+struct SaveProject {
+    std::filesystem::path path = {};
+    std::function<void()> then = {};
+};
+/// Stops a running edit, then calls `then`. Keep: its state and all else unsaved go to the recovery folder;
+/// otherwise its state, or the result that waits, is dropped.
+struct LeaveEdit {
+    bool keep = false;
+    std::function<void()> then;
+};
+struct Recover {
+    std::string project;
+};
+struct DiscardRecovery {
+    std::string project;
+};
+/// Offers the work again another time.
+struct PostponeRecovery {
+    std::string project;
+};
+struct SetUpAxis {
+    std::string up;  // "y", "-y", "auto", ...
+};
+/// Removes splats that cannot be drawn (undoable).
+struct RepairScene {};
+struct CancelFileJob {};
+
+// Searches, edits and results.
+struct SetRequest {
+    edit::EditRequest request;
+};
+struct Locate {};
+/// Labels the splats that an unsure search found.
+struct LabelAnyway {};
+struct Edit {};
+struct Pause {
+    bool paused = true;
+};
+/// Cancels the search or edit that runs.
+struct Cancel {};
+/// Keeps, drops or redraws a view of the round that is fitted to now.
+struct OrderTarget {
+    edit::TargetOrder order;
+};
+/// Lets the waiting edit fit to its redrawn views.
+struct FitToTargets {};
+struct ApplyResult {};
+/// Drops the result that waits and those beside it.
+struct DiscardResult {};
+/// Edits once more with another seed; the result that waits is kept beside the new one.
+struct AnotherResult {};
+struct ShowResult {
+    std::size_t index = 0;
+};
+struct ShowSnapshot {
+    int index = -1;  // -1 = newest
+};
+/// Makes that state the result that waits.
+struct TakeSnapshot {
+    int iteration = 0;
+};
+/// Goes on from that state with the settings as they are now.
+struct BranchFromSnapshot {
+    int iteration = 0;
+};
+/// Moves the threshold of the attention; a drag is one step of undo.
+struct SetAttentionThreshold {
+    double value = 0;
+    bool drag_ends = true;
+};
+/// Excludes a view of the search, or includes it; the label is voted again.
+struct LeaveOutView {
+    std::size_t view = 0;
+    bool out = true;
+};
+/// Chooses what may change: the active label, or what a search finds.
+struct SetReach {
+    bool by_label = true;
+};
+/// Puts the settings of an applied edit into the prompt, with a new seed.
+struct RepeatEdit {
+    std::uint64_t id = 0;
+};
+
+// Labels, splats and the edit stack (all undoable).
+struct SetLabelThreshold {
+    float value = 0;
+    bool drag_ends = true;
+};
+struct SetActiveLabel {
+    int index = 0;
+};
+struct AddLabel {
+    std::string name;
+};
+struct RenameLabel {
+    int index = 0;
+    std::string name;
+};
+struct DeleteLabel {
+    int index = 0;
+};
+struct Select {
+    ScreenRegion region;
+    SetOperation operation = SetOperation::Add;
+    bool stroke_ends = true;
+};
+/// Selects the object in the box.
+struct CutOut {
+    ScreenRegion box;
+    SetOperation operation = SetOperation::Add;
+};
+/// Grows the label over its neighbours; negative shrinks.
+struct GrowLabel {
+    int steps = 1;
+};
+struct InvertLabel {};
+struct ClearLabel {};
+struct DeleteLabelledSplats {};
+/// Adjusts the colours of the labelled splats, or of all where none is labelled. Several in a row start from
+/// the same colours and are one step of undo; the neutral adjustment takes them back.
+struct AdjustColours {
+    ColourAdjustment adjustment;
+};
+/// Shows the splats of a choice by property until they are dropped; only UsePicked changes anything.
+struct PickRows {
+    localize::RowChoice choice;
+};
+struct DropPicked {};
+struct UsePicked {
+    PickedUse use = PickedUse::NewLabel;
+};
+struct Undo {};
+struct Redo {};
+struct GoTo {
+    std::size_t position = 0;
+};
+struct SetEditEnabled {
+    std::uint64_t id = 0;
+    bool enabled = true;
+};
+/// Blends an edit with the scene before it; a drag is one step of undo.
+struct SetEditStrength {
+    std::uint64_t id = 0;
+    double strength = 1;
+    bool drag_ends = true;
+};
+struct DeleteEdit {
+    std::uint64_t id = 0;
+};
+struct MoveEdit {
+    std::uint64_t id = 0;
+    int places = 0;
+};
+
+// The view: never part of undo, viewpoints of the scene apart.
+struct HideLabel {};
+/// Hides all splats that are not labelled.
+struct IsolateLabel {};
+struct ShowHidden {};
+struct SetCamera {
+    Camera camera;  // in viewport pixels; resolution may drop while it moves
+};
+struct SetViewSettings {
+    ViewSettings settings;
+};
+struct SetComparison {
+    Comparison comparison = Comparison::None;
+};
+/// Compares with a step of undo; a step that is compared with already = the original again.
+struct CompareWith {
+    std::size_t position = 0;
+};
+struct LookThrough {
+    std::size_t view = 0;
+};
+/// Adds the present camera to the viewpoints.
+struct AddView {};
+struct DeleteView {
+    std::size_t view = 0;
+};
+struct SetViewportSize {
+    int width = 1, height = 1;  // framebuffer pixels
+};
+
+// Models.
+struct SetModelSettings {
+    ModelSettings settings;
+};
+/// Tries a model, lists it, and uses it where it loads.
+struct ChooseModel {
+    std::string path;
+};
+/// Merges a LoRA (FILE or FILE:strength); the model stays as it was where that fails.
+struct AddLora {
+    std::string text;
+};
+struct SetLoraStrength {
+    std::size_t index = 0;
+    double strength = 1;
+};
+struct RemoveLora {
+    std::size_t index = 0;
+};
+/// Tries weights of a segmenter; empty = none.
+struct ChooseSegmenter {
+    SegmenterRole role = SegmenterRole::Clicks;
+    std::string path = {};
+};
+/// Bounds the disk cache of the networks' answers; 0 = none.
+struct SetCacheMb {
+    int most = 0;
+};
+struct ClearCache {};
+
+// Exports.
+struct SetExports {
+    ExportSettings settings;
+};
+struct ExportPicture {};
+struct ExportTurntable {};
+struct ExportScene {};
+struct ExportViewpoints {};
+struct AddCameraKey {};
+struct DeleteCameraKey {
+    std::size_t index = 0;
+};
+/// Writes the camera path as JSON, or the film along it.
+struct ExportCameraPath {
+    bool as_film = false;
+};
+
+// The window.
+/// Answers the application's question.
+struct Answer {
+    std::size_t index = 0;
+};
+struct DismissToast {
+    std::size_t index = 0;
+};
+struct PressToast {
+    std::size_t index = 0;
+};
+struct ToggleFullscreen {};
+struct SetUiScale {
+    float scale = 1;
+};
+struct SetKeymap {
+    std::string text;  // Keymap::text()
+};
+struct Quit {};
+
+}  // namespace command
+
+using FileCommand = std::variant<command::Open, command::OpenSample, command::SaveProject, command::LeaveEdit,
+                                 command::Recover, command::DiscardRecovery, command::PostponeRecovery,
+                                 command::SetUpAxis, command::RepairScene, command::CancelFileJob>;
+using EditCommand =
+    std::variant<command::SetRequest, command::Locate, command::LabelAnyway, command::Edit, command::Pause,
+                 command::Cancel, command::OrderTarget, command::FitToTargets, command::ApplyResult,
+                 command::DiscardResult, command::AnotherResult, command::ShowResult, command::ShowSnapshot,
+                 command::TakeSnapshot, command::BranchFromSnapshot, command::SetAttentionThreshold,
+                 command::LeaveOutView, command::SetReach, command::RepeatEdit>;
+using LabelCommand =
+    std::variant<command::SetLabelThreshold, command::SetActiveLabel, command::AddLabel, command::RenameLabel,
+                 command::DeleteLabel, command::Select, command::CutOut, command::GrowLabel,
+                 command::InvertLabel, command::ClearLabel, command::DeleteLabelledSplats,
+                 command::AdjustColours, command::PickRows, command::DropPicked, command::UsePicked,
+                 command::Undo, command::Redo, command::GoTo, command::SetEditEnabled,
+                 command::SetEditStrength, command::DeleteEdit, command::MoveEdit>;
+using ViewCommand =
+    std::variant<command::HideLabel, command::IsolateLabel, command::ShowHidden, command::SetCamera,
+                 command::SetViewSettings, command::SetComparison, command::CompareWith, command::LookThrough,
+                 command::AddView, command::DeleteView, command::SetViewportSize>;
+using ModelCommand =
+    std::variant<command::SetModelSettings, command::ChooseModel, command::AddLora, command::SetLoraStrength,
+                 command::RemoveLora, command::ChooseSegmenter, command::SetCacheMb, command::ClearCache>;
+using ExportCommand = std::variant<command::SetExports, command::ExportPicture, command::ExportTurntable,
+                                   command::ExportScene, command::ExportViewpoints, command::AddCameraKey,
+                                   command::DeleteCameraKey, command::ExportCameraPath>;
+using WindowCommand =
+    std::variant<command::Answer, command::DismissToast, command::PressToast, command::ToggleFullscreen,
+                 command::SetUiScale, command::SetKeymap, command::Quit>;
+
+/// A command; each alternative is the list of one controller.
+using Command = std::variant<FileCommand, EditCommand, LabelCommand, ViewCommand, ModelCommand, ExportCommand,
+                             WindowCommand>;
+
+/// Commands of a frame in their order, kept until the frame is drawn: nothing that panels read changes
+/// under their hands.
+class CommandSink {
+public:
+    void push(Command command) { commands_.push_back(std::move(command)); }
+    bool empty() const { return commands_.empty(); }
+    /// The commands so far; what is pushed while they run waits for the next time.
+    std::vector<Command> take() { return std::exchange(commands_, {}); }
+
+private:
+    std::vector<Command> commands_;
+};
+
+}  // namespace gse::ui
