@@ -55,7 +55,7 @@ void draw_tools(Context& context) {
 }
 
 /// Step, share and time left in one line.
-std::string job_text(const JobView& job) {
+std::string job_text(const JobStatus& job) {
     std::string text = job.stage;
     if (job.total > 0) text += fmt::format("  {} / {}", job.step, job.total);
     if (job.paused) return text + "  paused";
@@ -63,7 +63,7 @@ std::string job_text(const JobView& job) {
     return text;
 }
 
-void draw_bar(Context& context, const JobView& job, const char* name, float width) {
+void draw_bar(Context& context, const JobStatus& job, const char* name, float width) {
     const ImVec2 low = ImGui::GetCursorScreenPos();
     const float height = ImGui::GetFrameHeight();
     ImGui::Dummy({width, height});
@@ -139,7 +139,7 @@ void draw_file_job(Context& context) {
     const float cancel = button_width("Stop") + context.em * 0.5f;
     const float width =
         std::clamp(ImGui::GetContentRegionAvail().x - cancel, context.em * 3, context.em * 16);
-    JobView shown = job;
+    JobStatus shown = job;
     shown.stage = job.title.empty() ? job.stage : job.title;
     draw_bar(context, shown, "job.file", width);
     ImGui::SameLine();

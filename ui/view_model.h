@@ -8,17 +8,20 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "engine/base/fields.h"
 #include "engine/base/image.h"
+#include "engine/base/job_status.h"
 #include "engine/base/log.h"
 #include "engine/edit/interfaces/view_targets.h"
 #include "engine/edit/request/request.h"
 #include "engine/edit/search/locate.h"
 #include "engine/io/formats/scene_formats.h"
 #include "engine/math/framing.h"
+#include "engine/pipeline/models/model_catalogue.h"
 #include "engine/pipeline/report/evidence_pictures.h"
 #include "engine/scene/camera_key.h"
 #include "engine/scene/document.h"
@@ -92,20 +95,6 @@ struct ViewSettings {
     }
 };
 
-/// The job that runs (or ran last).
-struct JobView {
-    bool running = false;
-    bool paused = false;
-    bool can_pause = false;
-    std::string title;        // "Edit: a red bear", "Locate", "Turntable turn.mp4"
-    std::string stage;        // "render", "attention", ...
-    int step = 0, total = 0;  // of the stage, total 0 = unknown
-    double seconds = 0;
-    double eta_seconds = -1;  // negative = unknown
-    std::string outcome;      // empty while it runs; then "done in 61 s", "stopped", ...
-    std::string error;        // one sentence, with what to do; empty = none
-};
-
 /// A point of the curves in Progress.
 struct LossPoint {
     int iteration = 0;
@@ -131,14 +120,8 @@ struct SearchView {
     bool on_ground = false;       // the model was shown a ground that the scene does not have
 };
 
-/// A place where a model was looked for.
-struct ModelView {
-    std::string name;
-    std::string path;
-    std::string structure;  // "Stable Diffusion 1.x", "starter", ...
-    std::uint64_t bytes = 0;
-    bool usable = false;
-    std::string problem;  // what is missing or not supported, and what to do
+/// A model that was found on this machine.
+struct ModelView : pipeline::FoundModel {
     bool chosen = false;
     bool checking = false;  // it is being loaded, to see whether it can be used
 };
@@ -363,9 +346,9 @@ struct ViewModel {
     bool attention_corrected = false;  // the label was set by hand since: the masks are older than it
     SearchView search;
     // Work
-    JobView job;                // locate, edit
+    JobStatus job;              // locate, edit
     bool edit_running = false;  // the job is an edit
-    JobView file_job;           // load, export, save
+    JobStatus file_job;         // load, export, save
     GateView gate;
     std::vector<TargetRound> target_rounds;  // of the running or last edit that views lead, in their order
     bool targets_wait = false;               // the fit of the last round begins when the artist says so
@@ -386,7 +369,7 @@ struct ViewModel {
     std::vector<LoraView> loras;
     bool loras_checking = false;              // others are being loaded, to see whether they can be used
     std::array<SegmenterView, 2> segmenters;  // by SegmenterRole
-    std::vector<LogLine> log;
+    std::span<const LogLine> log;
     std::vector<Toast> toasts;
     ViewSettings view;
     ExportSettings exports;

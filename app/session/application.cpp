@@ -1,47 +1,20 @@
-// The frame: what other threads posted, clocks, and the view model.
+// The editor behind the window: routes commands, runs the frame, keeps the program's settings.
 #include "app/session/application.h"
 
-#include <fmt/chrono.h>
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <ctime>
+#include <variant>
 
-#include "app/cli/engine_names.h"
-#include "engine/base/clock.h"
-#include "engine/base/error.h"
+#include "app/session/json_values.h"
 #include "engine/base/log.h"
 #include "engine/io/files/user_files.h"
-#include "engine/pipeline/run/scene_tools.h"
 #include "engine/scene/label_ops.h"
 
 namespace gse::app {
 namespace {
 
-constexpr double ToastSeconds = 7, ButtonToastSeconds = 12, ErrorToastSeconds = 20;
-constexpr std::size_t MostToasts = 4, MostLogLines = 2000;
+namespace command = ui::command;
 
-/// Lines of the log from any thread, until the application takes them.
-struct LogBox {
-    std::mutex mutex;
-    std::vector<ui::LogLine> lines;
-};
-
-ui::JobView job_view(const JobStatus& status) {
-    ui::JobView view;
-    view.running = status.running;
-    view.paused = status.paused;
-    view.can_pause = status.can_pause;
-    view.title = status.title;
-    view.stage = status.stage;
-    view.step = status.step;
-    view.total = status.total;
-    view.seconds = status.seconds;
-    view.eta_seconds = status.eta_seconds;
-    view.outcome = status.outcome;
-    view.error = status.error;
-    return view;
-}
+template <class... F> struct Overloaded : F... { using F::operator()...; };
 
 /// Of the window's settings, those that are not of one scene or one moment.
 nlohmann::ordered_json lasting(nlohmann::ordered_json fields) {
@@ -57,333 +30,168 @@ nlohmann::ordered_json lasting(nlohmann::ordered_json fields) {
 }  // namespace
 
 Application::Application(ApplicationOptions options)
-    : options_(std::move(options)), work_(queue_, JobThread::Priority::Patient), files_(queue_),
-      saver_(queue_, JobThread::Priority::Patient), counter_(queue_, JobThread::Priority::Patient) {
-    queue_.set_wake(options_.wake);
-    auto box = std::make_shared<LogBox>();
-    log_source_ = box;
-    log::set_sink([box, wake = options_.wake](log::Level level, std::string_view text) {
-        {
-            const std::lock_guard lock(box->mutex);
-            box->lines.push_back(
-                {level, fmt::format("{:%H:%M:%S}", fmt::localtime(std::time(nullptr))), std::string(text)});
-        }
-        if (wake) wake();
-    });
-    model_.request.prompt = "";
-    model_.words_known = true;
+    : workspace_(std::move(options)), view_(workspace_),
+      models_(workspace_,
+              [this](const auto& before, const auto& after) { search_.move_request(before, after); }),
+      costs_(workspace_, models_), search_(workspace_, view_, models_, costs_),
+      edits_(workspace_, view_, models_, costs_, search_),
+      labels_(workspace_, view_, models_, search_, edits_), exports_(workspace_, view_, search_, edits_),
+      files_(workspace_, {view_, models_, search_, edits_, labels_, exports_}) {
+    workspace_.run = [this](const ui::Command& command) { run(command); };
     load_settings();
-    list_models();
-    const auto in_use =
-        std::find_if(model_.models.begin(), model_.models.end(), [](const auto& row) { return row.chosen; });
-    if (!model_path_.empty() && in_use != model_.models.end() && !in_use->usable)
-        refuse_model(std::exchange(model_path_, {}), in_use->problem);
-    take_chosen_model();
-    for (const auto& path : load_recent()) model_.recent.push_back(path.string());
-    refresh_recoverable();
+    models_.start();
+    show();
 }
 
 Application::~Application() {
-    log::set_sink({});
-    queue_.set_wake({});
+    workspace_.jobs.reset();  // jobs end before what they use
+    workspace_.queue.set_wake({});
+}
+
+void Application::run(const ui::Command& command) {
+    std::visit(Overloaded{[this](const ui::FileCommand& one) { files_.run(one); },
+                          [this](const ui::SearchCommand& one) { search_.run(one); },
+                          [this](const ui::EditCommand& one) { edits_.run(one); },
+                          [this](const ui::LabelCommand& one) { labels_.run(one); },
+                          [this](const ui::ViewCommand& one) { view_.run(one); },
+                          [this](const ui::ModelCommand& one) { models_.run(one); },
+                          [this](const ui::ExportCommand& one) { exports_.run(one); },
+                          [this](const ui::NoticeCommand& one) { workspace_.notices.run(one); },
+                          [this](const ui::WindowCommand& one) { run_window(one); }},
+               command);
+    if (workspace_.settings_changed) save_settings();
+    show();
 }
 
 bool Application::busy() const {
-    return work_.running() || files_.running() || leaving_ || !toasts_.empty() ||
-           seconds_since(last_move_) < 2 * MovingSeconds;
+    const auto& jobs = *workspace_.jobs;
+    return jobs.works() || jobs.files.running() || files_.leaving() || workspace_.notices.shows_toasts() ||
+           view_.moving();
 }
 
+// Frames
+
 void Application::update(PreviewHost& preview) {
-    const JobStatus work = work_.status(),
-                    files = files_.status();  // before the queue: an ended job has left its result
-    queue_.run();
+    workspace_.queue.run();
     const auto now = Clock::now();
     const double frame = std::chrono::duration<double>(now - last_frame_).count();
     last_frame_ = now;
-    if (frame > 0) model_.frames_per_second = 0.9 * model_.frames_per_second + 0.1 / std::max(frame, 1e-4);
-    refresh_log();
-    refresh_live();
-    refresh_jobs(work, files);
-    refresh_document();
-    refresh_toasts();
-    autosave_if_due();
-    leave_when_stopped();
-    if (document_.empty()) {
-        start_page_seen_ |= !files.running;
-        model_.viewport = 0;
-        return;
+    if (frame > 0) frames_per_second_ = 0.9 * frames_per_second_ + 0.1 / std::max(frame, 1e-4);
+    workspace_.notices.refresh();
+    edits_.refresh();
+    follow_document();
+    search_.refresh();
+    if (!workspace_.document.empty()) labels_.refresh();
+    exports_.refresh();
+    files_.refresh();
+    if (workspace_.document.empty()) {
+        view_.draw_nothing();
+    } else {
+        Stage stage = edits_.stage();
+        labels_.dress(stage);
+        view_.draw(preview, stage);
     }
-    preview.want(picture_request());
-    const auto picture = preview.state();
-    model_.viewport = picture.texture;
-    model_.viewport_original = picture.original;
-    // Overlays and tools work in pixels of the whole viewport; while moving the picture has fewer and is
-    // stretched.
-    model_.camera =
-        picture.camera.width > 0 ? picture.camera : camera_.resized(viewport_width_, viewport_height_);
-    model_.viewport_width = model_.camera.width;
-    model_.viewport_height = model_.camera.height;
-    model_.viewport_depth = picture.depth;
-    model_.render_ms = picture.render_ms;
-    model_.renderer = picture.renderer;
+    if (workspace_.settings_changed) save_settings();
+    show();
 }
 
-void Application::refresh_jobs(const JobStatus& work, const JobStatus& files) {
-    model_.job = job_view(work);
-    model_.file_job = job_view(files);
-    model_.edit_running = edit_running();
-    if (!model_.edit_running) model_.targets_wait = false;
-    model_.voting = work.running && work.title == VoteTitle;
-    model_.read_target = read_target();
-    model_.result_waiting = pending_.has_value() && !work_.running();
-    model_.result_splats = pending_ ? pending_->set.size() : 0;
-    model_.result_changed_outside = pending_ ? pending_->changed_outside_label : 0;
-    model_.result_psnr_outside_db = pending_ ? pending_->psnr_outside_db : 0;
-    model_.result_seconds = pending_ ? pending_->seconds : 0;
-    model_.results.clear();
-    for (const auto& result : pending_.all()) model_.results.push_back({result.thumbnail, result.seed});
-    model_.shown_result = pending_.shown().value_or(0);
-    vote_if_wanted();
+void Application::follow_document() {
+    const auto& document = workspace_.document;
+    const Seen now{workspace_.opened, document.revision()};
+    if (document.empty() || std::exchange(seen_, now) == now) return;
+    view_.follow_document();
+    search_.follow_document();
+    const NamedLabel* label = workspace_.active_label();
+    workspace_.labelled = label != nullptr ? count_labelled(*label) : 0;
 }
 
-void Application::take_found() {
-    std::unique_lock lock(live_->mutex);
-    const auto job = std::exchange(live_->found, nullptr);
-    if (job == nullptr) return;
-    auto attention = std::move(live_->attention);
-    const bool relabel = live_->relabel;
-    lock.unlock();
-    remember_search(job);
-    live_recipe_.request.target = searched_.words.target;
-    describe(*live_, live_recipe_);
-    job_key_ = search_key(live_recipe_);
-    take_located(job, std::move(attention));
-    const auto& located = job->located();
-    if (!job->found()) report_error(Error(ErrorCode::NotFound, located.message, located.remedy));
-    else if (relabel) label_located(*job, {}, {});
+void Application::show() {
+    workspace_.notices.show(model_);
+    files_.show(model_);
+    view_.show(model_);
+    models_.show(model_);
+    costs_.show(model_);
+    search_.show(model_);
+    edits_.show(model_);
+    labels_.show(model_);
+    exports_.show(model_);
+    model_.job = workspace_.jobs->work.status();
+    model_.file_job = workspace_.jobs->files.status();
+    model_.cannot_edit = workspace_.document.empty() ? "Open a scene first."
+                         : workspace_.jobs->works()  ? "A job is running."
+                         : workspace_.results        ? "Apply or discard the edit first."
+                                                     : "";
+    model_.frames_per_second = frames_per_second_;
+    model_.keymap = keymap_;
+    model_.ui_scale = ui_scale_;
 }
 
-void Application::refresh_live() {
-    take_found();
-    show_arriving();
-    const std::lock_guard lock(live_->mutex);
-    if (live_->version == live_seen_) return;
-    live_seen_ = live_->version;
-    model_.losses = live_->losses;
-    model_.cost = cost_of(live_->use - live_->use_before);
-    refresh_targets();
-    if (live_->gate) {
-        model_.gate = *std::exchange(live_->gate, std::nullopt);
-        if (model_.gate.warns) toast(model_.gate.verdict);
-    }
-    const bool more =
-        live_->snapshots.size() != snapshots_.size() ||
-        (!snapshots_.empty() && live_->snapshots.back().iteration != snapshots_.back().iteration);
-    if (!more) return;
-    untint();
-    newest_set_ = live_->newest;
-    take_snapshots(live_->snapshots);
-}
-
-void Application::refresh_document() {
-    model_.document = document_.empty() ? nullptr : &document_;
-    model_.scene_path = scene_path_;
-    model_.project_path = project_path_;
-    model_.suggested_project = document_.empty() ? std::string() : default_project_path().string();
-    model_.unsaved = unsaved();
-    model_.cannot_edit = document_.empty() ? "Open a scene first."
-                         : work_.running() ? "A job is running."
-                         : pending_        ? "Apply or discard the edit first."
-                                           : "";
-    if (document_.empty()) return;
-    if (document_seen_ != document_.revision()) {
-        document_seen_ = document_.revision();
-        ++content_;
-        if (!(up_shown_ == document_.state().info.up)) stand_up();
-        refresh_words();
-        model_.labelled = active_label() ? count_labelled(*active_label()) : 0;
-        if (!hidden_.empty()) hidden_changed();
-    }
-    refresh_reach();
-    count_anew();
-    refresh_picked();
-    if (adjusted_ && adjusted_->revision != document_.revision()) adjusted_.reset();
-    model_.adjusting = adjusted_.has_value();
-    if (seconds_since(last_estimate_) > 0.5) {
-        last_estimate_ = Clock::now();
-        refresh_estimate();
-    }
-}
-
-/// What the Scene panel tells is counted beside the frames: large scenes take a while.
-void Application::count_anew() {
-    const auto& current = document_.state().current;
-    if (counted_.shares_all_with(current)) return;
-    auto statistics = std::make_shared<SceneStatistics>();
-    auto done = [this, statistics, opened = opened_](const Error*) {
-        if (opened == opened_) model_.statistics = *statistics;
-    };
-    if (counter_.start(
-            {"Count",
-             [statistics, set = current](const JobControl&) { *statistics = compute_statistics(set); },
-             done}))
-        counted_ = current;  // else once the last count has ended, whose news wake the window
-}
-
-void Application::refresh_log() {
-    const auto box = std::static_pointer_cast<LogBox>(log_source_);
-    const std::lock_guard lock(box->mutex);
-    for (auto& line : box->lines) {
-        if (line.level == log::Level::Warning) toast(line.text);
-        model_.log.push_back(std::move(line));
-    }
-    box->lines.clear();
-    if (model_.log.size() > MostLogLines)
-        model_.log.erase(model_.log.begin(), model_.log.end() - static_cast<std::ptrdiff_t>(MostLogLines));
-}
-
-void Application::toast(std::string text, bool is_error, std::string button, std::function<void()> action) {
-    // The same news again, or told at more length: one of them is enough.
-    std::erase_if(toasts_,
-                  [&](const ToastState& old) { return text.find(old.toast.text) != std::string::npos; });
-    if (std::any_of(toasts_.begin(), toasts_.end(),
-                    [&](auto& old) { return old.toast.text.find(text) != std::string::npos; }))
-        return;
-    if (toasts_.size() >= MostToasts) toasts_.erase(toasts_.begin());
-    toasts_.push_back({{std::move(text), is_error, 0, std::move(button)}, Clock::now(), std::move(action)});
-}
-
-/// Says what the last step did, with a button that takes it back as long as nothing came after it.
-void Application::toast_step(std::string text) {
-    toast(std::move(text), false, "Undo", [this, revision = document_.revision()] {
-        if (document_.revision() == revision) return undo();
-        toast("More was done since: History leads back to any step.");
-    });
-}
-
-void Application::report_error(const Error& error) {
-    toast(error.what(), true);
-    model_.log.push_back(
-        {log::Level::Error, fmt::format("{:%H:%M:%S}", fmt::localtime(std::time(nullptr))), error.what()});
-}
-
-void Application::refresh_toasts() {
-    std::erase_if(toasts_, [](const ToastState& state) {
-        const auto& toast = state.toast;
-        return seconds_since(state.born) > (toast.is_error         ? ErrorToastSeconds
-                                            : toast.button.empty() ? ToastSeconds
-                                                                   : ButtonToastSeconds);
-    });
-    model_.toasts.clear();
-    for (auto& state : toasts_) {
-        state.toast.age_seconds = seconds_since(state.born);
-        model_.toasts.push_back(state.toast);
-    }
-}
-
-void Application::dismiss_toast(std::size_t index) {
-    if (index < toasts_.size()) toasts_.erase(toasts_.begin() + static_cast<std::ptrdiff_t>(index));
-}
-
-void Application::press_toast(std::size_t index) {
-    if (index >= toasts_.size()) return;
-    const auto action = toasts_[index].action;
-    dismiss_toast(index);
-    if (action) action();
-}
-
-void Application::ask(std::string title, std::string text, std::vector<AskedAnswer> answers) {
-    model_.question = {model_.question.number + 1, std::move(title), std::move(text), {}};
-    answers_.clear();
-    for (auto& [answer, act] : answers) {
-        model_.question.answers.push_back(std::move(answer));
-        answers_.push_back(std::move(act));
-    }
-}
-
-void Application::answer(std::size_t index) {
-    const auto answers = std::exchange(answers_, {});
-    if (index < answers.size() && answers[index]) answers[index]();
-}
-
-void Application::cancel_file_job() { files_.cancel(); }
-
-void Application::set_request(const edit::EditRequest& request) {
-    const bool told_else = request.source != model_.request.source || request.prompt != model_.request.prompt;
-    model_.request = request;
-    if (told_else) model_.request.left_out.clear();  // they were views of another search
-    // A word that was clicked in another sentence is no target of this one.
-    auto& target = model_.request.target;
-    if (!target.empty() && !edit::has_word(request.prompt, target)) target.clear();
-    refresh_reading();
-}
-
-void Application::set_ui_scale(float scale) {
-    model_.ui_scale = chosen_scale_ = scale;
-    if (options_.on_scale) options_.on_scale(scale);
+void Application::shut_down() {
     save_settings();
+    files_.shut_down(quit_);
 }
 
-void Application::set_keymap(const std::string& text) {
-    model_.keymap = text;
-    save_settings();
-}
-
-void Application::toggle_fullscreen() {
-    if (options_.on_fullscreen) options_.on_fullscreen();
-}
+// Settings
 
 void Application::save_settings() {
+    workspace_.settings_changed = false;
     nlohmann::json json;
     json["ui_scale"] = chosen_scale_;
-    json["cache_mb"] = model_.cache_mb;
-    json["keys"] = model_.keymap;
-    json["model"] = model_path_;
-    json["loras"] = loras_;
-    json["segmenter"] = segmenter_path_;
-    json["text_segmenter"] = text_segmenter_path_;
-    for (const auto& [key, measured] : measured_) json["measured"][key] = fields_to_json(measured);
-    if (!layout_.empty()) json["layout"] = layout_;
-    json["view"] = lasting(fields_to_json(model_.view));
-    json["exports"] = lasting(fields_to_json(model_.exports));
+    json["keys"] = keymap_;
+    models_.settings_to_json(json);
+    costs_.settings_to_json(json);
+    if (!workspace_.layout.empty()) json["layout"] = workspace_.layout;
+    json["view"] = lasting(fields_to_json(view_.settings()));
+    json["exports"] = lasting(fields_to_json(exports_.settings()));
     gse::save_settings(json);
 }
 
 void Application::load_settings() {
     const auto json = gse::load_settings();
-    const auto number = [&](const char* key, double fallback) {
-        return json.contains(key) && json[key].is_number() ? json[key].get<double>() : fallback;
-    };
-    const auto text = [&](const char* key) {
-        return json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : std::string();
-    };
-    chosen_scale_ = static_cast<float>(std::clamp(number("ui_scale", 0), 0.0, 4.0));
-    model_.ui_scale = options_.ui_scale > 0 ? options_.ui_scale
-                      : chosen_scale_ > 0   ? chosen_scale_
-                                            : options_.desktop_scale;
-    if (json.contains("measured") && json["measured"].is_object())
-        for (const auto& [key, measured] : json["measured"].items()) {
-            try {
-                fields_from_json(measured_[key], measured);
-            } catch (const Error&) {  // of another version: it is measured anew
-                measured_.erase(key);
-            }
-        }
+    const auto& options = workspace_.options;
+    const bool scaled = json.contains("ui_scale") && json["ui_scale"].is_number();
+    chosen_scale_ = scaled ? std::clamp(json["ui_scale"].get<float>(), 0.0f, 4.0f) : 0.0f;
+    ui_scale_ = options.ui_scale > 0 ? options.ui_scale
+                : chosen_scale_ > 0  ? chosen_scale_
+                                     : options.desktop_scale;
+    keymap_ = text_of(json, "keys");
+    models_.settings_from_json(json);
+    costs_.settings_from_json(json);
     try {
-        if (json.contains("view")) fields_from_json(model_.view, lasting(json["view"]));
-        if (json.contains("exports")) fields_from_json(model_.exports, lasting(json["exports"]));
+        auto view = view_.settings();
+        auto exports = exports_.settings();
+        if (json.contains("view")) fields_from_json(view, lasting(json["view"]));
+        view_.set_settings(view);
+        if (json.contains("exports")) fields_from_json(exports, lasting(json["exports"]));
+        exports_.set_settings(exports);
     } catch (const std::exception& error) {  // of another version, or edited by hand
         log::warning("some settings of view and export cannot be used ({})", error.what());
     }
-    model_.cache_mb = static_cast<int>(cache_->most_bytes() >> 20);
-    model_.cache_bytes = cached_bytes(cache_->folder());
-    model_path_ = text("model");
-    loras_ = texts_of(json, "loras");
-    model_.segmenters = {ui::SegmenterView{segmenter_path_ = text("segmenter")},
-                         ui::SegmenterView{text_segmenter_path_ = text("text_segmenter")}};
-    model_.keymap = text("keys");
-    layout_ = text("layout");
-    layout_loaded_ = !layout_.empty();
+    workspace_.layout = text_of(json, "layout");
+    workspace_.layout_loaded = !workspace_.layout.empty();
+}
+
+// Commands of the window itself
+
+template <> void Application::on(const command::ToggleFullscreen&) {
+    if (workspace_.options.on_fullscreen) workspace_.options.on_fullscreen();
+}
+
+template <> void Application::on(const command::SetUiScale& one) {
+    ui_scale_ = chosen_scale_ = one.scale;
+    if (workspace_.options.on_scale) workspace_.options.on_scale(one.scale);
+    workspace_.settings_changed = true;
+}
+
+template <> void Application::on(const command::SetKeymap& one) {
+    keymap_ = one.text;
+    workspace_.settings_changed = true;
+}
+
+template <> void Application::on(const command::Quit&) { quit_ = true; }
+
+void Application::run_window(const ui::WindowCommand& command) {
+    std::visit([this](const auto& one) { on(one); }, command);
 }
 
 }  // namespace gse::app

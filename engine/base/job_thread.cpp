@@ -20,22 +20,18 @@ void MainQueue::set_wake(std::function<void()> wake) {
 }
 
 void MainQueue::post(std::function<void()> closure) {
+    closures_.push(std::move(closure));
     std::function<void()> wake;
     {
         const std::lock_guard lock(mutex_);
-        closures_.push_back(std::move(closure));
         wake = wake_;
     }
     if (wake) wake();
 }
 
 std::size_t MainQueue::run() {
-    std::deque<std::function<void()>> ready;
-    {
-        const std::lock_guard lock(mutex_);
-        ready.swap(closures_);
-    }
-    for (auto& closure : ready) closure();
+    const auto ready = closures_.take();
+    for (const auto& closure : ready) closure();
     return ready.size();
 }
 

@@ -4,7 +4,6 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
-#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -12,7 +11,9 @@
 #include <thread>
 
 #include "engine/base/error.h"
+#include "engine/base/job_status.h"
 #include "engine/base/progress.h"
+#include "engine/base/shared_queue.h"
 
 namespace gse {
 
@@ -26,18 +27,9 @@ public:
     std::size_t run();
 
 private:
-    std::mutex mutex_;
-    std::deque<std::function<void()>> closures_;
+    SharedQueue<std::function<void()>> closures_;
+    std::mutex mutex_;  // of wake_
     std::function<void()> wake_;
-};
-
-/// Progress of a job, as a frame shows it.
-struct JobStatus {
-    bool running = false, paused = false, can_pause = false;
-    std::string title, stage, outcome, error;
-    int step = 0, total = 0;
-    double seconds = 0;       // without pauses
-    double eta_seconds = -1;  // of the stage; negative = unknown
 };
 
 /// Thread of its own for jobs of one kind.

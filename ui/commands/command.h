@@ -295,12 +295,13 @@ struct Quit {};
 using FileCommand = std::variant<command::Open, command::OpenSample, command::SaveProject, command::LeaveEdit,
                                  command::Recover, command::DiscardRecovery, command::PostponeRecovery,
                                  command::SetUpAxis, command::RepairScene, command::CancelFileJob>;
-using EditCommand =
-    std::variant<command::SetRequest, command::Locate, command::LabelAnyway, command::Edit, command::Pause,
-                 command::Cancel, command::OrderTarget, command::FitToTargets, command::ApplyResult,
-                 command::DiscardResult, command::AnotherResult, command::ShowResult, command::ShowSnapshot,
-                 command::TakeSnapshot, command::BranchFromSnapshot, command::SetAttentionThreshold,
+using SearchCommand =
+    std::variant<command::SetRequest, command::Locate, command::LabelAnyway, command::SetAttentionThreshold,
                  command::LeaveOutView, command::SetReach, command::RepeatEdit>;
+using EditCommand =
+    std::variant<command::Edit, command::Pause, command::Cancel, command::OrderTarget, command::FitToTargets,
+                 command::ApplyResult, command::DiscardResult, command::AnotherResult, command::ShowResult,
+                 command::ShowSnapshot, command::TakeSnapshot, command::BranchFromSnapshot>;
 using LabelCommand =
     std::variant<command::SetLabelThreshold, command::SetActiveLabel, command::AddLabel, command::RenameLabel,
                  command::DeleteLabel, command::Select, command::CutOut, command::GrowLabel,
@@ -318,13 +319,13 @@ using ModelCommand =
 using ExportCommand = std::variant<command::SetExports, command::ExportPicture, command::ExportTurntable,
                                    command::ExportScene, command::ExportViewpoints, command::AddCameraKey,
                                    command::DeleteCameraKey, command::ExportCameraPath>;
+using NoticeCommand = std::variant<command::Answer, command::DismissToast, command::PressToast>;
 using WindowCommand =
-    std::variant<command::Answer, command::DismissToast, command::PressToast, command::ToggleFullscreen,
-                 command::SetUiScale, command::SetKeymap, command::Quit>;
+    std::variant<command::ToggleFullscreen, command::SetUiScale, command::SetKeymap, command::Quit>;
 
 /// A command; each alternative is the list of one controller.
-using Command = std::variant<FileCommand, EditCommand, LabelCommand, ViewCommand, ModelCommand, ExportCommand,
-                             WindowCommand>;
+using Command = std::variant<FileCommand, SearchCommand, EditCommand, LabelCommand, ViewCommand, ModelCommand,
+                             ExportCommand, NoticeCommand, WindowCommand>;
 
 /// Commands of a frame in their order, kept until the frame is drawn: nothing that panels read changes
 /// under their hands.

@@ -7,12 +7,8 @@
 #include <cmath>
 
 #include "engine/io/cameras/cameras.h"
-<<<<<<< HEAD
 #include "engine/io/formats/scene_formats.h"
-#include "ui/commands.h"
-=======
 #include "ui/commands/guarded.h"
->>>>>>> 1a362a2 (ui: commands in, a list of values per frame; Actions and DeferredActions go; the sentence's facts follow the method)
 #include "ui/panels/panels.h"
 #include "ui/state.h"
 #include "ui/widgets/controls.h"
@@ -259,12 +255,10 @@ void draw_viewpoints(Context& context) {
     const std::size_t count = context.scene_open() ? context.document().views.size() : 0;
     if (why.empty() && count == 0) why = "The scene has no viewpoints: add some in the Views panel";
     const bool nerfstudio = names_transforms(path_of(context.exports.viewpoints_path));
-    say(why,
-        fmt::format(
-            "Writes {} viewpoint{} as {}.", count, count == 1 ? "" : "s",
-            nerfstudio
-                ? "nerfstudio's transforms.json"
-                : "the cameras.json of 3DGS; a name that begins with transforms gives nerfstudio's form"));
+    say(why, fmt::format("Writes {} viewpoint{} as {}.", count, count == 1 ? "" : "s",
+                         nerfstudio ? "nerfstudio's transforms.json"
+                                    : "the cameras.json of 3DGS; a name that begins with transforms "
+                                      "gives nerfstudio's form"));
     if (button(context, {.name = "export.viewpoints", .text = "Save viewpoints", .why_off = why}))
         context.emit(command::ExportViewpoints{});
 }

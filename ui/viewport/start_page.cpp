@@ -4,12 +4,8 @@
 
 #include <algorithm>
 
-<<<<<<< HEAD
 #include "engine/io/formats/scene_formats.h"
-#include "ui/commands.h"
-=======
 #include "ui/commands/guarded.h"
->>>>>>> 1a362a2 (ui: commands in, a list of values per frame; Actions and DeferredActions go; the sentence's facts follow the method)
 #include "ui/glyphs.h"
 #include "ui/state.h"
 #include "ui/viewport/viewport.h"
@@ -129,7 +125,8 @@ void draw_start_page(Context& context) {
     draw_recent(context);
     if (context.model.recent.empty())
         dim_text(
-            "Then: type what to change on the right, press Locate, correct the label, press Edit. F1 lists "
+            "Then: type what to change on the right, press Locate, correct the label, press Edit. F1 "
+            "lists "
             "the keys.");
     ImGui::EndChild();
 }

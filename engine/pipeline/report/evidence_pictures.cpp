@@ -54,27 +54,4 @@ SeenView seen_view(const View& view, const edit::ViewEvidence& evidence) {
     return refreshed(std::move(shown), evidence);
 }
 
-void ArrivingViews::add(const View& view, std::size_t index, std::size_t count,
-                        const edit::ViewEvidence& evidence) {
-    SeenView seen = seen_view(view, evidence);  // before others have to wait
-    const std::lock_guard lock(mutex_);
-    const bool same_place =
-        index < views_.size() &&
-        (views_[index].render == nullptr || views_[index].camera.translation == view.camera.translation);
-    if (views_.size() != count || !same_place) {
-        views_.clear();
-        views_.resize(count);
-    }
-    views_[index] = std::move(seen);
-    news_ = true;
-}
-
-bool ArrivingViews::take(std::vector<SeenView>& views) {
-    const std::lock_guard lock(mutex_);
-    if (!news_) return false;
-    news_ = false;
-    views = views_;
-    return true;
-}
-
 }  // namespace gse::pipeline

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
@@ -38,20 +37,5 @@ struct SeenView {
 SeenView seen_view(const View& view, const edit::ViewEvidence& evidence);
 /// The same view after another threshold: what was rendered and attended stays as it is on the screen.
 SeenView refreshed(SeenView shown, const edit::ViewEvidence& evidence);
-
-/// Views of a search that is under way: filled by the threads that look, taken by the one that shows.
-class ArrivingViews {
-public:
-    /// A view of a search from `count` of them; one from another place than the one of that number before
-    /// begins a new search.
-    void add(const View& view, std::size_t index, std::size_t count, const edit::ViewEvidence& evidence);
-    /// True when something came since it was last asked; `views` is then what there is, with gaps.
-    bool take(std::vector<SeenView>& views);
-
-private:
-    std::mutex mutex_;
-    std::vector<SeenView> views_;
-    bool news_ = false;
-};
 
 }  // namespace gse::pipeline

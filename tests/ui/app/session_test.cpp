@@ -534,13 +534,8 @@ DOCTEST_TEST_CASE("pictures, films, scenes and camera paths are written; mistake
     exports.film_path = (place.folder / "turn").string();
     exports.scene_path = (place.folder / "out.spz").string();
     exports.camera_path_path = (place.folder / "path.json").string();
-<<<<<<< HEAD
     exports.format_choices["spz_version"] = 4;
-    session.app.set_exports(exports);
-=======
-    exports.spz_version = 4;
     session.app.run(command::SetExports{exports});
->>>>>>> 1a362a2 (ui: commands in, a list of values per frame; Actions and DeferredActions go; the sentence's facts follow the method)
     session.app.update(session.preview);
     session.app.run(command::ExportPicture{});
     DOCTEST_REQUIRE(session.idle());

@@ -305,12 +305,13 @@ void FakeApplication::make_rest() {
          "Stable Diffusion XL", 6900000000u, false,
          "SDXL is not supported; use a Stable Diffusion 1.x or 2.x model.", false}};
     using log::Level;
-    model_.log = {
+    log_ = {
         {Level::Info, "14:01:12", "opened /home/mira/scenes/bear/scene.ply: 6 000 splats in 0.04 s"},
         {Level::Warning, "14:01:12", "the file does not state an up axis; -y is taken, as in COLMAP worlds"},
         {Level::Info, "14:02:07", "autosaved to /home/mira/scenes/.bear.gsep.autosave"},
         {Level::Error, "14:03:20", "could not write /mnt/full/turn.mp4: no space is left on the device"},
         {Level::Debug, "14:03:21", "preview: 6000 splats, 3412 pairs"}};
+    model_.log = log_;
     model_.toasts = {{"Up axis guessed from 24 cameras", false, 1, "Flip"}};
     model_.camera_keys = {{0, {}}, {1, {}}};
 }

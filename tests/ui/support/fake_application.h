@@ -71,6 +71,7 @@ private:
     void make_rest();
 
     ui::ViewModel model_;
+    std::vector<ui::LogLine> log_;
     std::unique_ptr<Document> document_;
     struct Renderer;
     std::unique_ptr<Renderer> renderer_;

@@ -272,13 +272,8 @@ DOCTEST_TEST_CASE("views, export, scene, models, settings") {
     DOCTEST_CHECK(harness.asks("export.scene", "export_scene"));
     harness.application.model().exports.scene_path = "out.spz";
     harness.frame(2);
-<<<<<<< HEAD
-    DOCTEST_CHECK(asks(harness, "export.spz_version.4", "set_exports"));
-    DOCTEST_CHECK(harness.application.model().exports.format_choices["spz_version"] == 4);
-=======
     DOCTEST_CHECK(harness.asks("export.spz_version.4", "set_exports"));
-    DOCTEST_CHECK(harness.application.model().exports.spz_version == 4);
->>>>>>> 1a362a2 (ui: commands in, a list of values per frame; Actions and DeferredActions go; the sentence's facts follow the method)
+    DOCTEST_CHECK(harness.application.model().exports.format_choices["spz_version"] == 4);
     harness.application.model().exports.film_path = "film.avi";
     harness.application.model().exports.picture_path.clear();
     harness.frame(2);

@@ -1,0 +1,38 @@
+// What work took with each model on this machine, and what the next edit will take.
+#pragma once
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "app/session/model_controller.h"
+#include "app/session/state/estimate.h"
+#include "app/session/workspace.h"
+
+namespace gse::app {
+
+class CostBook {
+public:
+    CostBook(Workspace& workspace, const ModelController& models) : workspace_(workspace), models_(models) {}
+
+    /// Profiles are kept by model, its parts and the size of pictures.
+    std::string key(const edit::EditRequest& request) const;
+    CostProfile profile(const edit::EditRequest& request) const;
+    /// Takes what a job measured; the rest stays.
+    void remember(const std::string& key, const CostProfile& measured);
+    PlannedMemory memory() const;
+
+    void estimate(const edit::EditRequest& request, const PlannedWork& work);
+    void show(ui::ViewModel& model) const { model.estimate = estimate_; }
+
+    void settings_to_json(nlohmann::json& json) const;
+    void settings_from_json(const nlohmann::json& json);
+
+private:
+    Workspace& workspace_;
+    const ModelController& models_;
+    std::map<std::string, CostProfile> profiles_;
+    ui::Estimate estimate_;
+};
+
+}  // namespace gse::app

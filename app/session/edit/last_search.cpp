@@ -1,0 +1,104 @@
+// The last search: its job, and its evidence as the window shows it.
+#include "app/session/edit/last_search.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+#include "engine/pipeline/run/recipe.h"
+#include "engine/pipeline/run/views.h"
+
+namespace gse::app {
+
+void LastSearch::remember(std::shared_ptr<EditJob> job, const EditRecipe& recipe) {
+    job_ = std::move(job);
+    splats_ = job_->scene().gaussians;
+    words_ = job_->recipe().request;
+    target_read_ = job_->target_read();
+    tuning_key_ = pipeline::tuning_key(job_->recipe());
+    tuned_ = job_->tuned();
+    EditRecipe searched = recipe;
+    searched.request.target = words_.target;
+    key_ = search_key(searched);
+}
+
+void LastSearch::forget() {
+    job_.reset();
+    splats_ = {};
+    words_ = {};
+    target_read_ = false;
+    tuning_key_.clear();
+    key_.clear();
+    tuned_.reset();
+    views_.clear();
+    const auto searches = std::exchange(outcome_, {}).number;
+    outcome_.number = searches;
+    attention_.reset();
+}
+
+void LastSearch::take_attention(const GaussianSet& splats, std::vector<float> attention) {
+    attention_ = std::make_shared<const std::vector<float>>(std::move(attention));
+    attention_of_ = splats;
+    views_.clear();
+}
+
+/// What was rendered and attended stays as it is on the screen where only the threshold is another.
+void LastSearch::show_evidence(const EditJob& job) {
+    const auto& located = job.located();
+    const bool again = views_.size() == located.views.size();
+    std::vector<ui::AttentionView> views;
+    for (std::size_t v = 0; v < located.views.size(); ++v)
+        views.push_back(again ? refreshed(views_[v], located.views[v])
+                              : seen_view(job.views()[v], located.views[v]));
+    views_ = std::move(views);
+    word_ = located.word;
+    mode_ = fmt::format("{}: {}", edit::mode_name(located.mode), located.reason);
+    outcome_ = {outcome_.number + 1, located.confidence, located.problem, located.message, located.remedy, {},
+                located.on_ground};
+    if (const auto front = job.front_read())
+        outcome_.front = std::fmod(std::round(*front / pipeline::Degree) + 360, 360);
+    threshold_ = job.attention_threshold();
+    arriving_ = false;
+    voted_with_ = job.recipe().request;
+}
+
+bool LastSearch::take_arriving(ArrivingViews& arriving, bool working) {
+    if (arriving.take(views_)) arriving_ = true;
+    if (!arriving_ || working) return false;
+    arriving_ = false;
+    views_.clear();
+    if (job_) show_evidence(*job_);
+    return job_ != nullptr;
+}
+
+std::string LastSearch::read_target(const edit::EditRequest& request) const {
+    const bool same = target_read_ && edit::as_told(words_.source) == edit::as_told(request.source) &&
+                      edit::as_told(words_.prompt) == edit::as_told(request.prompt);
+    return same ? words_.target : std::string();
+}
+
+std::optional<neural::TunedModel> LastSearch::tuning(const EditRecipe& recipe) const {
+    const bool same = recipe.use_dreambooth && tuning_key_ == pipeline::tuning_key(recipe);
+    return same ? tuned_ : std::nullopt;
+}
+
+RowValues LastSearch::attention_of(const GaussianSet& splats) const {
+    return attention_ && attention_of_.shares_all_with(splats) ? attention_ : nullptr;
+}
+
+void LastSearch::leave_out(std::size_t view, bool out) {
+    views_[view].failed = out;
+    views_[view].step = out ? edit::ViewStep::LeftOut : edit::ViewStep::Found;
+}
+
+void LastSearch::show(ui::ViewModel& model) const {
+    model.attention = views_;
+    model.attention_word = word_;
+    model.attention_mode = mode_;
+    model.attention_threshold = threshold_;
+    model.attention_arriving = arriving_;
+    model.search = outcome_;
+}
+
+}  // namespace gse::app

@@ -1,0 +1,379 @@
+// Edits and their results: what runs, its states, and what waits to be applied or discarded.
+#include "app/session/edit_controller.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/base/error.h"
+#include "engine/pipeline/models/neural_loader.h"
+#include "engine/scene/stack_edits.h"
+
+namespace gse::app {
+namespace {
+
+namespace command = ui::command;
+
+constexpr std::uint64_t WaitingEdit = std::uint64_t{1} << 63, RunningEdit = std::uint64_t{1} << 62;
+
+}  // namespace
+
+// Runs
+
+template <> void EditController::on(const command::Edit&) {
+    if (!workspace_.require_scene() || workspace_.jobs->works()) return;
+    if (workspace_.results) return workspace_.notices.toast("Apply or discard the last edit first.");
+    snapshots_.forget();
+    view_.forget_tint();
+    live_.losses.clear();
+    search_.choose_for_source();  // another source is another matter
+    start(std::nullopt);
+}
+
+void EditController::start(std::optional<edit::EditSnapshot> from) {
+    search_.begin_edit();
+    view_.compare_as_usual();
+    EditRecipe recipe = search_.recipe();
+    try {
+        recipe.request = edit::validated(recipe.request);
+    } catch (const Error& error) { return workspace_.notices.report(error); }
+    const auto run = search_.begin_run();
+    run->job = search_.fitting_job();
+    take_known_parts(run->measured, costs_.profile(search_.request()));
+    recipe_ = recipe;
+    EditStart start;
+    if (search_.label_drives_edit()) start.label = *workspace_.active_label()->bits;
+    start.shows_preview = models_.settings().gate && !from && !edit::edits_by_views(recipe.request);
+    start.reviews = models_.settings().review;
+    LiveEdit live;
+    live.describe(recipe);
+    live.losses = std::move(live_.losses);
+    if (from) live.gate = std::move(live_.gate);
+    start.snapshot = std::move(from);
+    live_ = std::move(live);
+    snapshots_.begin(workspace_.document.state().current);
+    auto pending = std::make_shared<PendingResult>();
+    auto work = [run, recipe, start, pending, roads = live_.roads, open = search_.open_recipe(recipe),
+                 ground = search_.ground(recipe), cache = models_.cache()](const JobControl& control) {
+        const auto before = network_use();
+        load_model(*run, recipe.job, cache, control);
+        const PeakMemory peak;
+        if (run->job) {
+            run->job->set_control(control);
+            run->job->take_settings(recipe, start.label.empty());
+            if (!run->job->found() && !start.label.empty()) run->job->use_label(start.label);
+        } else {
+            run->job = std::make_shared<EditJob>(open, ground.input(*run, start.label), control);
+            look(*run);
+        }
+        run_edit(*run, start, before, *roads, *pending, peak);
+        throw_what_ended(run->job->result());
+    };
+    auto done = [this, run, pending, cost_key = costs_.key(search_.request()),
+                 ticket = models_.ticket()](const Error* error) {
+        models_.take_back(ticket, run->model, run->loaded, error);
+        costs_.remember(cost_key, run->measured);
+        refresh();  // what was found last, and the last steps
+        if (branch_) return go_on_from_branch();
+        if (pending->set.size() > 0)
+            workspace_.results.add(std::move(*pending));  // also what a shortage or a failure left
+        workspace_.results.come_back();
+        end(error);
+    };
+    workspace_.jobs->start_work(JobKind::Edit,
+                                {fmt::format("Edit: {}", recipe.request.prompt), work, done, true});
+}
+
+void EditController::end(const Error* error) {
+    ++workspace_.content;
+    const auto& job = search_.last().job();
+    const bool said = job && !job->found();  // with its evidence
+    if (error != nullptr && !said) workspace_.report_end(*error);
+    if (workspace_.results) view_.untint();
+}
+
+void EditController::correct_label(const std::vector<std::uint8_t>& bits) {
+    if (live_.adds) workspace_.notices.toast(AddsElsewhere);
+    else live_.roads->label.put(bits);
+}
+
+// News of the running edit
+
+template <> void EditController::take(edit_news::Located&& news) {
+    live_.adds = news.adds;
+    live_.renamed = std::move(news.renamed);
+}
+
+template <> void EditController::take(edit_news::Found&& news) {
+    search_.take_found(news.job, std::move(news.attention), recipe_, news.relabel);
+    recipe_.request.target = search_.last().words().target;
+    live_.describe(recipe_);
+}
+
+template <> void EditController::take(edit_news::Preview&& news) {
+    live_.gate = std::move(news.gate);
+    if (live_.gate.warns) workspace_.notices.toast(live_.gate.verdict);
+}
+
+template <> void EditController::take(edit_news::Targets&& news) { live_.take(news); }
+
+template <> void EditController::take(edit_news::OrdersTaken&&) { live_.orders.clear(); }
+
+template <> void EditController::take(edit_news::State&& news) {
+    view_.untint();
+    snapshots_.add(std::move(news.snapshot), std::move(news.set));
+    ++workspace_.content;
+}
+
+template <> void EditController::take(edit_news::Step&& news) { live_.losses.push_back(news.point); }
+
+template <> void EditController::take(edit_news::Use&& news) { workspace_.cost = cost_of(news.use); }
+
+void EditController::refresh() {
+    for (auto& news : live_.roads->news.take())
+        std::visit([this](auto&& one) { take(std::move(one)); }, std::move(news));
+}
+
+// States
+
+/// The snapshot of that iteration, else the last before it; null (and said) where it cannot be used.
+const edit::EditSnapshot* EditController::usable_snapshot(int iteration) {
+    const auto* snapshot = snapshots_.at_or_before(iteration);
+    if (snapshot == nullptr) return nullptr;
+    const auto& document = workspace_.document;
+    if (!document.empty() && snapshots_.base().shares_all_with(document.state().current)) return snapshot;
+    workspace_.notices.toast("The scene was changed since; the snapshots do not fit it any more.");
+    return nullptr;
+}
+
+template <> void EditController::on(const command::ShowSnapshot& one) {
+    snapshots_.look_at(one.index, workspace_.results.has_value());
+    ++workspace_.content;
+}
+
+template <> void EditController::on(const command::TakeSnapshot& one) {
+    auto& results = workspace_.results;
+    if (results && !results.shows_last())
+        return workspace_.notices.toast("Those states are of the last result: show that one first.");
+    const auto* snapshot = results && !workspace_.jobs->works() ? usable_snapshot(one.iteration) : nullptr;
+    if (snapshot == nullptr) return;
+    results->set = snapshots_.set_of(*snapshot);
+    results->base_to_new = std::make_shared<const std::vector<std::int64_t>>(snapshot->base_to_new());
+    results->name = fmt::format("{} (iteration {})", search_.request().prompt, snapshot->iteration);
+    snapshots_.look_at_newest();
+    ++workspace_.content;
+    workspace_.notices.toast(
+        fmt::format("The state of iteration {} is the result now. Apply keeps it.", snapshot->iteration));
+}
+
+template <> void EditController::on(const command::BranchFromSnapshot& one) {
+    if (workspace_.jobs->works() && !runs())
+        return workspace_.notices.toast("An edit can go on when the job is done.");
+    const auto* snapshot = usable_snapshot(one.iteration);
+    if (snapshot == nullptr) return;
+    if (const int steps = edit::planned_steps(search_.recipe().request); steps <= snapshot->iteration)
+        return workspace_.notices.toast(fmt::format(
+            "The edit has {} iterations: set more than {} to go on from there.", steps, snapshot->iteration));
+    branch_ = *snapshot;
+    if (workspace_.jobs->works())
+        workspace_.jobs->work.cancel();  // it ends after its step; then the branch begins
+    else go_on_from_branch();
+}
+
+void EditController::go_on_from_branch() {
+    const edit::EditSnapshot from = *std::exchange(branch_, std::nullopt);
+    workspace_.results.reset();
+    ++workspace_.content;
+    snapshots_.drop_after(from.iteration);
+    std::erase_if(live_.losses, [&](const auto& point) { return point.iteration >= from.iteration; });
+    start(from);
+}
+
+// Results
+
+template <> void EditController::on(const command::ApplyResult&) {
+    auto& results = workspace_.results;
+    if (!results) return;
+    const auto& before = workspace_.document.state();
+    if (!before.current.shares_all_with(results->before))
+        return workspace_.notices.toast(
+            "The scene was changed since: undo that to apply the edit, or discard the edit.", true);
+    const PendingResult result = std::move(*results);
+    results.reset();
+    ++workspace_.content;
+    EditNode node = node_of(result);
+    node.id = workspace_.next_edit_id++;
+    node.delta = std::make_shared<const SceneDelta>(
+        make_delta(result.before, *before.row_ids, result.set, *result.base_to_new, node.id));
+    DocumentState state = with_result(before, std::move(node), result);
+    if (state.labels.size() > before.labels.size() || !result.renamed.to.empty()) search_.forget_choice();
+    workspace_.document.apply(fmt::format("Edit: {}", result.name), std::move(state));
+    workspace_.toast_step(fmt::format("The edit \"{}\" is kept.", result.name));
+    search_.forget_target();  // it is done: the next sentence has news of its own
+    view_.tint(false);        // what was made is to be seen, not where
+}
+
+void EditController::discard_result() {
+    workspace_.results.reset();
+    view_.tint_again();  // what is labelled can be seen again
+    ++workspace_.content;
+}
+
+template <> void EditController::on(const command::DiscardResult&) { discard_result(); }
+
+template <> void EditController::on(const command::AnotherResult&) {
+    auto& results = workspace_.results;
+    if (!results || workspace_.jobs->works()) return;
+    search_.set_seed(results.next_seed());
+    results.set_aside();
+    const auto tint = view_.forget_tint();  // as before the first of them
+    on(command::Edit{});
+    view_.keep_tint(tint);
+    if (!workspace_.jobs->works()) results.come_back();
+}
+
+template <> void EditController::on(const command::ShowResult& one) {
+    auto& results = workspace_.results;
+    if (!results) return;
+    results.show(one.index);
+    search_.set_seed(results->seed);
+    snapshots_.look_at_newest();
+    ++workspace_.content;
+}
+
+void EditController::take_document(std::optional<PendingResult> pending) {
+    workspace_.results.reset(std::move(pending));
+    if (workspace_.results) workspace_.results->before = workspace_.document.state().current;
+    snapshots_.forget();
+    snapshots_.look_at_newest();
+    live_.losses.clear();
+}
+
+// Frames
+
+bool EditController::shows_states() const {
+    return (runs() || workspace_.results) && !snapshots_.empty();  // a search has none
+}
+
+Stage EditController::stage() {
+    const auto& state = workspace_.document.state();
+    const auto& results = workspace_.results;
+    Stage stage;
+    stage.result = results.shown();
+    stage.attention = search_.attention();
+    const bool live = shows_states();
+    stage.before = live || results ? state.current : state.base;
+    const auto* looked_at = live ? snapshots_.shown() : nullptr;
+    if (looked_at == nullptr && results) {
+        stage.set = results->set;
+        stage.base_to_new = results->base_to_new;
+        return stage;
+    }
+    stage.snapshot = live ? (looked_at != nullptr ? looked_at : &snapshots_.newest()) : nullptr;
+    stage.set = stage.snapshot != nullptr ? snapshots_.set_of(*stage.snapshot) : state.current;
+    return stage;
+}
+
+std::string EditController::said_of_stage() const {
+    const auto* looked_at = snapshots_.shown();
+    if (shows_states() && (looked_at != nullptr || !workspace_.results))
+        return fmt::format(", as the edit was at iteration {}: it is not applied",
+                           (looked_at != nullptr ? *looked_at : snapshots_.newest()).iteration);
+    return workspace_.results ? ", with the edit that is not applied yet" : "";
+}
+
+void EditController::show(ui::ViewModel& model) const {
+    const auto& results = workspace_.results;
+    live_.show(model);
+    snapshots_.show(model);
+    model.cost = workspace_.cost;
+    model.edit_running = runs();
+    model.targets_wait &= model.edit_running;
+    model.result_waiting = results.has_value() && !workspace_.jobs->works();
+    model.result_splats = results ? results->set.size() : 0;
+    model.result_changed_outside = results ? results->changed_outside_label : 0;
+    model.result_psnr_outside_db = results ? results->psnr_outside_db : 0;
+    model.result_seconds = results ? results->seconds : 0;
+    model.results.clear();
+    for (const auto& result : results.all()) model.results.push_back({result.thumbnail, result.seed});
+    model.shown_result = results.shown().value_or(0);
+}
+
+// The recovery folder
+
+std::uint64_t EditController::kept_number() const {
+    if (workspace_.results.kept() != nullptr) return WaitingEdit | workspace_.content;
+    if (!runs()) return 0;
+    return RunningEdit |
+           static_cast<std::uint64_t>(snapshots_.empty() ? 0 : snapshots_.newest().iteration + 1);
+}
+
+nlohmann::json EditController::kept_json() const {
+    if (kept_number() == 0) return {};
+    const auto* whole = workspace_.results.kept();  // also while another edit runs
+    const auto& renamed = whole ? whole->renamed : live_.renamed;
+    nlohmann::json json;
+    json["waits"] = whole != nullptr;
+    json["name"] = whole ? whole->name : live_.name;
+    json["target"] = whole ? whole->target : live_.target;
+    if (whole) json["seed"] = whole->seed;
+    json["iterations"] = live_.iterations;
+    json["id"] = whole || !snapshots_.empty() ? workspace_.next_edit_id : 0;
+    if (!live_.losses.empty()) json["iteration"] = live_.losses.back().iteration;
+    json["adds"] = whole ? whole->adds : live_.adds;
+    json["source"] = renamed.from;
+    json["becomes"] = renamed.to;
+    return json;
+}
+
+std::function<DocumentState()> EditController::kept_state() const {
+    const DocumentState state = workspace_.document.state();
+    const auto* whole = workspace_.results.kept();
+    if (!whole && (!runs() || snapshots_.empty())) return [state] { return state; };
+    GaussianSet after;
+    std::shared_ptr<const std::vector<std::int64_t>> rows;
+    std::optional<edit::EditSnapshot> snapshot;  // what waits to be applied goes before what ran
+    if (whole) after = whole->set, rows = whole->base_to_new;
+    else snapshot = snapshots_.newest();
+    if (snapshot && snapshots_.newest_set().of == snapshot->rows) after = snapshots_.newest_set().set;
+    EditNode node = whole ? node_of(*whole) : EditNode{};
+    node.id = workspace_.next_edit_id;
+    if (!whole) {
+        node.name = fmt::format("{} (interrupted at iteration {})", live_.name, snapshot->iteration);
+        node.recipe = live_.recipe;
+    }
+    return [state, after, rows, snapshot, node]() mutable {
+        if (snapshot) {
+            if (after.empty()) after = snapshot->materialise();
+            rows = std::make_shared<const std::vector<std::int64_t>>(snapshot->base_to_new());
+        }
+        if (rows->size() != state.current.size()) return state;
+        node.delta = std::make_shared<const SceneDelta>(
+            make_delta(state.current, *state.row_ids, after, *rows, node.id));
+        auto stack = state.stack;
+        stack.push_back(node);
+        return with_stack(state, std::move(stack));
+    };
+}
+
+// Commands
+
+template <> void EditController::on(const command::Pause& one) { workspace_.jobs->work.pause(one.paused); }
+
+template <> void EditController::on(const command::Cancel&) { workspace_.jobs->work.cancel(); }
+
+template <> void EditController::on(const command::OrderTarget& one) {
+    if (!runs())
+        return workspace_.notices.toast(
+            "The edit is over: branch from a snapshot to go on with other views.");
+    live_.order(one.order);
+}
+
+template <> void EditController::on(const command::FitToTargets&) { live_.fit(); }
+
+void EditController::run(const ui::EditCommand& command) {
+    std::visit([this](const auto& one) { on(one); }, command);
+}
+
+}  // namespace gse::app

@@ -1,0 +1,72 @@
+// Edits and their results: what runs, its states, and what waits to be applied or discarded.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/session/edit/cost_book.h"
+#include "app/session/edit/live_edit.h"
+#include "app/session/edit/snapshots.h"
+#include "app/session/model_controller.h"
+#include "app/session/search_controller.h"
+#include "app/session/stage.h"
+#include "app/session/view_controller.h"
+#include "app/session/workspace.h"
+
+namespace gse::app {
+
+class EditController {
+public:
+    EditController(Workspace& workspace, ViewController& view, ModelController& models, CostBook& costs,
+                   SearchController& search)
+        : workspace_(workspace), view_(view), models_(models), costs_(costs), search_(search) {}
+
+    void run(const ui::EditCommand& command);
+    /// Takes what the running edit told. Once per frame, and when it ends.
+    void refresh();
+    void show(ui::ViewModel& model) const;
+    /// Another document is open, with a result that waits to be applied where its work was kept.
+    void take_document(std::optional<PendingResult> pending);
+
+    bool runs() const { return workspace_.jobs->works_at(JobKind::Edit); }
+    void discard_result();
+    /// What the viewport shows: a state that is looked at, the result that waits, the newest state, else the
+    /// document.
+    Stage stage();
+    /// Hands a corrected label to the edit that runs; the loop takes it over before its next step.
+    void correct_label(const std::vector<std::uint8_t>& bits);
+    /// What an export writes where that is not what the document holds; empty = it is.
+    std::string said_of_stage() const;
+
+    // For the recovery folder
+    /// Another number for each state that would be kept; 0 = nothing runs or waits.
+    std::uint64_t kept_number() const;
+    nlohmann::json kept_json() const;
+    /// The document's state with what runs or waits on its stack, to be made on another thread.
+    std::function<DocumentState()> kept_state() const;
+
+private:
+    template <class C> void on(const C& command);
+    template <class N> void take(N&& news);
+    void start(std::optional<edit::EditSnapshot> from);
+    void end(const Error* error);
+    bool shows_states() const;
+    const edit::EditSnapshot* usable_snapshot(int iteration);
+    void go_on_from_branch();
+
+    Workspace& workspace_;
+    ViewController& view_;
+    ModelController& models_;
+    CostBook& costs_;
+    SearchController& search_;
+    LiveEdit live_;
+    EditRecipe recipe_;  // of the edit that runs
+    Snapshots snapshots_;
+    std::optional<edit::EditSnapshot> branch_;  // to go on from when the running edit has ended
+};
+
+}  // namespace gse::app

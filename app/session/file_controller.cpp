@@ -1,0 +1,398 @@
+// Files and recovery: opening, saving, recipes out of pictures, autosaves, and leaving a running edit.
+#include "app/session/file_controller.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <thread>
+#include <utility>
+
+#include "app/cli/engine_names.h"
+#include "engine/base/error.h"
+#include "engine/base/log.h"
+#include "engine/io/cameras/camera_json.h"
+#include "engine/io/cameras/cameras.h"
+#include "engine/io/files/user_files.h"
+#include "engine/pipeline/models/installed.h"
+#include "engine/pipeline/run/recipe.h"
+#include "engine/pipeline/run/scene_loading.h"
+#include "engine/pipeline/run/scene_tools.h"
+#include "engine/scene/stack_edits.h"
+
+namespace gse::app {
+namespace {
+
+namespace command = ui::command;
+
+constexpr const char* FilesBusy = "Another file is being read or written; wait for it.";
+constexpr int ThumbnailPx = 192;
+
+std::string clock_now() { return fmt::format("{:%H:%M}", fmt::localtime(std::time(nullptr))); }
+
+}  // namespace
+
+FileController::FileController(Workspace& workspace, const Parts& parts)
+    : workspace_(workspace), parts_(parts), recovery_(workspace), counter_(workspace) {
+    list_recent();
+    recovery_.list();
+}
+
+void FileController::list_recent() {
+    recent_.clear();
+    for (const auto& path : load_recent()) recent_.push_back(path.string());
+}
+
+// Opening
+
+template <> void FileController::on(const command::Open& one) { open(one.path); }
+
+template <> void FileController::on(const command::OpenSample&) {
+    open(assets_path() / "scenes/bear/scene.ply");
+}
+
+void FileController::open(const std::filesystem::path& path) {
+    if (workspace_.jobs->works()) return workspace_.notices.toast("Cancel the running job first.");
+    const auto absolute = std::filesystem::absolute(path).lexically_normal();
+    if (absolute.extension() == ".png") return open_recipe(absolute);
+    if (only_cameras(absolute)) return open_cameras(absolute);
+    start_reading(
+        fmt::format("Open {}", absolute.filename().string()),
+        [absolute](const JobControl& control) { return open_work(absolute, control); }, false);
+}
+
+template <> void FileController::on(const command::Recover& one) {
+    if (workspace_.jobs->works()) return workspace_.notices.toast("Cancel the running job first.");
+    start_reading(
+        "Recover",
+        [file = std::filesystem::path(one.project)](const JobControl& control) {
+            return recover_work(file, control);
+        },
+        true);
+}
+
+void FileController::start_reading(const std::string& title,
+                                   std::function<OpenedWork(const JobControl&)> read, bool recovers) {
+    auto opened = std::make_shared<OpenedWork>();
+    auto work = [opened, read = std::move(read)](const JobControl& control) { *opened = read(control); };
+    auto done = [this, opened, recovers](const Error* error) {
+        if (error != nullptr) recovery_.keep(false);  // what is open stays open
+        if (error != nullptr) return workspace_.report_end(*error);
+        if (opened->choices.size() > 1) return ask_which(opened->path, opened->choices);
+        const bool waits = opened->pending.has_value();
+        take(std::move(*opened));
+        if (recovers)
+            workspace_.notices.toast(
+                waits ? "The work is back, with the edit that was not applied. Save it to keep it."
+                      : "The work of the last session is back. Save it to keep it.");
+    };
+    if (workspace_.jobs->files.start({title, work, done})) return;
+    if (!recovers) recovery_.keep(false);
+    workspace_.notices.toast(FilesBusy);
+}
+
+void FileController::ask_which(const std::filesystem::path& folder,
+                               const std::vector<std::filesystem::path>& files) {
+    std::vector<AskedAnswer> answers;
+    for (const auto& file : files) {
+        std::error_code ignored;
+        const double megabytes = static_cast<double>(std::filesystem::file_size(file, ignored)) / 1e6;
+        answers.push_back({{file.filename().string(), fmt::format("{:.1f} MB", megabytes), false, true},
+                           [this, file] { open(file); }});
+    }
+    answers.push_back({{"Cancel"}, [this] { recovery_.keep(false); }});
+    workspace_.notices.ask("Which one is to be opened?",
+                           fmt::format("{} holds several scenes.", folder.string()), std::move(answers));
+}
+
+void FileController::take(OpenedWork opened) {
+    recovery_.let_go();
+    ++workspace_.opened;
+    kept_edit_ = {};
+    source_ = opened.data.source;
+    unknown_ = opened.data.unknown;
+    workspace_.scene_path = source_.path.string();
+    workspace_.project_path = opened.project_path.string();
+    workspace_.document = Document(std::move(opened.state));
+    const auto& state = workspace_.document.state();
+    for (const auto& node : state.stack)
+        workspace_.next_edit_id = std::max(workspace_.next_edit_id, node.id + 1);
+    parts_.search.take_document();
+    parts_.edits.take_document(std::move(opened.pending));
+    parts_.view.take_document();
+    parts_.labels.drop_picked();
+    parts_.exports.take_document();
+    counter_.take(state.current, opened.statistics);
+    if (opened.project) parts_from_json(opened.data.ui);
+    parts_.view.settle();
+    if (!opened.recovered) add_recent(opened.path);
+    list_recent();
+    const auto now = moment();
+    saved_ = opened.recovered ? std::nullopt : std::optional(Recovery::Moment{now.revision, 0, now.keys});
+    recovery_.begin(now, std::move(opened.recovered));
+    for (const auto& note : opened.notes) {
+        log::info("{}", note);
+        workspace_.notices.toast(note);
+    }
+}
+
+void FileController::open_recipe(const std::filesystem::path& picture) {
+    auto& notices = workspace_.notices;
+    try {
+        const auto json = read_recipe_json(picture);
+        const EditRecipe recipe = recipe_from_json(json, picture.parent_path());
+        const bool here =
+            !workspace_.document.empty() && std::filesystem::path(recipe.job.scene) == workspace_.scene_path;
+        // As the command line takes --recipe, but for the files that are open already.
+        parts_.search.set_request(recipe.request);
+        parts_.models.take_recipe(recipe);
+        if (here && json.contains("camera")) parts_.view.look_from(camera_from_json(json["camera"]));
+        notices.toast(here ? "The prompt, its settings and the camera come from the picture."
+                           : "The prompt and its settings come from the picture; it shows another scene, so "
+                             "the camera stays.");
+    } catch (const Error& error) { notices.report(error); } catch (const nlohmann::json::exception&) {
+        notices.report(Error(ErrorCode::Malformed, "the recipe in this picture cannot be read", "", picture));
+    }
+}
+
+/// Cameras without a scene are those of the scene that is open.
+void FileController::open_cameras(const std::filesystem::path& path) {
+    if (workspace_.document.empty())
+        return workspace_.notices.toast("These are cameras: open their scene first, then drop them on it.",
+                                        true);
+    auto found = std::make_shared<SceneCameras>();
+    auto work = [found, path, set = workspace_.document.state().current, scene = workspace_.scene_path](
+                    const JobControl&) { *found = cameras_of_scene(set, scene, path.string()); };
+    auto done = [this, found, opened = workspace_.opened,
+                 name = path.filename().string()](const Error* error) {
+        if (error != nullptr) return workspace_.notices.report(*error);
+        if (opened == workspace_.opened)  // else another scene meanwhile
+            take_cameras(name, std::move(found->views), found->notes);
+    };
+    if (!workspace_.jobs->files.start({fmt::format("Open {}", path.filename().string()), work, done}))
+        workspace_.notices.toast(FilesBusy);
+}
+
+void FileController::take_cameras(const std::string& name, std::vector<View> views,
+                                  const std::vector<std::string>& notes) {
+    if (views.empty())
+        return workspace_.notices.toast(
+            notes.empty() ? "There are no cameras in " + name + "." : notes.front(), true);
+    DocumentState state = workspace_.document.state();
+    const std::string note = guess_up(state.info, views);
+    state.views = std::move(views);
+    workspace_.notices.toast(fmt::format("The scene has the {} cameras of {} now.{}{}", state.views.size(),
+                                         name, note.empty() ? "" : " ", note));
+    workspace_.document.apply("Load cameras", std::move(state));
+}
+
+void FileController::parts_from_json(const nlohmann::json& json) {
+    try {  // a project of another version may miss any of these
+        parts_.view.from_json(json);
+        parts_.exports.from_json(json);
+        parts_.search.from_json(json);
+        parts_.models.from_json(json);
+        if (json.contains("layout")) {
+            workspace_.layout = json["layout"].get<std::string>();
+            workspace_.layout_loaded = true;
+        }
+    } catch (const std::exception& error) {
+        log::warning("some of the window's settings in the project cannot be used ({})", error.what());
+    }
+}
+
+// Saving
+
+/// Beside the scene; for the bundled one in the working folder.
+std::filesystem::path FileController::default_project_path() const {
+    const auto beside = std::filesystem::path(workspace_.scene_path).replace_extension(".gsep");
+    const bool bundled = workspace_.scene_path.rfind(assets_path().string(), 0) == 0;
+    return bundled ? std::filesystem::absolute("sample.gsep") : beside;
+}
+
+/// All of a project but the document's state.
+std::shared_ptr<ProjectData> FileController::project_data() const {
+    auto data = std::make_shared<ProjectData>();
+    data->source = source_;
+    data->unknown = unknown_;
+    parts_.view.to_json(data->ui);
+    parts_.exports.to_json(data->ui);
+    parts_.search.to_json(data->ui);
+    parts_.models.to_json(data->ui);
+    if (!workspace_.layout.empty()) data->ui["layout"] = workspace_.layout;
+    return data;
+}
+
+template <> void FileController::on(const command::SaveProject& one) {
+    if (!workspace_.require_scene()) return;
+    auto target = one.path.empty() ? std::filesystem::path(workspace_.project_path)
+                                   : std::filesystem::absolute(one.path);
+    if (target.empty()) target = default_project_path();
+    if (target.extension() != ".gsep") target += ".gsep";
+    const auto data = project_data();
+    data->state = workspace_.document.state();
+    const auto now = moment();
+    auto done = [this, target, now, then = one.then](const Error* error) {
+        if (error != nullptr) return workspace_.notices.report(*error);
+        workspace_.project_path = target.string();
+        saved_ = Recovery::Moment{now.revision, 0, now.keys};
+        saved_at_ =
+            fmt::format("saved {}{}", clock_now(), workspace_.options.autosave ? " (autosave on)" : "");
+        recovery_.outdate();  // what is still unsaved is written anew
+        if (!unsaved()) recovery_.forget_recovered();
+        add_recent(target);
+        list_recent();
+        workspace_.notices.toast(fmt::format("Saved {}", target.filename().string()));
+        if (then) then();
+    };
+    const auto work = [this, data, target](const JobControl& control) {
+        control.report("saving", 0, 0);
+        writer_->save(target, *data);
+    };
+    if (!workspace_.jobs->files.start({fmt::format("Save {}", target.filename().string()), work, done}))
+        workspace_.notices.toast("Another file is being read or written; save again in a moment.");
+}
+
+template <> void FileController::on(const command::CancelFileJob&) { workspace_.jobs->files.cancel(); }
+
+// Recovery
+
+Recovery::Moment FileController::moment() const {
+    return {workspace_.document.revision(), parts_.edits.kept_number(), parts_.exports.keys_number()};
+}
+
+bool FileController::unsaved() const {
+    if (workspace_.document.empty()) return false;
+    const auto now = moment();
+    return now.live != 0 || saved_ != now;
+}
+
+/// Draws what the artist sees small, on the thread that calls it.
+std::function<std::shared_ptr<const Image>()> FileController::thumbnail() const {
+    if (const auto known = recovery_.thumbnail()) return [known] { return known; };
+    const Camera& from = parts_.view.camera();
+    if (from.width <= 0 || from.height <= 0) return [] { return std::shared_ptr<const Image>(); };
+    const int height = std::clamp(ThumbnailPx * from.height / from.width, 16, ThumbnailPx);
+    const auto& state = workspace_.document.state();
+    raster::Settings settings;
+    settings.background = parse_colour(parts_.view.settings().background);
+    settings.antialiased = state.info.antialiased;
+    const auto& drawn = parts_.view.drawn_set();
+    return
+        [set = drawn.empty() ? state.current : drawn, settings, camera = from.resized(ThumbnailPx, height)] {
+            Painter painter(1);
+            return std::make_shared<const Image>(painter.paint(set.spans(), camera, settings).colour);
+        };
+}
+
+void FileController::write_autosave(std::function<void()> then) {
+    const auto data = project_data();
+    const auto now = moment();
+    const auto edit = now.live != 0 ? parts_.edits.kept_json() : kept_edit_;
+    if (!edit.is_null()) data->jobs["edit"] = edit;
+    recovery_.write(now, {data, parts_.edits.kept_state(), thumbnail()}, *writer_, std::move(then));
+}
+
+template <> void FileController::on(const command::LeaveEdit& one) {
+    kept_edit_ = one.keep ? parts_.edits.kept_json() : nlohmann::json();
+    leaving_ = {one.keep, one.then};
+    if (workspace_.jobs->works()) workspace_.notices.toast("The edit is being stopped.");
+    workspace_.jobs->work.cancel();
+}
+
+void FileController::leave_when_stopped() {
+    if (!leaving_ || workspace_.jobs->works() || workspace_.jobs->saver.running()) return;
+    workspace_.queue.run();  // what the edit left
+    const Leaving leaving = *std::exchange(leaving_, std::nullopt);
+    if (!leaving.keep) {
+        parts_.edits.discard_result();
+        return leaving.then();
+    }
+    recovery_.keep(true);
+    if (unsaved() || !kept_edit_.is_null()) write_autosave(leaving.then);
+    else leaving.then();
+}
+
+template <> void FileController::on(const command::DiscardRecovery& one) { recovery_.run(one); }
+
+template <> void FileController::on(const command::PostponeRecovery& one) { recovery_.run(one); }
+
+void FileController::shut_down(bool asked) {
+    auto& jobs = *workspace_.jobs;
+    const auto wait_for_saver = [&] {
+        for (; jobs.saver.running(); workspace_.queue.run())
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        workspace_.queue.run();
+    };
+    parts_.edits.refresh();  // the newest snapshot
+    wait_for_saver();
+    // Nobody was asked when a signal ends the program: what is not saved stays.
+    const bool unasked = !asked && workspace_.options.autosave && unsaved();
+    if (unasked) write_autosave({}), wait_for_saver();
+    if (unasked) recovery_.keep(true);
+    if (!workspace_.document.empty()) recovery_.let_go();
+    jobs.work.cancel();
+    jobs.files.cancel();
+}
+
+// The scene
+
+template <> void FileController::on(const command::SetUpAxis& one) {
+    if (!workspace_.require_scene()) return;
+    DocumentState state = workspace_.document.state();
+    state.info.up = parse_up(one.up, state.info);
+    state.info.up_known = true;  // the artist says so: no guess any more, and written with the scene
+    workspace_.document.apply("Up axis", std::move(state));
+    parts_.view.stand_up();
+}
+
+template <> void FileController::on(const command::RepairScene&) {
+    if (!workspace_.require_scene()) return;
+    const auto& state = workspace_.document.state();
+    auto rows = usable_rows(state.current);
+    for (auto& row : rows) row = row == 0 ? 1 : 0;
+    EditNode node = removal_of(state, rows, workspace_.next_edit_id++);
+    if (node.delta->removed.empty()) return workspace_.notices.toast("There is nothing to repair.");
+    node.name = fmt::format("Repair: {} splats that cannot be drawn removed", node.delta->removed.size());
+    parts_.labels.change_stack("Repair scene", [&](std::vector<EditNode>& stack) { stack.push_back(node); });
+}
+
+// Frames
+
+void FileController::refresh() {
+    auto& jobs = *workspace_.jobs;
+    if (workspace_.document.empty()) {
+        if (!jobs.files.running()) recovery_.see_start_page();
+    } else {
+        counter_.refresh();
+        if (workspace_.options.autosave && !jobs.saver.running()) {
+            if (!unsaved()) {
+                if (recovery_.stale()) recovery_.discard();
+            } else if (recovery_.due(moment())) {
+                write_autosave({});
+            }
+        }
+    }
+    leave_when_stopped();
+}
+
+void FileController::show(ui::ViewModel& model) const {
+    const auto& document = workspace_.document;
+    model.document = document.empty() ? nullptr : &document;
+    model.statistics = counter_.statistics();
+    model.scene_path = workspace_.scene_path;
+    model.project_path = workspace_.project_path;
+    model.suggested_project = document.empty() ? std::string() : default_project_path().string();
+    model.unsaved = unsaved();
+    model.saved_at = saved_at_;
+    model.recent = recent_;
+    recovery_.show(model);
+}
+
+void FileController::run(const ui::FileCommand& command) {
+    std::visit([this](const auto& one) { on(one); }, command);
+}
+
+}  // namespace gse::app

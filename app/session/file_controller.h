@@ -1,0 +1,85 @@
+// Files and recovery: opening, saving, recipes out of pictures, autosaves, and leaving a running edit.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/session/edit_controller.h"
+#include "app/session/export_controller.h"
+#include "app/session/files/opened_work.h"
+#include "app/session/files/recovery.h"
+#include "app/session/files/scene_counter.h"
+#include "app/session/label_controller.h"
+#include "app/session/model_controller.h"
+#include "app/session/search_controller.h"
+#include "app/session/view_controller.h"
+#include "app/session/workspace.h"
+
+namespace gse::app {
+
+class FileController {
+public:
+    /// All that a project holds of.
+    struct Parts {
+        ViewController& view;
+        ModelController& models;
+        SearchController& search;
+        EditController& edits;
+        LabelController& labels;
+        ExportController& exports;
+    };
+    FileController(Workspace& workspace, const Parts& parts);
+
+    void run(const ui::FileCommand& command);
+    /// Writes an autosave where one is due, and leaves an edit that has stopped. Once per frame.
+    void refresh();
+    void show(ui::ViewModel& model) const;
+    /// Writes what is not saved to the recovery folder. `asked`: the artist said what becomes of it.
+    void shut_down(bool asked);
+    bool leaving() const { return leaving_.has_value(); }
+
+private:
+    /// The edit is being stopped.
+    struct Leaving {
+        bool keep = false;
+        std::function<void()> then;
+    };
+    template <class C> void on(const C& command);
+    void open(const std::filesystem::path& path);
+    void open_recipe(const std::filesystem::path& picture);
+    void open_cameras(const std::filesystem::path& path);
+    void take_cameras(const std::string& name, std::vector<View> views,
+                      const std::vector<std::string>& notes);
+    void start_reading(const std::string& title, std::function<OpenedWork(const JobControl&)> read,
+                       bool recovers);
+    void take(OpenedWork opened);
+    void ask_which(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& files);
+    void list_recent();
+    std::filesystem::path default_project_path() const;
+    std::shared_ptr<ProjectData> project_data() const;
+    void parts_from_json(const nlohmann::json& json);
+    bool unsaved() const;
+    Recovery::Moment moment() const;
+    std::function<std::shared_ptr<const Image>()> thumbnail() const;
+    void write_autosave(std::function<void()> then);
+    void leave_when_stopped();
+
+    Workspace& workspace_;
+    Parts parts_;
+    Recovery recovery_;
+    SceneCounter counter_;
+    SceneSource source_;
+    nlohmann::json unknown_ = nlohmann::json::object();
+    std::unique_ptr<ProjectWriter> writer_ = std::make_unique<ProjectWriter>();
+    std::vector<std::string> recent_;        // newest first
+    std::optional<Recovery::Moment> saved_;  // what the project's file holds; none = not what is open
+    std::string saved_at_;                   // "saved 14:02 (autosave on)"
+    nlohmann::json kept_edit_;               // of an edit that was stopped before its first step
+    std::optional<Leaving> leaving_;         // waits for the edit to stop
+};
+
+}  // namespace gse::app

@@ -1,0 +1,77 @@
+// What the file thread reads of scenes, projects and autosaves, on its way to the window.
+#include "app/session/files/opened_work.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "app/cli/engine_names.h"
+#include "engine/base/error.h"
+#include "engine/io/scene/scene_file.h"
+#include "engine/pipeline/run/scene_loading.h"
+
+namespace gse::app {
+namespace {
+
+/// What can be opened of a folder that is no scene by itself.
+std::vector<std::filesystem::path> files_of_folder(const std::filesystem::path& folder) {
+    auto files = scenes_in_folder(folder);
+    if (files.empty()) return files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+        if (entry.is_regular_file() && entry.path().extension() == ".gsep") files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+void read_project(OpenedWork& opened) {
+    opened.project = true;
+    opened.data = gse::load_project(opened.path);
+    opened.state = opened.data.state;
+    opened.notes = opened.data.warnings;
+}
+
+void read_scene(OpenedWork& opened) {
+    auto [scene, views, notes] = load_scene_with_cameras(opened.path);
+    opened.data.source = scene_source(opened.path, scene.gaussians);
+    opened.notes = std::move(notes);
+    opened.state = initial_state(scene, std::move(views));
+}
+
+}  // namespace
+
+OpenedWork open_work(const std::filesystem::path& path, const JobControl& control) {
+    OpenedWork opened;
+    opened.path = path;
+    control.report("reading", 0, 0);
+    if (!std::filesystem::exists(path))
+        throw Error(ErrorCode::NotFound, "there is no such file", "check the name", path);
+    if (std::filesystem::is_regular_file(path) && is_project_file(path)) {
+        opened.project_path = path;
+        read_project(opened);
+    } else {
+        if (std::filesystem::is_directory(path)) opened.choices = files_of_folder(path);
+        if (opened.choices.size() > 1) return opened;
+        if (opened.choices.size() == 1) opened.path = opened.choices.front();
+        read_scene(opened);
+    }
+    control.report("looking", 0, 0);
+    opened.statistics = compute_statistics(opened.state.current);
+    return opened;
+}
+
+OpenedWork recover_work(const std::filesystem::path& file, const JobControl& control) {
+    OpenedWork opened;
+    opened.path = file;
+    control.report("recovering", 0, 0);
+    for (const auto& found : find_recoverable())
+        if (found.file == file) opened.recovered = found;
+    if (!opened.recovered)
+        throw Error(ErrorCode::NotFound, "the unsaved work is not there any more",
+                    "it was recovered or discarded elsewhere", file);
+    opened.project_path = opened.recovered->project;
+    read_project(opened);
+    opened.pending = take_back_edit(opened.state, opened.data.jobs);
+    opened.statistics = compute_statistics(opened.state.current);
+    return opened;
+}
+
+}  // namespace gse::app

@@ -1,0 +1,107 @@
+// Messages to the artist: short notices over the viewport, one question at a time, and the log.
+#include "app/session/notices.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ctime>
+#include <utility>
+
+#include "engine/base/clock.h"
+#include "engine/base/log.h"
+
+namespace gse::app {
+namespace {
+
+constexpr double ToastSeconds = 7, ButtonToastSeconds = 12, ErrorToastSeconds = 20;
+constexpr std::size_t MostToasts = 4, MostLogLines = 2000;
+
+ui::LogLine line_now(log::Level level, std::string_view text) {
+    return {level, fmt::format("{:%H:%M:%S}", fmt::localtime(std::time(nullptr))), std::string(text)};
+}
+
+double seconds_shown(const ui::Toast& toast) {
+    if (toast.is_error) return ErrorToastSeconds;
+    return toast.button.empty() ? ToastSeconds : ButtonToastSeconds;
+}
+
+}  // namespace
+
+Notices::Notices(std::function<void()> wake) {
+    log::set_sink([lines = arriving_, wake = std::move(wake)](log::Level level, std::string_view text) {
+        lines->push(line_now(level, text));
+        if (wake) wake();
+    });
+}
+
+Notices::~Notices() { log::set_sink({}); }
+
+void Notices::toast(std::string text, bool is_error, std::string button, std::function<void()> action) {
+    // The same news again, or told at more length: one of them is enough.
+    std::erase_if(toasts_,
+                  [&](const ToastState& old) { return text.find(old.toast.text) != std::string::npos; });
+    if (std::any_of(toasts_.begin(), toasts_.end(),
+                    [&](auto& old) { return old.toast.text.find(text) != std::string::npos; }))
+        return;
+    if (toasts_.size() >= MostToasts) toasts_.erase(toasts_.begin());
+    toasts_.push_back({{std::move(text), is_error, 0, std::move(button)}, Clock::now(), std::move(action)});
+}
+
+void Notices::report(const Error& error) {
+    toast(error.what(), true);
+    log_.push_back(line_now(log::Level::Error, error.what()));
+}
+
+void Notices::ask(std::string title, std::string text, std::vector<AskedAnswer> answers) {
+    question_ = {question_.number + 1, std::move(title), std::move(text), {}};
+    answers_.clear();
+    for (auto& [answer, act] : answers) {
+        question_.answers.push_back(std::move(answer));
+        answers_.push_back(std::move(act));
+    }
+}
+
+void Notices::refresh() {
+    for (auto& line : arriving_->take()) {
+        if (line.level == log::Level::Warning) toast(line.text);
+        log_.push_back(std::move(line));
+    }
+    if (log_.size() > MostLogLines)
+        log_.erase(log_.begin(), log_.end() - static_cast<std::ptrdiff_t>(MostLogLines));
+    std::erase_if(toasts_, [](const ToastState& state) {
+        return seconds_since(state.born) > seconds_shown(state.toast);
+    });
+    for (auto& state : toasts_) state.toast.age_seconds = seconds_since(state.born);
+}
+
+void Notices::show(ui::ViewModel& model) const {
+    model.question = question_;
+    model.log = log_;
+    model.toasts.clear();
+    for (const auto& state : toasts_) model.toasts.push_back(state.toast);
+}
+
+void Notices::dismiss(std::size_t index) {
+    if (index < toasts_.size()) toasts_.erase(toasts_.begin() + static_cast<std::ptrdiff_t>(index));
+}
+
+template <> void Notices::on(const ui::command::Answer& command) {
+    const auto answers = std::exchange(answers_, {});
+    if (command.index < answers.size() && answers[command.index]) answers[command.index]();
+}
+
+template <> void Notices::on(const ui::command::DismissToast& command) { dismiss(command.index); }
+
+template <> void Notices::on(const ui::command::PressToast& command) {
+    if (command.index >= toasts_.size()) return;
+    const auto action = toasts_[command.index].action;
+    dismiss(command.index);
+    if (action) action();
+}
+
+void Notices::run(const ui::NoticeCommand& command) {
+    std::visit([this](const auto& one) { on(one); }, command);
+}
+
+}  // namespace gse::app

@@ -1,0 +1,400 @@
+// The request and what was found for it: searches, votes of their views, and whether a label or a search says
+// what an edit may change.
+#include "app/session/search_controller.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "app/session/edit/live_edit.h"
+#include "app/session/state/located_label.h"
+#include "engine/base/clock.h"
+#include "engine/base/error.h"
+#include "engine/base/json.h"
+#include "engine/base/random.h"
+#include "engine/edit/request/excluded_views.h"
+#include "engine/edit/request/vocabulary.h"
+#include "engine/pipeline/models/model_settings.h"
+#include "engine/pipeline/models/model_words.h"
+#include "engine/pipeline/models/neural_loader.h"
+#include "engine/scene/label_ops.h"
+#include "ui/sentence.h"
+#include "ui/widgets/controls.h"
+
+namespace gse::app {
+namespace {
+
+namespace command = ui::command;
+
+constexpr double EstimateSeconds = 0.5;  // between two estimates
+
+bool contains_word(const std::vector<std::string>& words, const std::string& word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+Error problem_of(const EditJob& job) {
+    return Error(ErrorCode::NotFound, job.located().message, job.located().remedy);
+}
+
+}  // namespace
+
+SearchController::SearchController(Workspace& workspace, ViewController& view, ModelController& models,
+                                   CostBook& costs)
+    : workspace_(workspace), view_(view), models_(models), costs_(costs) {
+    request_.prompt.clear();
+}
+
+// The request
+
+void SearchController::set_request(const edit::EditRequest& request) {
+    const bool told_else = request.source != request_.source || request.prompt != request_.prompt;
+    request_ = request;
+    if (told_else) request_.left_out.clear();  // they were views of another search
+    // A word that was clicked in another sentence is no target of this one.
+    auto& target = request_.target;
+    if (!target.empty() && !edit::has_word(request.prompt, target)) target.clear();
+    refresh_reading();
+}
+
+void SearchController::move_request(const edit::EditRequest& before, const edit::EditRequest& after) {
+    move_defaults(request_, before, after);
+}
+
+void SearchController::refresh_reading() {
+    const auto words = edit::words_of(request_.prompt);
+    const auto read = words.empty() ? 0 : words_read(std::filesystem::path(models_.in_use()), words);
+    words_read_ = read < words.size() ? read : 0;
+}
+
+void SearchController::follow_document() {
+    said_words_ = edit::words_said(applied_requests(workspace_.document.state().stack));
+}
+
+EditRecipe SearchController::recipe() const {
+    EditRecipe recipe =
+        models_.recipe(request_, label_drives_edit() ? workspace_.active_label()->looked_from : looked_from_);
+    recipe.request = ui::with_target(std::move(recipe.request), said_words_, read_target());
+    return recipe;
+}
+
+EditRecipe SearchController::open_recipe(EditRecipe recipe) const {
+    if (request_.target.empty() && !recipe.request.source.empty()) recipe.request.target.clear();
+    return recipe;
+}
+
+/// What the last search saw to be new, where it was of this sentence and of the scene as it is now.
+std::string SearchController::read_target() const {
+    return last_.of(workspace_.document.state().current) ? last_.read_target(request_) : std::string();
+}
+
+void SearchController::from_json(const nlohmann::json& json) {
+    if (!json.contains("request")) return;
+    edit::EditRequest request = request_;
+    fields_from_json(request, json["request"]);
+    set_request(request);
+    follow_document();
+    // What an applied edit said already is no news, even if it was clicked once.
+    if (contains_word(said_words_, request_.target)) request_.target.clear();
+}
+
+// Searches
+
+void SearchController::take_document() {
+    last_.forget();
+    reach_key_.clear();
+    choice_.reset();
+}
+
+std::shared_ptr<EditJob> SearchController::fitting_job() const {
+    const bool fits = last_.job() != nullptr && last_.of(workspace_.document.state().current) &&
+                      last_.key() == valid_search_key(recipe());
+    return fits ? last_.job() : nullptr;
+}
+
+void SearchController::begin_edit() {
+    const bool fits = fitting_job() != nullptr;
+    if (last_.job() && !fits) request_.left_out.clear();  // they were views of another search
+    if (!fitting_job()) looked_from_ = view_.direction();
+}
+
+std::shared_ptr<MeasuredRun> SearchController::begin_run() {
+    return app::begin_run(models_.loaded(), models_.loaded_fits(), models_.load(), costs_.memory(),
+                          arriving_);
+}
+
+SearchGround SearchController::ground(const EditRecipe& recipe) const {
+    const auto& state = workspace_.document.state();
+    return {workspace_.scene(), state.views, last_.of(state.current) ? last_.tuning(recipe) : std::nullopt,
+            said_words_};
+}
+
+template <> void SearchController::on(const command::Locate&) {
+    if (!workspace_.require_scene() || workspace_.jobs->works()) return;
+    if (workspace_.results) return workspace_.notices.toast("Apply or discard the edit first.");
+    const auto run = begin_run();
+    request_.left_out.clear();  // of the search before
+    EditRecipe wanted = recipe();
+    wanted.job.looked_from = looked_from_ = view_.direction();  // whatever a label was made from
+    if (wanted.request.prompt.empty() && !wanted.request.source.empty())
+        wanted.request.prompt = "a " + wanted.request.source;
+    try {
+        wanted.request = edit::validated(wanted.request);
+    } catch (const Error& error) { return workspace_.notices.report(error); }
+    auto work = [run, wanted, open = open_recipe(wanted), ground = ground(wanted),
+                 known = costs_.profile(request_), cache = models_.cache()](const JobControl& control) {
+        const auto before = network_use();
+        load_model(*run, wanted.job, cache, control);
+        const PeakMemory peak;
+        run->job = std::make_shared<EditJob>(open, ground.input(*run, {}), control);
+        look(*run);
+        run->use = network_use() - before;
+        if (run->job->found() && !steps_measured(known, *run->job)) measure_steps(run->measured, *run->job);
+        measure_peak(*run, peak);
+    };
+    auto done = [this, run, wanted, cost_key = costs_.key(request_),
+                 ticket = models_.ticket()](const Error* error) {
+        models_.take_back(ticket, run->model, run->loaded, error);
+        if (error != nullptr) return workspace_.report_end(*error);
+        workspace_.cost = cost_of(run->use);
+        costs_.remember(cost_key, run->measured);
+        take_found(run->job, std::move(run->attention), wanted, true);
+    };
+    const auto& word = wanted.request.source.empty() ? wanted.request.target : wanted.request.source;
+    workspace_.jobs->start_work(JobKind::Search, {fmt::format("Locate \"{}\"", word), work, done, true});
+}
+
+void SearchController::take_found(const std::shared_ptr<EditJob>& job, std::vector<float> attention,
+                                  EditRecipe recipe, bool relabel) {
+    last_.remember(job, recipe);
+    take_located(job, std::move(attention));
+    if (!job->found()) workspace_.notices.report(problem_of(*job));
+    else if (relabel) label_located(*job, {}, {});
+}
+
+void SearchController::take_located(const std::shared_ptr<EditJob>& job, std::vector<float> attention) {
+    std::vector<ui::AttentionView> arrived;
+    arriving_->take(arrived);  // all of them are in what the job holds
+    last_.take_attention(job->scene().gaussians, std::move(attention));
+    last_.show_evidence(*job);
+    ++workspace_.content;
+}
+
+void SearchController::label_located(const EditJob& job, const std::string& step,
+                                     const std::string& merge_key) {
+    auto& document = workspace_.document;
+    if (!document.state().current.shares_all_with(job.scene().gaussians))
+        return;  // the scene changed meanwhile
+    const bool edits = workspace_.jobs->works_at(JobKind::Edit);
+    DocumentState state = with_located_label(document.state(), job, step.empty());
+    const NamedLabel label = state.labels[static_cast<std::size_t>(state.active_label)];
+    if (!edits) view_.tint(true);  // where it landed is to be seen
+    document.apply(step.empty() ? fmt::format("Locate \"{}\"", label.found_for) : step, std::move(state),
+                   merge_key);
+    if (merge_key.empty() && !edits)
+        workspace_.toast_step(fmt::format("\"{}\": {} splats are labelled.", label.name,
+                                          ui::count_text(count_labelled(label))));
+}
+
+template <> void SearchController::on(const command::LabelAnyway&) {
+    const auto job = last_.job();
+    if (!job || workspace_.jobs->works() || workspace_.results || job->found()) return;
+    auto attention = std::make_shared<std::vector<float>>();
+    workspace_.jobs->start_work(JobKind::Search, {"Label what was found",
+                                                  [job, attention](const JobControl& control) {
+                                                      job->set_control(control);
+                                                      job->locate_anyway();
+                                                      *attention = splat_attention(*job);
+                                                  },
+                                                  [this, job, attention](const Error* error) {
+                                                      if (error != nullptr)
+                                                          return workspace_.report_end(*error);
+                                                      take_located(job, std::move(*attention));
+                                                      if (job->found()) label_located(*job, {}, {});
+                                                  },
+                                                  true});
+}
+
+// Votes
+
+template <> void SearchController::on(const command::SetAttentionThreshold& one) {
+    const bool moved = one.value != request_.attention_threshold;
+    last_.set_threshold(one.value);
+    request_.attention_threshold = one.value;
+    if (moved)
+        wanted_vote_ = Vote{request_, fmt::format("Attention threshold {:.3f}", one.value),
+                            fmt::format("attention{}", workspace_.stroke)};
+    if (one.drag_ends) ++workspace_.stroke;
+    vote_if_wanted();
+}
+
+template <> void SearchController::on(const command::LeaveOutView& one) {
+    if (one.view >= last_.views().size() || last_.arriving()) return;
+    request_.left_out = edit::with_view(request_.left_out, one.view, one.out);
+    last_.leave_out(one.view, one.out);  // at once; what comes of it follows
+    wanted_vote_ = Vote{
+        request_, fmt::format("{} {}", one.out ? "Leave out" : "Put back", last_.views()[one.view].name), {}};
+    vote_if_wanted();
+}
+
+/// Tells the last search what its views are to vote with; values that come while it works replace each other.
+void SearchController::vote_if_wanted() {
+    if (!wanted_vote_ || workspace_.jobs->works() || workspace_.results) return;  // taken up by refresh()
+    const Vote wanted = *std::exchange(wanted_vote_, std::nullopt);
+    const auto job = last_.job();
+    if (!job || !last_.of(workspace_.document.state().current) || same_vote(wanted.with, last_.voted_with()))
+        return;
+    workspace_.jobs->start_work(
+        JobKind::Vote, {"New vote",
+                        [job, wanted](const JobControl& control) {
+                            job->set_control(control);
+                            job->locate_again(wanted.with.attention_threshold, wanted.with.left_out);
+                        },
+                        [this, job, wanted](const Error* error) { end_vote(job, wanted, error); }, true});
+}
+
+void SearchController::end_vote(const std::shared_ptr<EditJob>& job, const Vote& vote, const Error* error) {
+    last_.set_voted_with(vote.with);
+    if (error != nullptr) return workspace_.report_end(*error);
+    last_.show_evidence(*job);
+    ++workspace_.content;
+    if (!job->found()) return workspace_.notices.report(problem_of(*job));
+    if (!vote.step.empty()) label_located(*job, vote.step, vote.merge_key);
+}
+
+void SearchController::travel(const std::function<void()>& move) {
+    const FoundWith before = found_with(workspace_.document.state());
+    move();
+    const auto [label, with] = found_with(workspace_.document.state());
+    if (before.with.attention_threshold < 0 || with.attention_threshold < 0 || before.label != label) return;
+    if (with.tau != before.with.tau) request_.tau = with.tau;
+    if (same_vote(with, before.with)) return;
+    request_.attention_threshold = with.attention_threshold;
+    request_.left_out = with.left_out;
+    if (with.attention_threshold > 0) last_.set_threshold(with.attention_threshold);
+    wanted_vote_ = Vote{with, {}, {}};
+    vote_if_wanted();
+}
+
+// Label or search
+
+bool SearchController::label_drives_edit() const {
+    const NamedLabel* label = workspace_.active_label();
+    return label != nullptr && label_says(*label, request_, models_.known_words(), choice_);
+}
+
+void SearchController::set_reach(bool by_label) {
+    if (const NamedLabel* label = workspace_.active_label())
+        choice_ = ReachChoice{by_label, label->name, edit::as_told(request_.source)};
+}
+
+void SearchController::choose_label_by_hand() {
+    if (const NamedLabel* label = workspace_.active_label();
+        label != nullptr && (made_by_hand(*label) || count_labelled(*label) == 0))
+        set_reach(true);
+}
+
+void SearchController::choose_for_source() {
+    if (choice_) choice_->source = edit::as_told(request_.source);
+}
+
+void SearchController::rename_label(const std::string& from, const std::string& to) {
+    if (choice_ && choice_->label == from) choice_->label = to;
+}
+
+/// Made anew only when words, label or choice are others.
+void SearchController::refresh_reach() {
+    const auto choice =
+        choice_ ? fmt::format("{} {} {}", choice_->by_label, choice_->label, choice_->source) : "";
+    auto key = fmt::format("{}\n{}\n{}\n{}\n{}\n{}", workspace_.document.revision(), last_.number(),
+                           request_.source, request_.target, models_.path(), choice);
+    if (key == reach_key_) return;
+    reach_key_ = std::move(key);
+    const auto& labels = workspace_.document.state().labels;
+    const auto source = edit::as_told(last_.words().source);
+    attention_corrected_ =
+        !last_.views().empty() && std::any_of(labels.begin(), labels.end(), [&](const NamedLabel& label) {
+            return (label.found_for == last_.word() || label.found_for == source) &&
+                   !label.found_for.empty() && corrected_by_hand(label);
+        });
+    reach_ = {};
+    labelled_by_hand_ = false;
+    const NamedLabel* label = workspace_.active_label();
+    if (label == nullptr || count_labelled(*label) == 0) return;
+    reach_ = {label->name, count_labelled(*label), label_drives_edit(),
+              !label->found_for.empty() && corrected_by_hand(*label)};
+    labelled_by_hand_ = reach_.by_label && stands_alone(*label, request_, models_.known_words());
+}
+
+// Frames
+
+void SearchController::refresh() {
+    if (last_.take_arriving(*arriving_, workspace_.jobs->works())) ++workspace_.content;
+    vote_if_wanted();
+    if (workspace_.document.empty()) return;
+    refresh_reach();
+    if (seconds_since(last_estimate_) <= EstimateSeconds) return;
+    last_estimate_ = Clock::now();
+    refresh_estimate();
+}
+
+void SearchController::refresh_estimate() {
+    const EditRecipe wanted = recipe();
+    const auto& settings = models_.settings();
+    const auto& current = workspace_.document.state().current;
+    PlannedWork work;
+    work.loaded = models_.loaded_fits();
+    work.located = fitting_job() != nullptr;
+    work.shows_idea = settings.gate && !edit::edits_by_views(request_);
+    const bool learned = last_.of(current) && last_.tuning(wanted);
+    work.tune_steps = settings.learn_scene && !work.located && !learned ? settings.learning.steps : 0;
+    work.rows = current.size();
+    work.words = edit::promptable_vocabulary(models_.known_words(), models_.drawn_words());
+    try {
+        work.mode = edit::planned_mode(edit::validated(request_));
+    } catch (const Error&) {  // not a sentence yet
+    }
+    costs_.estimate(request_, work);
+}
+
+void SearchController::show(ui::ViewModel& model) const {
+    model.request = request_;
+    model.said_words = said_words_;
+    model.words_read = words_read_;
+    model.read_target = read_target();
+    model.reach = reach_;
+    model.labelled_by_hand = labelled_by_hand_;
+    model.attention_corrected = attention_corrected_;
+    model.voting = workspace_.jobs->works_at(JobKind::Vote);
+    last_.show(model);
+}
+
+// Commands
+
+template <> void SearchController::on(const command::SetRequest& one) { set_request(one.request); }
+
+template <> void SearchController::on(const command::SetReach& one) { set_reach(one.by_label); }
+
+template <> void SearchController::on(const command::RepeatEdit& one) {
+    if (workspace_.document.empty()) return;
+    for (const auto& node : workspace_.document.state().stack) {
+        if (node.id != one.id || node.recipe.empty()) continue;
+        const auto json = try_parse_json<nlohmann::ordered_json>(node.recipe);
+        if (!json.is_object() || !json.contains("request")) return;
+        try {
+            edit::EditRequest request;
+            fields_from_json(request, json["request"]);
+            request.seed = Random::stream(request.seed, 77).next() % 1000000;
+            set_request(request);
+            workspace_.notices.toast("The settings are in the prompt, with a new seed.");
+        } catch (const Error& error) { workspace_.notices.report(error); }
+        return;
+    }
+}
+
+void SearchController::run(const ui::SearchCommand& command) {
+    std::visit([this](const auto& one) { on(one); }, command);
+}
+
+}  // namespace gse::app

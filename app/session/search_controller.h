@@ -1,0 +1,125 @@
+// The request and what was found for it: searches, votes of their views, and whether a label or a search says
+// what an edit may change.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/session/edit/cost_book.h"
+#include "app/session/edit/last_search.h"
+#include "app/session/model_controller.h"
+#include "app/session/stage.h"
+#include "app/session/state/cost_profile.h"
+#include "app/session/state/edit_scope.h"
+#include "app/session/view_controller.h"
+#include "app/session/workspace.h"
+
+namespace gse::app {
+
+/// What a job is made of beside its recipe and model, as it is now.
+struct SearchGround {
+    Scene scene;
+    std::vector<View> views;
+    std::optional<neural::TunedModel> tuned;
+    std::vector<std::string> said;
+
+    EditJobInput input(const MeasuredRun& run, std::vector<std::uint8_t> label) const {
+        return {scene, views, run.model, std::move(label), {}, tuned, said, run.segmenters};
+    }
+};
+
+class SearchController {
+public:
+    SearchController(Workspace& workspace, ViewController& view, ModelController& models, CostBook& costs);
+
+    void run(const ui::SearchCommand& command);
+    /// Takes views that came in, votes where that is wanted, and follows words and labels. Once per frame.
+    void refresh();
+    void show(ui::ViewModel& model) const;
+    /// Another document is open: nothing was searched in it.
+    void take_document();
+    /// The document changed: what its edits say of the scene.
+    void follow_document();
+
+    const edit::EditRequest& request() const { return request_; }
+    void set_request(const edit::EditRequest& request);
+    void set_seed(std::uint64_t seed) { request_.seed = seed; }
+    void set_label_threshold(double tau) { request_.tau = tau; }  // a repeated search gives that label
+    void forget_target() { request_.target.clear(); }
+    /// Fields that still are as `before` has them become as `after` has them.
+    void move_request(const edit::EditRequest& before, const edit::EditRequest& after);
+
+    /// The recipe of the request as it is now, with the target that it implies.
+    EditRecipe recipe() const;
+    /// The recipe of a job: a target that nobody has chosen is left to the pictures.
+    EditRecipe open_recipe(EditRecipe recipe) const;
+    /// The last search where it is that of the recipe and of the splats as they are now; else null.
+    std::shared_ptr<EditJob> fitting_job() const;
+    /// Prepares a job about to begin: what belonged to another search goes.
+    void begin_edit();
+    std::shared_ptr<MeasuredRun> begin_run();
+    SearchGround ground(const EditRecipe& recipe) const;
+    /// Takes what a search found, for a recipe; labels it where `relabel`. The word that it saw to be new is
+    /// in last().target().
+    void take_found(const std::shared_ptr<EditJob>& job, std::vector<float> attention, EditRecipe recipe,
+                    bool relabel);
+    const LastSearch& last() const { return last_; }
+
+    /// True when the active label, and not a search, says what an edit may change.
+    bool label_drives_edit() const;
+    /// Who makes, corrects or picks a label by hand means it to be edited.
+    void choose_label_by_hand();
+    void rename_label(const std::string& from, const std::string& to);
+    /// Nobody has chosen the label that is active now.
+    void forget_choice() { choice_.reset(); }
+    /// The choice is of the source as it is now, too.
+    void choose_for_source();
+    /// Moves through the undo steps; what labels were found with goes with them, into request and evidence.
+    void travel(const std::function<void()>& move);
+    RowValues attention() const { return last_.attention_of(workspace_.document.state().current); }
+
+    void to_json(nlohmann::json& json) const { json["request"] = fields_to_json(request_); }
+    void from_json(const nlohmann::json& json);
+
+private:
+    using Clock = std::chrono::steady_clock;
+    /// What the views of the last search are to vote with, that it has not been told yet.
+    struct Vote {
+        edit::LabelThresholds with;
+        std::string step, merge_key;  // of the undo step it makes; empty = none: undo brought it back
+    };
+    template <class C> void on(const C& command);
+    std::string read_target() const;
+    void take_located(const std::shared_ptr<EditJob>& job, std::vector<float> attention);
+    void label_located(const EditJob& job, const std::string& step, const std::string& merge_key);
+    void vote_if_wanted();
+    void end_vote(const std::shared_ptr<EditJob>& job, const Vote& vote, const Error* error);
+    void set_reach(bool by_label);
+    void refresh_reach();
+    void refresh_reading();
+    void refresh_estimate();
+
+    Workspace& workspace_;
+    ViewController& view_;
+    ModelController& models_;
+    CostBook& costs_;
+    edit::EditRequest request_;
+    std::vector<std::string> said_words_;  // by the edits applied: no news any more
+    std::size_t words_read_ = 0;           // of the sentence, by the text encoder; 0 = all, or not known
+    LastSearch last_;
+    std::string looked_from_;  // where the camera was turned to when it began; empty = nowhere
+    std::optional<Vote> wanted_vote_;
+    std::shared_ptr<ArrivingViews> arriving_ = std::make_shared<ArrivingViews>();  // of the search under way
+    std::optional<ReachChoice> choice_;  // of the label that was active then
+    std::string reach_key_;              // that the three below were made for
+    ui::EditReach reach_;
+    bool labelled_by_hand_ = false, attention_corrected_ = false;
+    Clock::time_point last_estimate_{};
+};
+
+}  // namespace gse::app

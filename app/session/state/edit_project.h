@@ -1,0 +1,16 @@
+// A finished edit as a project of the editor: the scene with the edit on its stack, and the labels.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "app/cli/engine_names.h"
+#include "engine/io/project/project_file.h"
+#include "engine/pipeline/run/edit_job.h"
+
+namespace gse::app {
+
+/// Of a job that has run, with its report (edit_output.h): as the window has it after Apply. The scene's file
+/// is read again for its fingerprint. Throws Error.
+ProjectData project_of(EditJob& job, const nlohmann::ordered_json& report);
+
+}  // namespace gse::app

@@ -1,0 +1,75 @@
+// Label or search.
+#include "app/session/state/edit_scope.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "engine/base/error.h"
+#include "engine/base/json.h"
+#include "engine/edit/request/vocabulary.h"
+#include "engine/scene/label_ops.h"
+
+namespace gse::app {
+
+bool made_by_hand(const NamedLabel& label) {
+    if (count_labelled(label) == 0) return false;
+    return !label.weight ||
+           std::all_of(label.weight->begin(), label.weight->end(), [](float w) { return w == 0; });
+}
+
+bool corrected_by_hand(const NamedLabel& label) {
+    return label.manual &&
+           std::any_of(label.manual->begin(), label.manual->end(), [](auto by_hand) { return by_hand != 0; });
+}
+
+bool is_label_of(const NamedLabel& label, const std::string& word) {
+    return !word.empty() && (label.name == word || label.found_for == word);
+}
+
+std::vector<edit::EditRequest> applied_requests(const std::vector<EditNode>& stack) {
+    std::vector<edit::EditRequest> applied;
+    for (const auto& node : stack) {
+        const auto json = try_parse_json<nlohmann::ordered_json>(node.recipe);
+        if (!node.enabled || !json.is_object() || !json.contains("request")) continue;
+        edit::EditRequest request;
+        try {
+            fields_from_json(request, json["request"]);
+        } catch (const Error&) {  // of another version: what it said is not known
+            continue;
+        }
+        applied.push_back(std::move(request));
+    }
+    return applied;
+}
+
+FoundWith found_with(const DocumentState& state) {
+    if (state.active_label < 0 || state.active_label >= static_cast<int>(state.labels.size())) return {};
+    const auto& label = state.labels[static_cast<std::size_t>(state.active_label)];
+    if (label.attention_threshold < 0) return {};
+    // With the fewest digits, so that what was 0.4 is 0.4 again.
+    return {label.name,
+            {label.attention_threshold, std::stod(fmt::format("{}", label.threshold)), label.left_out}};
+}
+
+bool same_vote(const edit::LabelThresholds& a, const edit::LabelThresholds& b) {
+    return a.attention_threshold == b.attention_threshold && a.left_out == b.left_out;
+}
+
+bool stands_alone(const NamedLabel& label, const edit::EditRequest& request,
+                  const std::vector<std::string>& known) {
+    return made_by_hand(label) || (is_label_of(label, edit::as_told(request.source)) &&
+                                   !edit::knows(known, edit::as_told(request.source)));
+}
+
+bool label_says(const NamedLabel& label, const edit::EditRequest& request,
+                const std::vector<std::string>& known, const std::optional<ReachChoice>& choice) {
+    if (count_labelled(label) == 0) return false;
+    const auto source = edit::as_told(request.source), target = edit::as_told(request.target);
+    if (choice && choice->label == label.name && (choice->source.empty() || choice->source == source))
+        return choice->by_label;
+    if (is_label_of(label, source) || is_label_of(label, target)) return true;
+    return made_by_hand(label) && !edit::knows(known, source.empty() ? target : source);
+}
+
+}  // namespace gse::app

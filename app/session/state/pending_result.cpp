@@ -1,0 +1,115 @@
+// Names, proof and thumbnail of a result.
+#include "app/session/state/pending_result.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/base/error.h"
+#include "engine/base/json.h"
+#include "engine/base/log.h"
+#include "engine/edit/request/words.h"
+#include "engine/pipeline/report/edit_output.h"
+#include "engine/pipeline/run/loop.h"
+#include "engine/scene/row_values.h"
+#include "engine/scene/stack_edits.h"
+
+namespace gse::app {
+
+Renamed renamed_by(const EditJob& job) {
+    if (job.located().mode != edit::EditMode::Replace) return {};
+    const auto& request = job.recipe().request;
+    return {edit::as_told(request.source), edit::as_told(new_thing(request, edit::EditMode::Replace))};
+}
+
+namespace {
+
+void require_steps(const EditJob& job) {
+    if (job.result().iterations == 0)
+        throw Error(ErrorCode::Cancelled, "the edit was stopped before its first step");
+}
+
+}  // namespace
+
+void fill_pending(EditJob& job, PendingResult& pending) {
+    require_steps(job);  // before the work of a report
+    fill_pending(job, make_report(job), pending);
+}
+
+void fill_pending(EditJob& job, const nlohmann::ordered_json& report, PendingResult& pending) {
+    const auto& result = job.result();
+    require_steps(job);
+    pending.before = job.scene().gaussians;
+    pending.set = result.set;
+    pending.base_to_new = std::make_shared<const std::vector<std::int64_t>>(result.base_to_new);
+    pending.name = job.recipe().request.prompt;
+    pending.target = job.recipe().request.target;
+    pending.seed = job.recipe().request.seed;
+    pending.adds = job.located().mode == edit::EditMode::Add;
+    pending.renamed = renamed_by(job);
+    pending.recipe = json_text(recipe_to_json(job.recipe()), -1);
+    for (const auto& [stage, seconds] : result.seconds) pending.seconds += seconds;
+    pending.psnr_outside_db = report["psnr_outside_db"].get<double>();
+    pending.changed_outside_label = result.changed_outside_label;
+    constexpr int thumbnail_px = 96;
+    const Camera camera = orbit_camera(job.film_orbit(), job.film_front() + 0.35, thumbnail_px, thumbnail_px);
+    pending.thumbnail = std::make_shared<const Image>(
+        job.painter().paint(job.drawn_result().spans(), camera, job.plan().settings).colour);
+}
+
+EditNode node_of(const PendingResult& result) {
+    EditNode node;
+    node.name = result.name;
+    node.recipe = result.recipe;
+    node.seconds = result.seconds;
+    node.psnr_outside_db = result.psnr_outside_db;
+    node.changed_outside_label = result.changed_outside_label;
+    node.thumbnail = result.thumbnail;
+    return node;
+}
+
+DocumentState with_result(const DocumentState& before, EditNode node, const PendingResult& result) {
+    DocumentState state = with_edit(before, std::move(node), result.target, result.adds);
+    const auto called = [](const std::string& name) {
+        return [&name](const NamedLabel& label) { return label.name == name; };
+    };
+    if (result.renamed.to.empty() ||
+        std::any_of(state.labels.begin(), state.labels.end(), called(result.renamed.to)))
+        return state;
+    const auto label = std::find_if(state.labels.begin(), state.labels.end(), called(result.renamed.from));
+    if (label != state.labels.end()) label->name = result.renamed.to;
+    return state;
+}
+
+std::optional<PendingResult> take_back_edit(DocumentState& state, const nlohmann::json& jobs) {
+    try {
+        const auto edit = jobs.find("edit");
+        if (edit == jobs.end() || state.stack.empty() ||
+            edit->value("id", std::uint64_t{0}) != state.stack.back().id)
+            return std::nullopt;
+        const EditNode node = state.stack.back();
+        auto stack = state.stack;
+        stack.pop_back();
+        DocumentState before = with_stack(state, std::move(stack));
+        PendingResult pending;
+        pending.set = state.current;
+        pending.base_to_new =
+            std::make_shared<const std::vector<std::int64_t>>(row_map(*before.row_ids, *state.row_ids));
+        pending.name = node.name;
+        pending.recipe = node.recipe;
+        pending.target = edit->value("target", "");
+        pending.seed = edit->value("seed", std::uint64_t{0});
+        pending.adds = edit->value("adds", false);
+        pending.renamed = {edit->value("source", ""), edit->value("becomes", "")};
+        pending.seconds = node.seconds;
+        pending.psnr_outside_db = node.psnr_outside_db;
+        pending.changed_outside_label = node.changed_outside_label;
+        pending.thumbnail = node.thumbnail;
+        state = std::move(before);
+        return pending;
+    } catch (const nlohmann::json::exception& error) {
+        log::warning("the edit stays on the stack, its description is damaged ({})", error.what());
+        return std::nullopt;
+    }
+}
+
+}  // namespace gse::app

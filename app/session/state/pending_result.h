@@ -1,0 +1,54 @@
+// The result of a run while nobody has said yet whether it is kept.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/cli/engine_names.h"
+#include "engine/base/image.h"
+#include "engine/pipeline/run/edit_job.h"
+#include "engine/scene/document.h"
+
+namespace gse::app {
+
+/// What an edit made another thing of, and what that is; empty for other edits. Words as as_told() has them.
+struct Renamed {
+    std::string from, to;
+};
+/// Of a job that has located.
+Renamed renamed_by(const EditJob& job);
+
+/// What came of an edit that has not been applied yet.
+struct PendingResult {
+    GaussianSet before, set;
+    std::shared_ptr<const std::vector<std::int64_t>> base_to_new;  // [before rows]
+    std::string name, recipe, target;
+    std::uint64_t seed = 0;
+    bool adds = false;
+    Renamed renamed;
+    double seconds = 0, psnr_outside_db = 0;
+    std::size_t changed_outside_label = 0;
+    std::shared_ptr<const Image> thumbnail;
+};
+
+/// Takes what a finished run leaves. Throws Error (Cancelled) when it was stopped before its first step.
+void fill_pending(EditJob& job, PendingResult& pending);
+/// The same with its report (edit_output.h).
+void fill_pending(EditJob& job, const nlohmann::ordered_json& report, PendingResult& pending);
+
+/// The edit of the stack that it becomes, without identity and delta.
+EditNode node_of(const PendingResult& result);
+
+/// The state with that edit, its node complete, on the stack (stack_edits.h). A label that bore the name of
+/// what became another thing bears the new thing's, where no other does.
+DocumentState with_result(const DocumentState& state, EditNode node, const PendingResult& result);
+
+/// The edit that was running or waiting when a project was kept (`jobs` of it) comes off the stack again and
+/// waits to be applied.
+std::optional<PendingResult> take_back_edit(DocumentState& state, const nlohmann::json& jobs);
+
+}  // namespace gse::app

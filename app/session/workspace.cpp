@@ -1,0 +1,55 @@
+// Ground that all controllers stand on: the document, the jobs, messages, and what belongs to the window
+// itself.
+#include "app/session/workspace.h"
+
+#include <utility>
+
+namespace gse::app {
+
+Jobs::Jobs(MainQueue& queue)
+    : work(queue, JobThread::Priority::Patient), files(queue), saver(queue, JobThread::Priority::Patient),
+      counter(queue, JobThread::Priority::Patient) {}
+
+bool Jobs::start_work(JobKind kind, JobThread::Job job) {
+    if (!work.start(std::move(job))) return false;
+    kind_ = kind;
+    return true;
+}
+
+Workspace::Workspace(ApplicationOptions chosen)
+    : options(std::move(chosen)), notices(options.wake), jobs(std::make_unique<Jobs>(queue)) {
+    queue.set_wake(options.wake);
+}
+
+bool Workspace::require_scene() {
+    if (!document.empty()) return true;
+    notices.toast("Open a scene first.");
+    return false;
+}
+
+const NamedLabel* Workspace::active_label() const {
+    if (document.empty()) return nullptr;
+    const auto& state = document.state();
+    if (state.active_label < 0 || state.active_label >= static_cast<int>(state.labels.size())) return nullptr;
+    return &state.labels[static_cast<std::size_t>(state.active_label)];
+}
+
+Scene Workspace::scene() const {
+    Scene scene;
+    scene.gaussians = document.state().current;
+    scene.info = document.state().info;
+    return scene;
+}
+
+void Workspace::toast_step(std::string text) {
+    notices.toast(std::move(text), false, "Undo", [this, revision = document.revision()] {
+        if (document.revision() == revision) return run(ui::command::Undo{});
+        notices.toast("More was done since: History leads back to any step.");
+    });
+}
+
+void Workspace::report_end(const Error& error) {
+    if (error.code() != ErrorCode::Cancelled) notices.report(error);
+}
+
+}  // namespace gse::app
