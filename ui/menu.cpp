@@ -269,7 +269,8 @@ void draw_menu_bar(Context& context) {
         ImGui::EndMenu();
     }
     if (begin_menu(context, "Help")) {
-        if (item(context, {"menu.keys", "Keys", "F1"})) context.state.help_open = true;
+        if (item(context, {"menu.guide", "Guide", "F1"})) context.emit(command::OpenGuide{});
+        if (item(context, {"menu.keys", "Keys", "Shift + F1"})) context.state.help_open = true;
         if (item(context, {"menu.log", "Log"})) show_panel(context.state, PanelId::Log);
         if (item(context, {"menu.about", "About"})) context.state.about_open = true;
         ImGui::EndMenu();

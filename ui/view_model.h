@@ -289,15 +289,16 @@ struct NetworkCost {
     double tflop = 0;                                  // 10^12 operations
 };
 
-/// Everything the panels read. Pointers are valid for the frame.
 /// One of several results that can be applied.
 struct ResultView {
     std::shared_ptr<const Image> thumbnail;  // may be null
     std::uint64_t seed = 0;
 };
 
-struct ViewModel {
-    // Document
+// Parts of the view model: each is assembled by one controller of the application.
+
+/// The document and its files.
+struct DocumentPart {
     const Document* document = nullptr;  // null or empty() = nothing open
     SceneStatistics statistics;
     std::string scene_path, project_path;
@@ -306,8 +307,10 @@ struct ViewModel {
     std::string saved_at;                   // "saved 14:02 (autosave on)"
     std::vector<std::string> recent;        // paths, newest first
     std::vector<RecoveryView> recoverable;  // newest first
-    AskedQuestion question;
-    // Viewport
+};
+
+/// The viewport and its settings.
+struct ViewportPart {
     TextureId viewport = 0;           // the rendered picture
     TextureId viewport_original = 0;  // to draw left of the wipe; 0 = the picture holds both sides already
     int viewport_width = 0,
@@ -316,28 +319,24 @@ struct ViewModel {
     Camera camera;                                // of the picture shown
     OrbitParameters orbit;                        // home: the fitted orbit,
     Bounds framing;                               // and what is to be seen from there
-    double frames_per_second = 0, render_ms = 0;
-    std::string renderer;  // "native AVX-512", "Vulkan: llvmpipe"
-    std::size_t labelled = 0;
+    double render_ms = 0;
+    std::string renderer;    // "native AVX-512", "Vulkan: llvmpipe"
     std::size_t hidden = 0;  // splats of the scene that the artist does not want to see at present
-    // Prompt
-    edit::EditRequest request;             // as edited by the panel, echoed by the application
-    edit::EditRequest request_defaults;    // what suits the model in use
-    std::vector<std::string> known_words;  // of the chosen model; empty = open vocabulary
-    std::vector<std::string> drawn_words;  // that it draws besides and does not look for
-    bool words_known = false;              // known_words has been read
-    std::vector<std::string> said_words;   // what the applied edits say of the scene: no news any more
-    std::string read_target;  // what a search of this very sentence saw to be new; empty = none has looked
+    ViewSettings view;
+    Comparison comparison = Comparison::None;
+    std::uint64_t compared_revision = 0;  // of the step that comparisons show as before; 0 = the usual
+    std::string compared_name;            // of that step
+};
+
+/// The request and what was found for it.
+struct SearchPart {
+    edit::EditRequest request;
+    std::vector<std::string> said_words;  // by the applied edits of the scene: no news any more
+    std::size_t words_read = 0;           // of the sentence, by the text encoder; 0 = all, or not known
+    std::string read_target;  // the word that a search of this sentence saw to be new; empty = none looked
     EditReach reach;
-    PickedRows picked;
-    std::string keymap;             // Keymap::text(); empty = as it is by default
-    bool adjusting = false;         // the last step is an adjustment of colours, which more of it changes
     bool labelled_by_hand = false;  // nothing has to be found: the active label says what may change
-    std::size_t words_read = 0;     // of the sentence, by the text encoder; 0 = all, or not known
-    ModelSettings model_settings, model_settings_defaults;
     Estimate estimate;
-    std::string cannot_edit;  // why Locate and Edit are off; empty = they are on
-    // Localization
     std::vector<AttentionView> attention;
     std::string attention_word, attention_mode;  // "bear", "modify: ..."
     double attention_threshold = 0.5;
@@ -345,14 +344,15 @@ struct ViewModel {
     bool voting = false;               // the job only votes anew: more views can be left out meanwhile
     bool attention_corrected = false;  // the label was set by hand since: the masks are older than it
     SearchView search;
-    // Work
-    JobStatus job;              // locate, edit
-    bool edit_running = false;  // the job is an edit
-    JobStatus file_job;         // load, export, save
+};
+
+/// The running or last edit and its results.
+struct EditPart {
+    bool edit_running = false;
     GateView gate;
-    std::vector<TargetRound> target_rounds;  // of the running or last edit that views lead, in their order
+    std::vector<TargetRound> target_rounds;  // of an edit that views lead, in their order
     bool targets_wait = false;               // the fit of the last round begins when the artist says so
-    NetworkCost cost;
+    NetworkCost cost;                        // of the running or last search or edit
     std::vector<LossPoint> losses;
     std::vector<SnapshotView> snapshots;
     int shown_snapshot = -1;        // index into snapshots, -1 = the result that waits, else the newest
@@ -363,24 +363,62 @@ struct ViewModel {
     double result_seconds = 0;        // that it took
     std::vector<ResultView> results;  // of which one waits, the others beside it
     std::size_t shown_result = 0;     // index into results
-    // Rest
+};
+
+/// Labels and splats chosen by a property.
+struct LabelPart {
+    std::size_t labelled = 0;  // splats of the active label
+    PickedRows picked;
+    bool adjusting = false;  // the last step is an adjustment of colours, which more of it changes
+};
+
+/// Models and their settings.
+struct ModelPart {
     std::vector<ModelView> models;
+    std::vector<std::string> known_words;  // of the chosen model; empty = open vocabulary
+    std::vector<std::string> drawn_words;  // that it draws besides and does not look for
+    bool words_known = false;              // known_words has been read
+    edit::EditRequest request_defaults;    // values that suit the model in use
+    ModelSettings model_settings, model_settings_defaults;
     bool edits_by_instruction = false;  // the model in use is told what to do, too
     std::vector<LoraView> loras;
     bool loras_checking = false;              // others are being loaded, to see whether they can be used
     std::array<SegmenterView, 2> segmenters;  // by SegmenterRole
-    std::span<const LogLine> log;
-    std::vector<Toast> toasts;
-    ViewSettings view;
+    int cache_mb = 0;                         // most that answers of the networks take on the disk; 0 = none
+    std::uint64_t cache_bytes = 0;            // that they take
+};
+
+struct ExportPart {
     ExportSettings exports;
     std::vector<CameraKey> camera_keys;
-    Comparison comparison = Comparison::None;
-    std::uint64_t compared_revision =
-        0;  // of the step that comparisons show as before; 0 = what an edit began with, or the original
-    std::string compared_name;  // of that step
-    float ui_scale = 1;
-    int cache_mb = 0;               // most that answers of the networks take on the disk; 0 = none are kept
-    std::uint64_t cache_bytes = 0;  // what they take
 };
+
+struct NoticePart {
+    AskedQuestion question;
+    std::span<const LogLine> log;
+    std::vector<Toast> toasts;
+};
+
+/// Jobs and the window itself.
+struct WindowPart {
+    JobStatus job;            // search, edit
+    JobStatus file_job;       // load, export, save
+    std::string cannot_edit;  // why Locate and Edit are off; empty = they are on
+    double frames_per_second = 0;
+    std::string keymap;  // Keymap::text(); empty = as it is by default
+    float ui_scale = 1;
+};
+
+/// Everything the panels read: assembled before every frame, never changed by them. Pointers and spans are
+/// valid for the frame.
+struct ViewModel : DocumentPart,
+                   ViewportPart,
+                   SearchPart,
+                   EditPart,
+                   LabelPart,
+                   ModelPart,
+                   ExportPart,
+                   NoticePart,
+                   WindowPart {};
 
 }  // namespace gse::ui

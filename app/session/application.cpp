@@ -5,8 +5,11 @@
 #include <variant>
 
 #include "app/session/json_values.h"
+#include "engine/base/desktop.h"
+#include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/io/files/user_files.h"
+#include "engine/pipeline/models/installed.h"
 #include "engine/scene/label_ops.h"
 
 namespace gse::app {
@@ -172,6 +175,12 @@ void Application::load_settings() {
 }
 
 // Commands of the window itself
+
+template <> void Application::on(const command::OpenGuide&) {
+    try {
+        open_document(pipeline::guide_path());
+    } catch (const Error& error) { workspace_.notices.report(error); }
+}
 
 template <> void Application::on(const command::ToggleFullscreen&) {
     if (workspace_.options.on_fullscreen) workspace_.options.on_fullscreen();

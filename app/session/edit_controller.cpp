@@ -283,7 +283,7 @@ std::string EditController::said_of_stage() const {
     return workspace_.results ? ", with the edit that is not applied yet" : "";
 }
 
-void EditController::show(ui::ViewModel& model) const {
+void EditController::show(ui::EditPart& model) const {
     const auto& results = workspace_.results;
     live_.show(model);
     snapshots_.show(model);

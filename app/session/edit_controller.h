@@ -28,7 +28,7 @@ public:
     void run(const ui::EditCommand& command);
     /// Takes what the running edit told. Once per frame, and when it ends.
     void refresh();
-    void show(ui::ViewModel& model) const;
+    void show(ui::EditPart& model) const;
     /// Another document is open, with a result that waits to be applied where its work was kept.
     void take_document(std::optional<PendingResult> pending);
 

@@ -262,7 +262,7 @@ void ExportController::refresh() {
     if (!view_.any_hidden()) settings_.visible_only = false;  // a choice for what is hidden now
 }
 
-void ExportController::show(ui::ViewModel& model) const {
+void ExportController::show(ui::ExportPart& model) const {
     model.exports = settings_;
     model.camera_keys = keys_;
 }

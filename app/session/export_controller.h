@@ -25,7 +25,7 @@ public:
     void run(const ui::ExportCommand& command);
     /// A choice for what is hidden ends with it. Once per frame.
     void refresh();
-    void show(ui::ViewModel& model) const;
+    void show(ui::ExportPart& model) const;
     /// Another document is open: it has no camera path yet.
     void take_document();
 

@@ -378,7 +378,7 @@ void FileController::refresh() {
     leave_when_stopped();
 }
 
-void FileController::show(ui::ViewModel& model) const {
+void FileController::show(ui::DocumentPart& model) const {
     const auto& document = workspace_.document;
     model.document = document.empty() ? nullptr : &document;
     model.statistics = counter_.statistics();

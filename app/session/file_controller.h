@@ -37,7 +37,7 @@ public:
     void run(const ui::FileCommand& command);
     /// Writes an autosave where one is due, and leaves an edit that has stopped. Once per frame.
     void refresh();
-    void show(ui::ViewModel& model) const;
+    void show(ui::DocumentPart& model) const;
     /// Writes what is not saved to the recovery folder. `asked`: the artist said what becomes of it.
     void shut_down(bool asked);
     bool leaving() const { return leaving_.has_value(); }

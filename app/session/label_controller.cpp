@@ -360,7 +360,7 @@ template <> void LabelController::on(const command::MoveEdit& one) {
     });
 }
 
-void LabelController::show(ui::ViewModel& model) const {
+void LabelController::show(ui::LabelPart& model) const {
     model.picked = picked_;
     model.adjusting = adjusted_.has_value();
     model.labelled = workspace_.labelled;

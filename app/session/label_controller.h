@@ -25,7 +25,7 @@ public:
     void run(const ui::LabelCommand& command);
     /// Follows the splats that are chosen by a property. Once per frame.
     void refresh();
-    void show(ui::ViewModel& model) const;
+    void show(ui::LabelPart& model) const;
     /// Nothing is chosen by a property any more.
     void drop_picked();
     /// Adds what splats are chosen by a property.

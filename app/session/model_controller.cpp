@@ -331,7 +331,7 @@ void ModelController::from_json(const nlohmann::json& json) {
         try_model(json["model"].get<std::string>(), texts_of(json, "loras"), !json.contains("request"));
 }
 
-void ModelController::show(ui::ViewModel& model) const {
+void ModelController::show(ui::ModelPart& model) const {
     model.models = rows_;
     model.loras = lora_rows_;
     model.loras_checking = loras_checking_;

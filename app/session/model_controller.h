@@ -30,7 +30,7 @@ public:
     ModelController(Workspace& workspace, MoveRequest move_request);
 
     void run(const ui::ModelCommand& command);
-    void show(ui::ViewModel& model) const;
+    void show(ui::ModelPart& model) const;
 
     /// The model that was in use when the program was last left; what cannot be used any more gives way.
     void start();

@@ -75,7 +75,7 @@ void Notices::refresh() {
     for (auto& state : toasts_) state.toast.age_seconds = seconds_since(state.born);
 }
 
-void Notices::show(ui::ViewModel& model) const {
+void Notices::show(ui::NoticePart& model) const {
     model.question = question_;
     model.log = log_;
     model.toasts.clear();

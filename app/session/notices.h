@@ -41,7 +41,7 @@ public:
     /// Takes the lines of the log and drops notices that were shown long enough. Call once per frame.
     void refresh();
     bool shows_toasts() const { return !toasts_.empty(); }
-    void show(ui::ViewModel& model) const;
+    void show(ui::NoticePart& model) const;
 
     void run(const ui::NoticeCommand& command);
 

@@ -358,7 +358,7 @@ void SearchController::refresh_estimate() {
     costs_.estimate(request_, work);
 }
 
-void SearchController::show(ui::ViewModel& model) const {
+void SearchController::show(ui::SearchPart& model) const {
     model.request = request_;
     model.said_words = said_words_;
     model.words_read = words_read_;

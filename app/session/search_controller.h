@@ -40,7 +40,7 @@ public:
     void run(const ui::SearchCommand& command);
     /// Takes views that came in, votes where that is wanted, and follows words and labels. Once per frame.
     void refresh();
-    void show(ui::ViewModel& model) const;
+    void show(ui::SearchPart& model) const;
     /// Another document is open: nothing was searched in it.
     void take_document();
     /// The document changed: what its edits say of the scene.

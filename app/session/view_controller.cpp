@@ -155,7 +155,7 @@ void ViewController::draw(PreviewHost& preview, const Stage& stage) {
     shown_ = preview.state();
 }
 
-void ViewController::show(ui::ViewModel& model) const {
+void ViewController::show(ui::ViewportPart& model) const {
     model.view = settings_;
     model.comparison = comparison_;
     model.compared_revision = compared_.revision;

@@ -36,7 +36,7 @@ public:
     void draw(PreviewHost& preview, const Stage& stage);
     /// The document's picture is gone.
     void draw_nothing() { shown_ = {}; }
-    void show(ui::ViewModel& model) const;
+    void show(ui::ViewportPart& model) const;
 
     /// The camera moves, or did a moment ago.
     bool moving() const;

@@ -44,6 +44,22 @@ constexpr double WorkingFrame = 0.04;   // the same while a job runs that needs 
 constexpr double SoftwareFrame = 0.08;  // and where the processor draws the window as well
 constexpr double ActiveSeconds = 0.6;   // after input every frame is drawn
 
+nlohmann::ordered_json job_state(const JobStatus& job) {
+    return {{"running", job.running}, {"paused", job.paused},   {"title", job.title}, {"stage", job.stage},
+            {"step", job.step},       {"outcome", job.outcome}, {"error", job.error}};
+}
+
+nlohmann::ordered_json targets_state(const ui::ViewModel& model) {
+    nlohmann::ordered_json state = {{"rounds", model.target_rounds.size()},
+                                    {"waits", model.targets_wait},
+                                    {"review", model.model_settings.review}};
+    if (model.target_rounds.empty()) return state;
+    for (const auto& target : model.target_rounds.back().targets)
+        state["views"].push_back(
+            {{"view", target.view}, {"redrawn", target.attempt}, {"dropped", target.dropped}});
+    return state;
+}
+
 /// The window and everything in it.
 class Editor {
 public:
@@ -199,27 +215,15 @@ private:
                            {"message", model.search.message},
                            {"remedy", model.search.remedy}};
         if (model.search.front) state["search"]["front"] = *model.search.front;
-        state["job"] = {{"running", model.job.running}, {"paused", model.job.paused},
-                        {"title", model.job.title},     {"stage", model.job.stage},
-                        {"step", model.job.step},       {"outcome", model.job.outcome},
-                        {"error", model.job.error}};
-        state["file_job"] = {{"running", model.file_job.running},
-                             {"title", model.file_job.title},
-                             {"outcome", model.file_job.outcome},
-                             {"error", model.file_job.error}};
+        state["job"] = job_state(model.job);
+        state["file_job"] = job_state(model.file_job);
         state["estimate"] = {{"seconds", model.estimate.seconds},
                              {"tflop", model.estimate.tflop},
                              {"memory_mb", model.estimate.memory_mb}};
         state["losses"] = model.losses.size();
         state["snapshots"] = model.snapshots.size();
         state["result_waiting"] = model.result_waiting;
-        state["targets"] = {{"rounds", model.target_rounds.size()},
-                            {"waits", model.targets_wait},
-                            {"review", model.model_settings.review}};
-        if (!model.target_rounds.empty())
-            for (const auto& target : model.target_rounds.back().targets)
-                state["targets"]["views"].push_back(
-                    {{"view", target.view}, {"redrawn", target.attempt}, {"dropped", target.dropped}});
+        state["targets"] = targets_state(model);
         state["cost"] = {{"unet", model.cost.unet}, {"tflop", model.cost.tflop}};
         state["comparison"] = static_cast<int>(model.comparison);
         state["mode"] = model.view.mode;

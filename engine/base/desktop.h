@@ -9,4 +9,8 @@ namespace gse {
 /// (NotFound) without such a program or folder.
 void show_folder_of(const std::filesystem::path& file);
 
+/// Opens a document with the desktop's program for it (xdg-open). Returns at once. Throws Error (NotFound)
+/// where there is no such program, or no such document.
+void open_document(const std::filesystem::path& file);
+
 }  // namespace gse

@@ -281,6 +281,8 @@ struct DismissToast {
 struct PressToast {
     std::size_t index = 0;
 };
+/// Opens the artist's guide in the desktop's browser.
+struct OpenGuide {};
 struct ToggleFullscreen {};
 struct SetUiScale {
     float scale = 1;
@@ -320,8 +322,8 @@ using ExportCommand = std::variant<command::SetExports, command::ExportPicture, 
                                    command::ExportScene, command::ExportViewpoints, command::AddCameraKey,
                                    command::DeleteCameraKey, command::ExportCameraPath>;
 using NoticeCommand = std::variant<command::Answer, command::DismissToast, command::PressToast>;
-using WindowCommand =
-    std::variant<command::ToggleFullscreen, command::SetUiScale, command::SetKeymap, command::Quit>;
+using WindowCommand = std::variant<command::OpenGuide, command::ToggleFullscreen, command::SetUiScale,
+                                   command::SetKeymap, command::Quit>;
 
 /// A command; each alternative is the list of one controller.
 using Command = std::variant<FileCommand, SearchCommand, EditCommand, LabelCommand, ViewCommand, ModelCommand,

@@ -59,7 +59,7 @@ struct KeyHelp {
 };
 
 /// All keys; what the shortcuts and the camera do must agree with it.
-inline constexpr std::array<KeyHelp, 52> KeyTable{{
+inline constexpr std::array<KeyHelp, 53> KeyTable{{
     {"Camera", "Left drag (no tool), middle drag", "Orbit"},
     {"Camera", "Shift + middle drag, right drag", "Pan"},
     {"Camera", "Wheel", "Zoom to the cursor"},
@@ -92,7 +92,8 @@ inline constexpr std::array<KeyHelp, 52> KeyTable{{
     {"Show", "Ctrl + Space", "Hide the panels", Shortcut::Panels, "panels"},
     {"Show", "F11", "Full screen", Shortcut::Fullscreen, "fullscreen"},
     {"Show", "Ctrl + +, Ctrl + -, Ctrl + 0", "Size of the interface"},
-    {"Show", "F1", "This list"},
+    {"Show", "F1", "The guide"},
+    {"Show", "Shift + F1", "This list"},
     {"Keyboard", "Tab, Shift + Tab", "Next, previous control"},
     {"Keyboard", "Arrows", "The control on that side; through a menu or a list"},
     {"Keyboard", "Space, Enter", "Press what has the focus; change a slider"},

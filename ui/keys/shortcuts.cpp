@@ -170,7 +170,10 @@ void handle_keys(Context& context) {
     const bool typing = io.WantTextInput;
     hold_to_flip(context, !dialog && !typing && !io.KeyCtrl);
     if (dialog) return;
-    if (pressed(key::F1)) context.state.help_open = true;
+    if (pressed(key::F1)) {
+        if (!io.KeyShift) return context.emit(command::OpenGuide{});
+        context.state.help_open = true;
+    }
     file_keys(context, typing);
     if (io.KeyCtrl && !io.KeyAlt) control_keys(context);
     if (io.KeyShift && !io.KeyCtrl && enter_pressed()) return run_edit(context);

@@ -108,7 +108,7 @@ void draw_keys(Context& context) {
     draw_key_preset(context, "settings.preset");
     if (button(context, {.name = "settings.keys",
                          .text = "Choose keys...",
-                         .tooltip = "All keys, each to be chosen (F1)"}))
+                         .tooltip = "All keys, each to be chosen (Shift + F1)"}))
         context.state.help_open = true;
 }
 

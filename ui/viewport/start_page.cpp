@@ -126,8 +126,7 @@ void draw_start_page(Context& context) {
     if (context.model.recent.empty())
         dim_text(
             "Then: type what to change on the right, press Locate, correct the label, press Edit. F1 "
-            "lists "
-            "the keys.");
+            "opens the guide, Shift + F1 lists the keys.");
     ImGui::EndChild();
 }
 

@@ -92,7 +92,7 @@ void LastSearch::leave_out(std::size_t view, bool out) {
     views_[view].step = out ? edit::ViewStep::LeftOut : edit::ViewStep::Found;
 }
 
-void LastSearch::show(ui::ViewModel& model) const {
+void LastSearch::show(ui::SearchPart& model) const {
     model.attention = views_;
     model.attention_word = word_;
     model.attention_mode = mode_;

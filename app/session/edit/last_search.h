@@ -47,7 +47,7 @@ public:
     void set_threshold(double threshold) { threshold_ = threshold; }
     /// Shows a view as left out, or as put back, until the vote that follows.
     void leave_out(std::size_t view, bool out);
-    void show(ui::ViewModel& model) const;
+    void show(ui::SearchPart& model) const;
 
 private:
     std::shared_ptr<EditJob> job_;

@@ -187,7 +187,7 @@ void LiveEdit::fit() {
     roads->words.push(std::nullopt);
 }
 
-void LiveEdit::show(ui::ViewModel& model) const {
+void LiveEdit::show(ui::EditPart& model) const {
     model.gate = gate;
     model.losses = losses;
     model.target_rounds = rounds;

@@ -107,7 +107,7 @@ struct LiveEdit {
     void take(const edit_news::Targets& targets);
     void order(const edit::TargetOrder& order);
     void fit();
-    void show(ui::ViewModel& model) const;
+    void show(ui::EditPart& model) const;
 };
 
 }  // namespace gse::app

@@ -54,7 +54,7 @@ void Snapshots::forget() {
     newest_set_ = looked_at_ = {};
 }
 
-void Snapshots::show(ui::ViewModel& model) const {
+void Snapshots::show(ui::EditPart& model) const {
     model.snapshots.clear();
     for (const auto& snapshot : list_) model.snapshots.push_back({snapshot.iteration, snapshot.size()});
     model.shown_snapshot = shown_;

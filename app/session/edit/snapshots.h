@@ -44,7 +44,7 @@ public:
     void look_at_newest() { shown_ = -1; }
     void drop_after(int iteration);
     void forget();
-    void show(ui::ViewModel& model) const;
+    void show(ui::EditPart& model) const;
 
 private:
     std::deque<edit::EditSnapshot> list_;

@@ -59,7 +59,7 @@ public:
     void run(const ui::command::DiscardRecovery& command);
     void run(const ui::command::PostponeRecovery& command);
     void see_start_page() { start_page_seen_ = true; }
-    void show(ui::ViewModel& model) const { model.recoverable = offers_; }
+    void show(ui::DocumentPart& model) const { model.recoverable = offers_; }
 
 private:
     using Clock = std::chrono::steady_clock;

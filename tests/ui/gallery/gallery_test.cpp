@@ -37,7 +37,14 @@ const std::vector<Shot>& shots() {
         {"editing", Situation::Editing, {PanelId::Prompt, PanelId::History, PanelId::Progress}},
         {"targets", Situation::Editing, {PanelId::Prompt, PanelId::History, PanelId::Targets}},
         {"result", Situation::ResultWaiting, {PanelId::Scene, PanelId::Export, PanelId::Progress}},
-        {"help", Situation::Scene, {}, [](Harness& harness) { harness.key(ui::key::F1); }},
+        {"help",
+         Situation::Scene,
+         {},
+         [](Harness& harness) {
+             harness.modifiers(true, false, false);
+             harness.key(ui::key::F1);
+             harness.modifiers(false, false, false);
+         }},
         {"files",
          Situation::Scene,
          {},

@@ -331,8 +331,12 @@ DOCTEST_TEST_CASE("menus reach what the panels reach") {
     harness.click("menu.reset_layout");
     harness.frame(3);
     DOCTEST_CHECK(harness.find("tab.Prompt") != nullptr);
+    DOCTEST_CHECK(harness.key_asks(key::F1, "open_guide"));
+    harness.modifiers(true, false, false);
     harness.key(key::F1);
+    harness.modifiers(false, false, false);
     harness.frame(3);
+    DOCTEST_CHECK(harness.shell.state().help_open);
     harness.key(key::Escape);
     harness.frame(3);
     DOCTEST_CHECK(harness.asks("tool.undo", "undo"));

@@ -219,7 +219,9 @@ DOCTEST_TEST_CASE(
     Harness harness({1920, 1080, 1, Situation::Located, false});
     const auto tool = [&] { return harness.shell.state().viewport.tool; };
     const auto choose = [&](const char* command, int code) {
+        harness.modifiers(true, false, false);
         harness.key(key::F1);
+        harness.modifiers(false, false, false);
         harness.frame(3);
         harness.click(fmt::format("keys.{}", command));
         harness.key(code);

@@ -54,7 +54,7 @@ class Keyboard(WindowTest):
             time.sleep(0.1)
         window.wait(lambda s: s["labelled"] < labelled, "the arrows did not move the threshold", 10)
         window.picture("22_threshold_by_keys")
-        window.key("F1")
+        window.key("shift+F1")
         time.sleep(0.5)
         window.picture("23_keys")
         window.key("Escape")

@@ -36,6 +36,15 @@ DOCTEST_TEST_CASE(
     DOCTEST_CHECK(argument == folder.string());
     DOCTEST_CHECK_THROWS_WITH_AS(show_folder_of(folder / "none" / "c.png"),
                                  doctest::Contains("the folder is gone"), Error);
+    std::filesystem::remove(folder / "asked");
+    std::ofstream(folder / "page.html") << "<p>";
+    open_document(folder / "page.html");
+    for (int i = 0; i < 1000 && !std::filesystem::exists(folder / "asked"); ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    std::ifstream document(folder / "asked");
+    argument.assign((std::istreambuf_iterator<char>(document)), {});
+    DOCTEST_CHECK(argument == (folder / "page.html").string());
+    DOCTEST_CHECK_THROWS_WITH_AS(open_document(folder / "none.html"), doctest::Contains("not there"), Error);
     setenv("PATH", path.c_str(), 1);
     std::filesystem::remove_all(folder);
 }
