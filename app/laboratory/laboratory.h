@@ -16,5 +16,6 @@ void add_synth_command(CLI::App& app, CommandContext& context);
 void add_training_command(CLI::App& app, CommandContext& context);  // train-starter
 void add_bench_command(CLI::App& app, CommandContext& context);
 void add_eval_command(CLI::App& app, CommandContext& context);
+void add_figures_command(CLI::App& app, CommandContext& context);
 
 }  // namespace gse::app

@@ -7,6 +7,6 @@ int main(int argc, char** argv) {
     return program_main(
         {"gseditpro-lab",
          "The laboratory of GSEditPro: generated scenes, measurements, training of the starter model",
-         {add_synth_command, add_eval_command, add_bench_command, add_training_command}},
+         {add_synth_command, add_eval_command, add_bench_command, add_figures_command, add_training_command}},
         argc, argv);
 }

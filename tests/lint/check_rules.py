@@ -26,6 +26,7 @@ ARROWS = {
     "laboratory/eval": {"base", "math", "scene", "io", "raster", "localize", "edit", "neural", "evaluate", "pipeline", "laboratory/synth"},
     "laboratory/bench": {"base", "math", "scene", "io", "raster", "localize", "edit", "neural", "evaluate", "pipeline", "vulkan", "preview",
                          "laboratory/synth", "laboratory/eval"},
+    "laboratory/figures": {"base", "pipeline", "laboratory/bench", "laboratory/eval"},
     "window": {"base", "vulkan"},
 }
 # room -> its sub-rooms, each with the sub-rooms of the same room that it may include; "" = files directly in the room

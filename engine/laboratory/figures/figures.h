@@ -1,0 +1,38 @@
+// Measures what engine/FIGURES.md holds, and writes that page.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "engine/base/fields.h"
+#include "engine/base/progress.h"
+#include "engine/pipeline/run/recipe.h"
+
+namespace gse::bench {
+
+struct FiguresParameters {
+    std::string seeds = "1 2";
+    std::string suites = "edits words searches encoder methods stability speed";
+
+    template <class Self, class F> static void visit_fields(Self& self, F&& f) {
+        f("seeds", self.seeds, "Seeds of the evaluations, with spaces between.");
+        f("suites", self.suites,
+          "Suites to measure: edits words searches encoder methods stability speed. Results of the others "
+          "are "
+          "taken where the folder has them.");
+    }
+};
+
+struct FiguresRun {
+    FiguresParameters parameters;
+    pipeline::EditRecipe settings;  // model and machine
+    std::filesystem::path
+        results;  // a folder per evaluation and a file per bench, as their own commands leave them
+};
+
+/// Measures what `results` does not hold yet, keeps it there, and returns the page as Markdown. Throws Error
+/// (InvalidArgument) for an unknown suite or a seed that is no number, (Malformed) for a result that is of
+/// other settings, (Cancelled) on a stop request; results that were finished stay.
+std::string figures_page(const FiguresRun& run, const JobControl& job);
+
+}  // namespace gse::bench

@@ -1,0 +1,91 @@
+// The page of measurements: tables of hand-made results, and what the command refuses.
+#include "engine/laboratory/figures/figure_tables.h"
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+
+#include "engine/base/error.h"
+#include "engine/base/file.h"
+#include "engine/laboratory/figures/figures.h"
+#include "tests/test_paths.h"
+
+namespace gse::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json edit(const char* kind, const char* target, double removed, int unet) {
+    return {{"kind", kind},
+            {"target", target},
+            {"mode", "modify"},
+            {"l1_reduction", removed},
+            {"psnr_outside_db", 60.4},
+            {"networks", {{"edit", {{"unet", 10}}}, {"total", {{"unet", unet}}}}}};
+}
+
+Json report(std::uint64_t seed) {
+    return {{"parameters", {{"seed", seed}}},
+            {"summary",
+             {{"add_l1_reduction", {{"value", 0.5}, {"goal", ">= 0.4"}, {"met", true}}},
+              {"drift", {{"value", 0}, {"goal", nullptr}, {"met", nullptr}}}}},
+            {"edits",
+             {edit("recolour", "pink", 0.5, 40),
+              edit("recolour", "brown", 0.7, 60),
+              {{"kind", "recolour"}, {"target", "pink"}, {"error", "failed"}}}}};
+}
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+}  // namespace
+
+DOCTEST_TEST_CASE("A Markdown table has a head, a rule and as many cells in every row") {
+    DOCTEST_CHECK(markdown_table({{"a", "b"}, {"1", "2"}}) == "| a | b |\n|---|---|\n| 1 | 2 |\n");
+}
+
+DOCTEST_TEST_CASE("Figures of a suite stand in a column per seed, with their goal") {
+    const auto table = edits_table({report(1), report(7)});
+    DOCTEST_CHECK(has(table, "|  | seed 1 | seed 7 | goal |"));
+    DOCTEST_CHECK(has(table, "| added: error removed | 50.0 % | 50.0 % | >= 40.0 % |"));
+    DOCTEST_CHECK(has(table, "| splats outside the label that changed | 0 | 0 |  |"));
+    DOCTEST_CHECK_FALSE(has(table, "becomes another"));  // nothing was measured of it
+}
+
+DOCTEST_TEST_CASE("Medians leave out failed edits") {
+    DOCTEST_CHECK(has(kinds_table({report(1)}), "| recolour | 2 | 60.0 % | - | 60 dB |"));
+    DOCTEST_CHECK(has(words_table({report(1), report(2)}), "| pink | 2 | 50.0 % | - | 60 dB |"));
+    DOCTEST_CHECK(
+        has(passes_table({report(1)}), "| modify | 2 | 30 to 50, median 40 | 40 to 60, median 50 |"));
+}
+
+DOCTEST_TEST_CASE("Searches are counted as refused below the threshold, and as right above half an overlap") {
+    const Json searches{{"searches",
+                         {{{"kind", "object"}, {"confidence", 0.5}, {"present", true}, {"overlap", 0.8}},
+                          {{"kind", "object"}, {"confidence", 0.1}, {"present", true}, {"overlap", 0.9}},
+                          {{"kind", "unknown"}, {"confidence", 0.0}, {"present", false}, {"overlap", 0.0}}}}};
+    const auto table = searches_table(searches, 0.2);
+    DOCTEST_CHECK(has(table, "| object | 2 | 1 | 1 |"));
+    DOCTEST_CHECK(has(table, "| unknown | 1 | 1 |  |"));
+}
+
+DOCTEST_TEST_CASE(
+    "The page takes results that are there, says what was not measured, and refuses other settings") {
+    const test::ScratchFolder scratch;
+    const std::filesystem::path folder = scratch.path();
+    FiguresRun run;
+    run.results = folder;
+    run.parameters.suites = "";
+    run.parameters.seeds = "1";
+    write_file(folder / "search.json",
+               R"({"searches":[{"kind":"object","confidence":0.5,"present":true,"overlap":0.8}]})");
+    const auto page = figures_page(run, {});
+    DOCTEST_CHECK(has(page, "## Searches\n\n`gseditpro-lab bench search --scenes 8 --seed 62`\n\n| word |"));
+    DOCTEST_CHECK(has(page, "## Speed\n\n`gseditpro-lab bench speed`\n\nNot measured yet."));
+    std::filesystem::create_directories(folder / "eval_1");
+    write_file(folder / "eval_1/eval.json", R"({"parameters":{"seed":2}})");
+    DOCTEST_CHECK_THROWS_AS(figures_page(run, {}), Error);
+    run.parameters.suites = "edit";
+    DOCTEST_CHECK_THROWS_AS(figures_page(run, {}), Error);
+}
+
+}  // namespace gse::bench
