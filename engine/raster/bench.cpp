@@ -92,6 +92,39 @@ void compare_with_floor(const KernelFloor& floor, std::size_t sh_floats, RasterB
         (result.forward.cpu_min_ms + result.backward.cpu_min_ms) / result.threads / least;
 }
 
+/// Work of one repetition, summed over its views.
+struct Work {
+    std::size_t pairs = 0, blended = 0, reached = 0, blocks = 0;
+
+    void add(const ForwardOutput& image) {
+        pairs += image.pairs;
+        reached += image.pairs_reached;
+        blocks += image.block_pairs;
+        for (const std::int32_t count : image.blended) blended += static_cast<std::size_t>(count);
+    }
+};
+
+/// Sets the times of both passes, milliseconds per view.
+void set_times(RasterBench& result, const std::vector<Round>& forward, const std::vector<Round>& backward) {
+    result.forward = summarize(forward, result.views);
+    result.backward = summarize(backward, result.views);
+    result.forward_ms = result.forward.wall_median_ms;
+    result.backward_ms = result.backward.wall_median_ms;
+    result.forward_min_ms = result.forward.wall_min_ms;
+    result.backward_min_ms = result.backward.wall_min_ms;
+}
+
+/// Sets the work per view, and the processor time of a blended pair. The times must be set.
+void set_work(RasterBench& result, const Work& work) {
+    result.pairs = work.pairs / result.views;
+    result.blended_pairs = work.blended / result.views;
+    result.pairs_reached = work.reached / result.views;
+    result.block_pairs = work.blocks / result.views;
+    const double per_pair = 1e6 / std::max(1.0, static_cast<double>(result.blended_pairs));
+    result.forward_ns_per_pair = result.forward.cpu_min_ms * per_pair;
+    result.backward_ns_per_pair = result.backward.cpu_min_ms * per_pair;
+}
+
 }  // namespace
 
 RasterBench bench_raster(const GaussianSpans& gaussians, std::span<const Camera> cameras,
@@ -110,12 +143,11 @@ RasterBench bench_raster(const GaussianSpans& gaussians, std::span<const Camera>
         floor.emplace(choose_kernels(settings.kernels.c_str()), pool,
                       drawn_rows(*rasterizer, gaussians, views.back(), d_colour));
     std::vector<Round> forward, backward;
-    std::size_t pairs = 0, blended = 0, reached = 0, blocks = 0;
+    Work work;
     for (int round = -1; round < settings.repetitions; ++round) {  // round -1 warms up
         Round forward_round, backward_round;
-        pairs = blended = reached = blocks = 0;
-        if (floor) {  // which empties the caches: a loop of pictures, as an edit is one, finds its own
-                      // buffers in them
+        work = {};
+        if (floor) {  // empties the caches, in which a loop of pictures finds its own buffers
             floor->measure();
             rasterizer->forward(gaussians, views.back(), image_settings, image);
             rasterizer->backward(d_colour, {}, 0, gradients);
@@ -123,10 +155,7 @@ RasterBench bench_raster(const GaussianSpans& gaussians, std::span<const Camera>
         for (const Camera& view : views) {
             time_into(forward_round, [&] { rasterizer->forward(gaussians, view, image_settings, image); });
             time_into(backward_round, [&] { rasterizer->backward(d_colour, {}, 0, gradients); });
-            pairs += image.pairs;
-            reached += image.pairs_reached;
-            blocks += image.block_pairs;
-            for (const std::int32_t count : image.blended) blended += static_cast<std::size_t>(count);
+            work.add(image);
         }
         if (round < 0) continue;
         forward.push_back(forward_round);
@@ -138,22 +167,11 @@ RasterBench bench_raster(const GaussianSpans& gaussians, std::span<const Camera>
     result.splats = gaussians.size;
     result.width = settings.width, result.height = settings.height;
     result.views = views.size();
-    result.forward = summarize(forward, views.size());
-    result.backward = summarize(backward, views.size());
-    result.forward_ms = result.forward.wall_median_ms;
-    result.backward_ms = result.backward.wall_median_ms;
-    result.forward_min_ms = result.forward.wall_min_ms;
-    result.backward_min_ms = result.backward.wall_min_ms;
-    result.pairs = pairs / views.size();
-    result.blended_pairs = blended / views.size();
-    result.pairs_reached = reached / views.size();
-    result.block_pairs = blocks / views.size();
+    set_times(result, forward, backward);
+    set_work(result, work);
     if (floor)
         compare_with_floor(floor->least(),
                            static_cast<std::size_t>(sh_coefficient_count(gaussians.sh_degree)) * 3, result);
-    const double per_pair = 1e6 / std::max(1.0, static_cast<double>(result.blended_pairs));
-    result.forward_ns_per_pair = result.forward.cpu_min_ms * per_pair;
-    result.backward_ns_per_pair = result.backward.cpu_min_ms * per_pair;
     result.peak_rss_mb = peak_rss_mb();
     if (settings.compare_plain)
         compare_with_plain({gaussians, views.front(), image_settings, d_colour}, *rasterizer, result);

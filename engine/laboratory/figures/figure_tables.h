@@ -15,7 +15,7 @@ std::string edits_table(const std::vector<nlohmann::ordered_json>& reports);
 /// Medians over all edits of each kind of all evaluations: error removed, outline IoU, PSNR outside, passes
 /// of the UNet.
 std::string kinds_table(const std::vector<nlohmann::ordered_json>& reports);
-/// The same of each word that is new ("pink", "rabbit"): edits, median of the error removed, outline IoU.
+/// Figures of each new word ("pink", "rabbit"): edits, median of the error removed, outline IoU.
 std::string words_table(const std::vector<nlohmann::ordered_json>& reports);
 /// UNet passes of the search and of the whole edit, per mode of the edit: least, median, most.
 std::string passes_table(const std::vector<nlohmann::ordered_json>& reports);

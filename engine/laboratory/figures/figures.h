@@ -30,9 +30,9 @@ struct FiguresRun {
         results;  // a folder per evaluation and a file per bench, as their own commands leave them
 };
 
-/// Measures what `results` does not hold yet, keeps it there, and returns the page as Markdown. Throws Error
-/// (InvalidArgument) for an unknown suite or a seed that is no number, (Malformed) for a result that is of
-/// other settings, (Cancelled) on a stop request; results that were finished stay.
+/// Measures the results that `results` does not hold yet, keeps them there, and returns the page as Markdown.
+/// Throws Error (InvalidArgument) for an unknown suite or a seed that is no number. Throws Error (Malformed)
+/// for a result of other settings, and (Cancelled) on a stop request. Finished results stay.
 std::string figures_page(const FiguresRun& run, const JobControl& job);
 
 }  // namespace gse::bench
