@@ -94,9 +94,13 @@ RECIPES = {
 # ---- the canonical report --------------------------------------------------------------------------------------------
 
 # Keys of a report that had another name before: old name -> new name.
-RENAMED = {}
-# Keys that hold times, memory, paths or versions.
-LEFT_OUT = {"seconds", "peak_rss_mb", "version", "model", "scene", "cameras", "lora", "cached"}
+RENAMED = {
+    "rivals": "competing_words", "second_look": "retry_passes", "keep_mass": "min_cluster_mass",
+    "fallback_mass": "min_segment_attention", "evidence_px": "coverage_px", "focus": "reframe_views", "tau": "label_threshold",
+    "left_out": "excluded_views", "look_again": "prune_added", "look_again_tau": "prune_added_threshold",
+}
+# Keys that hold times, memory, paths or versions, and one of a setting that is gone.
+LEFT_OUT = {"seconds", "peak_rss_mb", "version", "model", "scene", "cameras", "lora", "cached", "polish_steps"}
 
 def canonical(value, key=""):
     """The report with its keys under their new names, without what differs from run to run."""
@@ -187,15 +191,16 @@ def needed(name):
     return [other for other in RECIPES if any("{" + other + "}" in argument for argument in RECIPES[name])]
 
 
-def record_all(program, names, results):
+def record_all(program, names, results, out):
+    """Runs the recipes in order. The record is written after each: one that is stopped holds what was reached."""
     (results / "lcm.safetensors").write_bytes(lora_bytes())
     wanted = set(names) | {other for name in names for other in needed(name)}
     sums = {}
     for name in (name for name in RECIPES if name in wanted):
         begin = time.monotonic()
         sums[name] = record(program, name, results)
+        out.write_text(json.dumps(sums, indent=1) + "\n")
         print(f"{name}: exit code {sums[name]['exit_code']}, {time.monotonic() - begin:.1f} s", flush=True)
-    return sums
 
 # ---- comparing -------------------------------------------------------------------------------------------------------
 
@@ -262,8 +267,7 @@ def main():
     with tempfile.TemporaryDirectory(prefix="gse-record-") as folder:
         results = options.keep or pathlib.Path(folder)
         results.mkdir(parents=True, exist_ok=True)
-        sums = record_all(os.path.abspath(options.program), options.only, results.resolve())
-    options.out.write_text(json.dumps(sums, indent=1) + "\n")
+        record_all(os.path.abspath(options.program), options.only, results.resolve(), options.out)
     return 0
 
 
