@@ -137,7 +137,7 @@ private:
         return active || came_in || app_.busy();
     }
 
-    bool moving() const { return viewport_.busy() || textures_.uploads_waiting() || shell_.animating(); }
+    bool moving() { return viewport_.busy() || textures_.uploads_waiting() || shell_.animating(); }
 
     double working_frame() { return window_.device().info().is_cpu ? SoftwareFrame : WorkingFrame; }
 
@@ -191,7 +191,7 @@ private:
         shell_.write_widgets(widget_map_);
         write_file(widget_map_.string() + ".state", state_json().dump(1));
     }
-    nlohmann::ordered_json state_json() const {
+    nlohmann::ordered_json state_json() {
         const auto& model = app_.model();
         nlohmann::ordered_json state;
         state["scene"] = model.scene_path;

@@ -128,93 +128,66 @@ void NativePainter::paint(const PictureRequest& request, int width, int height, 
 NativePreview::NativePreview(std::function<void()> wake)
     : wake_(std::move(wake)), thread_([this](const std::stop_token& end) { loop(end); }) {}
 
-NativePreview::~NativePreview() {
-    thread_.request_stop();
-    changed_.notify_all();
+NativePreview::~NativePreview() { thread_.request_stop(); }
+
+/// An order that the painter has not begun is none.
+void NativePreview::withdraw() {
+    if (orders_.take()) --ordered_;
+}
+
+void NativePreview::receive() {
+    for (auto& painted : pictures_.take()) {
+        --ordered_;
+        painted_full_ = painted.picture->full;
+        painted_ = std::move(painted.request);
+        ready_ = std::move(painted.picture);
+        name_ = std::move(painted.painter);
+    }
 }
 
 void NativePreview::want(const PictureRequest& request) {
-    const std::lock_guard lock(mutex_);
-    wanted_.request = request;
-    wanted_.valid = true;
-    const bool shown = painted_ && same_picture(*painted_, request) && (painted_full_ || request.moving);
-    if (shown) {
-        wanted_.valid = false;
-        return;
-    }
-    changed_.notify_all();
+    receive();
+    withdraw();
+    if (painted_ && same_picture(*painted_, request) && (painted_full_ || request.moving)) return;
+    ++ordered_;
+    orders_.put(request);
 }
 
 std::shared_ptr<const NativePicture> NativePreview::take() {
-    const std::lock_guard lock(mutex_);
+    receive();
     return std::exchange(ready_, nullptr);
 }
 
-bool NativePreview::painting() const {
-    const std::lock_guard lock(mutex_);
-    return (painting_ || wanted_.valid) && !ready_;
+bool NativePreview::painting() {
+    receive();
+    return ordered_ > 0 && !ready_;
 }
 
-void NativePreview::set_window_ms(double milliseconds) {
-    const std::lock_guard lock(mutex_);
-    window_ms_ = milliseconds;
-}
-
-std::string NativePreview::name() const {
-    const std::lock_guard lock(mutex_);
-    return name_;
-}
-
-bool NativePreview::busy() const {
-    const std::lock_guard lock(mutex_);
-    return painting_ || wanted_.valid || ready_ || !painted_full_;
+bool NativePreview::busy() {
+    receive();
+    return ordered_ > 0 || ready_ || !painted_full_;
 }
 
 std::shared_ptr<NativePicture> PictureStore::take() {
-    std::unique_ptr<NativePicture> picture;
-    {
-        const std::lock_guard lock(mutex_);
-        if (!free_.empty()) {
-            picture = std::move(free_.back());
-            free_.pop_back();
-        }
-    }
+    std::unique_ptr<NativePicture> picture = free_.pop().value_or(nullptr);
     if (!picture) picture = std::make_unique<NativePicture>();
     return {picture.release(), [store = shared_from_this()](NativePicture* used) {
-                const std::lock_guard lock(store->mutex_);
-                store->free_.emplace_back(used);
+                store->free_.push(std::unique_ptr<NativePicture>(used));
             }};
 }
 
 void NativePreview::loop(const std::stop_token& end) {
     NativePainter painter;
-    {
-        const std::lock_guard lock(mutex_);
-        name_ = painter.name();
-    }
-    while (!end.stop_requested()) {
-        PictureRequest request;
-        double scale = 1;
-        {
-            std::unique_lock lock(mutex_);
-            if (!changed_.wait(lock, end, [this] { return wanted_.valid; })) return;
-            request = wanted_.request;
-            wanted_.valid = false;
-            painting_ = true;
-            scale = request.moving ? moving_scale_.scale() : 1;
-        }
-        const auto picture = store_->take();
-        const int width = std::max(1, static_cast<int>(std::lround(request.camera.width * scale)));
-        const int height = std::max(1, static_cast<int>(std::lround(request.camera.height * scale)));
-        painter.paint(request, width, height, *picture);
-        {
-            const std::lock_guard lock(mutex_);
-            moving_scale_.learn(picture->milliseconds + window_ms_, scale);
-            painted_full_ = picture->full;
-            painted_ = std::move(request);
-            ready_ = picture;
-            painting_ = false;
-        }
+    preview::MovingScale moving_scale;
+    const auto store = std::make_shared<PictureStore>();
+    while (auto request = orders_.wait(end)) {
+        const double scale = request->moving ? moving_scale.scale() : 1;
+        const auto picture = store->take();
+        const int width = std::max(1, static_cast<int>(std::lround(request->camera.width * scale)));
+        const int height = std::max(1, static_cast<int>(std::lround(request->camera.height * scale)));
+        painter.paint(*request, width, height, *picture);
+        moving_scale.learn(picture->milliseconds + window_ms_, scale);
+        pictures_.push({std::move(*request), picture, painter.name()});
         if (wake_) wake_();
     }
 }

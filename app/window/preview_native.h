@@ -2,11 +2,10 @@
 // while moving.
 #pragma once
 
-#include <condition_variable>
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
@@ -14,6 +13,8 @@
 
 #include "app/cli/engine_names.h"
 #include "app/window/preview_host.h"
+#include "engine/base/mailbox.h"
+#include "engine/base/shared_queue.h"
 #include "engine/pipeline/run/scene_tools.h"
 #include "engine/preview/moving_scale.h"
 #include "engine/preview/resolve.h"
@@ -54,8 +55,7 @@ public:
     std::shared_ptr<NativePicture> take();
 
 private:
-    std::mutex mutex_;
-    std::vector<std::unique_ptr<NativePicture>> free_;
+    SharedQueue<std::unique_ptr<NativePicture>> free_;
 };
 
 class NativePreview {
@@ -70,30 +70,34 @@ public:
     /// The newest picture that has not been taken yet, or null. Its memory is used again once nobody holds
     /// it.
     std::shared_ptr<const NativePicture> take();
-    bool busy() const;
-    bool painting() const;  // something is being painted or waits for it
-    /// What the window needs for a frame beside the picture: the resolution while moving leaves room for it.
-    void set_window_ms(double milliseconds);
-    std::string name() const;
+    bool busy();
+    bool painting();  // something is being painted or waits for it
+    /// Time that the window needs for a frame beside the picture: the resolution while moving leaves room.
+    void set_window_ms(double milliseconds) { window_ms_ = milliseconds; }
+    const std::string& name() const { return name_; }  // of the painter, once there was a picture
 
 private:
-    struct Wanted {
+    /// A picture on its way to the window.
+    struct Painted {
         PictureRequest request;
-        bool valid = false;
+        std::shared_ptr<const NativePicture> picture;
+        std::string painter;
     };
     void loop(const std::stop_token& end);
+    void withdraw();
+    void receive();
 
-    mutable std::mutex mutex_;
-    std::condition_variable_any changed_;
-    Wanted wanted_;
-    std::optional<PictureRequest> painted_;  // what the newest picture shows
-    bool painted_full_ = false, painting_ = false;
-    std::shared_ptr<const NativePicture> ready_;
-    std::shared_ptr<PictureStore> store_ = std::make_shared<PictureStore>();
-    preview::MovingScale moving_scale_;
-    double window_ms_ = 0;
-    std::string name_;
+    // Roads between the threads
+    Mailbox<PictureRequest> orders_;
+    SharedQueue<Painted> pictures_;
+    std::atomic<double> window_ms_ = 0;
     std::function<void()> wake_;
+    // The window's thread
+    int ordered_ = 0;                        // orders that no picture has come of yet
+    std::optional<PictureRequest> painted_;  // that the newest picture shows
+    bool painted_full_ = false;
+    std::shared_ptr<const NativePicture> ready_;
+    std::string name_;
     std::jthread thread_;
 };
 

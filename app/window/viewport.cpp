@@ -56,9 +56,9 @@ void Viewport::want(const PictureRequest& request) {
 
 PictureState Viewport::state() { return state_; }
 
-bool Viewport::busy() const { return has_request_ && (native_wanted() ? native_.busy() : vulkan_busy_); }
+bool Viewport::busy() { return has_request_ && (native_wanted() ? native_.busy() : vulkan_busy_); }
 
-bool Viewport::waits_for_picture() const {
+bool Viewport::waits_for_picture() {
     return has_request_ && request_.moving && native_wanted() && native_.painting();
 }
 

@@ -28,10 +28,10 @@ public:
     /// Between begin_frame() and the panels: uploads the newest native picture, or records the compute work.
     void record();
     /// A picture is being made or uploaded: draw another frame soon.
-    bool busy() const;
+    bool busy();
     /// The camera moves and the newest picture is still being painted, by threads that wake the window when
     /// it is there: frames before that would show nothing new and take the processor from it.
-    bool waits_for_picture() const;
+    bool waits_for_picture();
     /// What a frame of the window takes beside the picture.
     void set_window_ms(double milliseconds);
 
