@@ -186,8 +186,8 @@ void Shell::reset_layout() {
     state_->front_changed = {true, true, true};
 }
 void Shell::show(PanelId panel) { show_panel(*state_, panel); }
-void Shell::request_quit() { state_->quit_asked = true; }
-void Shell::request_open(const std::filesystem::path& path) { state_->open_asked = utf8_of(path); }
+void Shell::request_quit() { state_->asked.quit = true; }
+void Shell::request_open(const std::filesystem::path& path) { state_->asked.open = utf8_of(path); }
 
 void Shell::write_widgets(const std::filesystem::path& path) const {
     nlohmann::ordered_json json = nlohmann::ordered_json::object();
@@ -202,14 +202,15 @@ void Shell::write_widgets(const std::filesystem::path& path) const {
 }
 
 void Shell::answer_requests(Context& context) {
-    if (std::exchange(state_->save_as_asked, false)) save_as(context, std::exchange(state_->after_save, {}));
-    if (std::exchange(state_->quit_asked, false)) quit(context);
-    if (const auto leave = std::exchange(state_->leave_asked, {}); leave.act)
+    if (std::exchange(state_->asked.save_as, false))
+        save_as(context, std::exchange(state_->asked.after_save, {}));
+    if (std::exchange(state_->asked.quit, false)) quit(context);
+    if (const auto leave = std::exchange(state_->asked.leave, {}); leave.act)
         with_unsaved_work(context, leave.what, leave.act);
-    if (const auto path = std::exchange(state_->open_asked, {}); !path.empty()) open_path(context, path);
+    if (const auto path = std::exchange(state_->asked.open, {}); !path.empty()) open_path(context, path);
     const auto& asked = context.model.question;
-    if (asked.number == state_->question_seen) return;
-    state_->question_seen = asked.number;
+    if (asked.number == state_->asked.question_seen) return;
+    state_->asked.question_seen = asked.number;
     auto& question = state_->question;
     question = {asked.title, asked.text, {}, true};
     for (std::size_t index = 0; index < asked.answers.size(); ++index) {

@@ -162,6 +162,25 @@ struct HistoryState {
     std::uint64_t chosen = 0;  // identity of an edit
 };
 
+/// Texts that are being typed in Models.
+struct ModelsState {
+    std::string model_path, lora_text;
+    std::array<std::string, 2> segmenter_paths;  // by SegmenterRole
+};
+
+/// What is to be asked, or done, before the next frame is drawn.
+struct Asked {
+    bool save_as = false;
+    std::function<void()> after_save;  // of save_as
+    bool quit = false;
+    struct {
+        std::string what;
+        std::function<void()> act;    // empty = none
+    } leave;                          // once more: an edit was discarded, other work may be left
+    std::string open;                 // path to open, from outside; empty = none
+    std::uint64_t question_seen = 0;  // number of the application's last question that was shown
+};
+
 struct UiState {
     Layout layout = Layout::standard();
     ViewportState viewport;
@@ -181,18 +200,9 @@ struct UiState {
     KeyboardState keyboard;
     std::array<bool, AreaCount> front_changed{true, true, true};  // a tab has to be brought to the front
     bool help_open = false, about_open = false;
-    bool save_as_asked = false;
-    std::function<void()> after_save;  // of save_as_asked
-    bool quit_asked = false;
-    struct {
-        std::string what;
-        std::function<void()> act;    // empty = none
-    } leave_asked;                    // asked about once more: an edit was discarded, other work may be left
-    std::uint64_t question_seen = 0;  // number of the application's last question that was shown
-    std::string open_asked;           // path to open, from outside; empty = none
-    std::string model_path, lora_text;
-    std::array<std::string, 2> segmenter_paths;  // typed, by SegmenterRole
-    std::string focus;                           // widget that takes the keyboard next frame
+    Asked asked;
+    ModelsState models;
+    std::string focus;  // widget that takes the keyboard next frame
     bool animating = false;
 };
 

@@ -52,7 +52,7 @@ std::filesystem::path ExportController::free_place(const std::string& name) cons
 
 bool ExportController::something_to_export() {
     if (!workspace_.require_scene()) return false;
-    if (!settings_.visible_only || view_.hidden_count() < workspace_.document.state().current.size())
+    if (!settings_.visible_only || view_.hidden().count() < workspace_.document.state().current.size())
         return true;
     workspace_.notices.toast(
         "Every splat is hidden: show some of them (Shift + H), or export what is hidden too.", true);
@@ -61,17 +61,17 @@ bool ExportController::something_to_export() {
 
 /// What an export writes of a set: all of it unless the artist said otherwise.
 GaussianSet ExportController::exported(const GaussianSet& set, const Stage& stage) const {
-    if (!settings_.visible_only || !view_.any_hidden()) return set;
+    if (!settings_.visible_only || !view_.hidden().any()) return set;
     return without_hidden(set, view_.hidden_rows(set, stage));
 }
 
 /// What is shown is written, which need not be what the document holds.
 std::string ExportController::said_of_export() const {
     if (const auto said = edits_.said_of_stage(); !said.empty()) return said;
-    if (!view_.any_hidden()) return {};
+    if (!view_.hidden().any()) return {};
     return settings_.visible_only
                ? ", without what is hidden"
-               : fmt::format(", with the {} splats that are hidden in the window", view_.hidden_count());
+               : fmt::format(", with the {} splats that are hidden in the window", view_.hidden().count());
 }
 
 raster::Settings ExportController::render_settings() const {
@@ -258,8 +258,8 @@ template <> void ExportController::on(const command::ExportCameraPath& one) {
 // Frames and projects
 
 void ExportController::refresh() {
-    if (std::exchange(hidden_seen_, view_.hidden_number()) == view_.hidden_number()) return;
-    if (!view_.any_hidden()) settings_.visible_only = false;  // a choice for what is hidden now
+    if (std::exchange(hidden_seen_, view_.hidden().number()) == view_.hidden().number()) return;
+    if (!view_.hidden().any()) settings_.visible_only = false;  // a choice for what is hidden now
 }
 
 void ExportController::show(ui::ExportPart& model) const {
@@ -269,7 +269,7 @@ void ExportController::show(ui::ExportPart& model) const {
 
 void ExportController::take_document() {
     keys_.clear();
-    hidden_seen_ = view_.hidden_number();
+    hidden_seen_ = view_.hidden().number();
     ++keys_number_;
 }
 

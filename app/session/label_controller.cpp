@@ -232,14 +232,15 @@ void LabelController::measure_picked() {
 /// The rows that are meant now; every frame, for what they are chosen from changes under them.
 void LabelController::refresh() {
     if (adjusted_ && adjusted_->revision != workspace_.document.revision()) adjusted_.reset();
-    const bool hidden_changed = std::exchange(hidden_seen_, view_.hidden_number()) != view_.hidden_number();
+    const bool hidden_changed =
+        std::exchange(hidden_seen_, view_.hidden().number()) != view_.hidden().number();
     if (!picking_) return;
     if (hidden_changed) picking_->forget_rows();
     picked_.shown = true;
     picked_.working = picking_->wants_values(state().current);
     if (picked_.working) return measure_picked();
     const NamedLabel* label = workspace_.active_label();
-    const auto hidden = view_.any_hidden() ? view_.hidden_document_rows() : std::vector<std::uint8_t>();
+    const auto hidden = view_.hidden().any() ? view_.hidden().of_document() : std::vector<std::uint8_t>();
     if (!picking_->update(label != nullptr ? label->bits : nullptr, hidden)) return;
     const auto& rows = *picking_->rows();
     picked_.values = picking_->values();

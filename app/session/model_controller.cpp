@@ -17,7 +17,6 @@
 #include "engine/pipeline/models/installed.h"
 #include "engine/pipeline/models/model_catalogue.h"
 #include "engine/pipeline/models/model_settings.h"
-#include "engine/pipeline/models/model_words.h"
 #include "engine/pipeline/models/segmenters.h"
 
 namespace gse::app {
@@ -58,12 +57,6 @@ void ModelController::take_back(const Ticket& ticket, std::shared_ptr<neural::Te
     } else if (error != nullptr && error->code() != ErrorCode::Cancelled && ticket.on_cpu) {
         drop(ticket.path, *error);
     }
-}
-
-std::uint64_t ModelController::bytes_in_use() const {
-    const auto row = std::find_if(rows_.begin(), rows_.end(),
-                                  [path = in_use()](const auto& model) { return model.path == path; });
-    return row == rows_.end() ? 0 : row->bytes;
 }
 
 void ModelController::measure_cache() { cache_bytes_ = cached_bytes(cache_->folder()); }
@@ -115,26 +108,6 @@ void ModelController::take_recipe(const EditRecipe& recipe) {
 
 // The list
 
-void ModelController::list() {
-    std::vector<std::string> tried;
-    for (const auto& [path, problem] : problems_) tried.push_back(path);
-    tried.push_back(in_use());
-    rows_.clear();
-    for (auto& found : find_models(tried)) {
-        ui::ModelView row{std::move(found)};
-        row.chosen = row.path == in_use();
-        row.checking = row.path == tried_;
-        const auto problem = problems_.find(row.path);
-        if (problem != problems_.end() && !problem->second.empty()) {
-            row.usable = false;
-            row.problem = problem->second;
-        }
-        rows_.push_back(std::move(row));
-    }
-    known_words_ = model_words(in_use());
-    drawn_words_ = pipeline::drawn_words(in_use());
-}
-
 void ModelController::list_loras() {
     lora_rows_.clear();
     for (const auto& text : loras_) {
@@ -145,23 +118,18 @@ void ModelController::list_loras() {
 
 /// The row says why; what was in use stays.
 void ModelController::refuse(const std::string& path, std::string problem) {
-    problems_[path] = problem;
-    list();
-    const auto named = [&](const std::string& wanted) {
-        const auto row =
-            std::find_if(rows_.begin(), rows_.end(), [&](const auto& model) { return model.path == wanted; });
-        return row == rows_.end() || row->name.empty() ? wanted : row->name;
-    };
+    list_.refuse(path, problem);
+    list_.refresh(in_use());
     workspace_.notices.toast(fmt::format("The model \"{}\" cannot be used: {}. \"{}\" stays in use.",
-                                         named(path), problem, named(in_use())),
+                                         list_.name_of(path), problem, list_.name_of(in_use())),
                              true);
 }
 
 void ModelController::use(const std::string& path, const neural::ModelProfile& profile, bool takes_settings) {
     path_ = path == starter_model_path().string() ? std::string() : path;
-    problems_.erase(path);
+    list_.accept(path);
     use_profile(profile, takes_settings);
-    list();
+    list_.refresh(in_use());
     workspace_.settings_changed = true;
 }
 
@@ -187,11 +155,12 @@ void ModelController::use_profile(const neural::ModelProfile& profile, bool take
 // Trying
 
 void ModelController::start() {
-    list();
-    const auto in_use_row =
-        std::find_if(rows_.begin(), rows_.end(), [](const auto& row) { return row.chosen; });
-    if (!path_.empty() && in_use_row != rows_.end() && !in_use_row->usable)
-        refuse(std::exchange(path_, {}), in_use_row->problem);
+    list_.refresh(in_use());
+    const auto* row = path_.empty() ? nullptr : list_.find(path_);
+    if (row != nullptr && !row->usable) {
+        const std::string problem = row->problem;
+        refuse(std::exchange(path_, {}), problem);
+    }
     take_chosen();
 }
 
@@ -220,7 +189,7 @@ void ModelController::drop_loras(const Error& error) {
 void ModelController::try_model(const std::string& path, std::vector<std::string> loras,
                                 bool takes_settings) {
     const std::string wanted = path.empty() ? starter_model_path().string() : path;
-    if (wanted == in_use()) return loras == loras_ ? list() : try_loras(std::move(loras));
+    if (wanted == in_use()) return loras == loras_ ? list_.refresh(wanted) : try_loras(std::move(loras));
     if (workspace_.jobs->works())
         return workspace_.notices.toast("Another model can be chosen when the job is done.");
     const auto rows = find_models({wanted});
@@ -234,8 +203,7 @@ void ModelController::try_model(const std::string& path, std::vector<std::string
         profile = profile_of(job);
     } catch (const Error& error) { return refuse(wanted, reason_of(error)); }
     auto model = std::make_shared<std::shared_ptr<neural::TextToImage>>();
-    tried_ = wanted;
-    problems_.try_emplace(wanted);
+    list_.try_out(wanted);
     workspace_.jobs->start_work(
         JobKind::Other,
         {fmt::format("Check the model \"{}\"", row == rows.end() ? wanted : row->name),
@@ -244,7 +212,7 @@ void ModelController::try_model(const std::string& path, std::vector<std::string
              *model = open_recipe_model(job, cache);
          },
          [this, wanted, model, profile, takes_settings, loras = std::move(loras)](const Error* error) {
-             tried_.clear();
+             list_.try_out({});
              if (error != nullptr) return refuse(wanted, reason_of(*error));
              loras_ = loras;
              list_loras();
@@ -252,7 +220,7 @@ void ModelController::try_model(const std::string& path, std::vector<std::string
              load_ = {};  // what it took was not seen
              keep(*model);
          }});
-    list();
+    list_.refresh(in_use());
 }
 
 /// The model in use with other LoRAs; it stays as it was where that fails.
@@ -332,14 +300,11 @@ void ModelController::from_json(const nlohmann::json& json) {
 }
 
 void ModelController::show(ui::ModelPart& model) const {
-    model.models = rows_;
+    list_.show(model);
     model.loras = lora_rows_;
     model.loras_checking = loras_checking_;
     for (std::size_t role = 0; role < segmenters_.size(); ++role)
         model.segmenters[role] = {segmenters_[role].path, segmenters_[role].checking};
-    model.known_words = known_words_;
-    model.drawn_words = drawn_words_;
-    model.words_known = true;
     model.edits_by_instruction = profile_.bundle == neural::BundleKind::InstructPix2Pix;
     model.model_settings = settings_;
     model.model_settings_defaults = settings_defaults_;

@@ -4,13 +4,13 @@
 
 #include <array>
 #include <functional>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "app/cli/engine_names.h"
+#include "app/session/model_list.h"
 #include "app/session/workspace.h"
 #include "engine/neural/api/model_profile.h"
 #include "engine/pipeline/models/recipe_model.h"
@@ -45,9 +45,7 @@ public:
         return segmenters_[static_cast<std::size_t>(role)].path;
     }
     std::string in_use() const;  // a path in any case
-    std::uint64_t bytes_in_use() const;
-    const std::vector<std::string>& known_words() const { return known_words_; }
-    const std::vector<std::string>& drawn_words() const { return drawn_words_; }
+    const ModelList& list() const { return list_; }
     /// The recipe of a request with the model and its settings, the profile's values filled in.
     EditRecipe recipe(const edit::EditRequest& request, const std::string& looked_from) const;
 
@@ -78,7 +76,6 @@ private:
         bool checking = false;
     };
     template <class C> void on(const C& command);
-    void list();
     void list_loras();
     void refuse(const std::string& path, std::string problem);
     void use(const std::string& path, const neural::ModelProfile& profile, bool takes_settings);
@@ -93,16 +90,14 @@ private:
     Workspace& workspace_;
     MoveRequest move_request_;
     ui::ModelSettings settings_, settings_defaults_;
-    std::string path_, tried_;        // in use; being tried
+    std::string path_;                // in use; empty = the starter model
     std::vector<std::string> loras_;  // FILE or FILE:strength, merged into the model in use
     bool loras_checking_ = false;
-    std::array<Segmenter, 2> segmenters_;          // by SegmenterRole
-    neural::ModelProfile profile_;                 // of the model in use
-    EditRecipe defaults_;                          // what settings are that nobody chose
-    std::map<std::string, std::string> problems_;  // by path, of models that were tried; empty = none yet
-    std::vector<ui::ModelView> rows_;
+    std::array<Segmenter, 2> segmenters_;  // by SegmenterRole
+    neural::ModelProfile profile_;         // of the model in use
+    EditRecipe defaults_;                  // what settings are that nobody chose
+    ModelList list_;
     std::vector<ui::LoraView> lora_rows_;
-    std::vector<std::string> known_words_, drawn_words_;
     std::shared_ptr<neural::TextToImage> loaded_;
     std::string loaded_key_;
     ModelLoad load_;  // of the model in memory

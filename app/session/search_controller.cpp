@@ -281,7 +281,7 @@ void SearchController::travel(const std::function<void()>& move) {
 
 bool SearchController::label_drives_edit() const {
     const NamedLabel* label = workspace_.active_label();
-    return label != nullptr && label_says(*label, request_, models_.known_words(), choice_);
+    return label != nullptr && label_says(*label, request_, models_.list().known_words(), choice_);
 }
 
 void SearchController::set_reach(bool by_label) {
@@ -324,7 +324,7 @@ void SearchController::refresh_reach() {
     if (label == nullptr || count_labelled(*label) == 0) return;
     reach_ = {label->name, count_labelled(*label), label_drives_edit(),
               !label->found_for.empty() && corrected_by_hand(*label)};
-    labelled_by_hand_ = reach_.by_label && stands_alone(*label, request_, models_.known_words());
+    labelled_by_hand_ = reach_.by_label && stands_alone(*label, request_, models_.list().known_words());
 }
 
 // Frames
@@ -350,7 +350,7 @@ void SearchController::refresh_estimate() {
     const bool learned = last_.of(current) && last_.tuning(wanted);
     work.tune_steps = settings.learn_scene && !work.located && !learned ? settings.learning.steps : 0;
     work.rows = current.size();
-    work.words = edit::promptable_vocabulary(models_.known_words(), models_.drawn_words());
+    work.words = edit::promptable_vocabulary(models_.list().known_words(), models_.list().drawn_words());
     try {
         work.mode = edit::planned_mode(edit::validated(request_));
     } catch (const Error&) {  // not a sentence yet

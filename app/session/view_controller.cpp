@@ -29,7 +29,6 @@ RowValues from_bits(const std::vector<std::uint8_t>& bits) {
 
 void ViewController::take_document() {
     hidden_.show_all();
-    hidden_changed();
     compare_as_usual();
     up_shown_ = state().info.up;
     orbit_ = scene_orbit(Scene{state().base, state().info, {}}, RenderParameters{});
@@ -44,7 +43,7 @@ void ViewController::settle() {
 void ViewController::follow_document() {
     ++workspace_.content;
     if (!(up_shown_ == state().info.up)) stand_up();
-    if (!hidden_.empty()) hidden_changed();
+    hidden_.follow_document();
 }
 
 void ViewController::stand_up() {
@@ -160,7 +159,7 @@ void ViewController::show(ui::ViewportPart& model) const {
     model.comparison = comparison_;
     model.compared_revision = compared_.revision;
     model.compared_name = compared_.name;
-    model.hidden = hidden_count_;
+    model.hidden = hidden_.count();
     model.orbit = orbit_;
     model.framing = framing_;
     model.viewport = shown_.texture;
@@ -177,13 +176,13 @@ void ViewController::show(ui::ViewportPart& model) const {
 // Hidden splats
 
 std::vector<std::uint8_t> ViewController::hidden_rows(const GaussianSet& set, const Stage& stage) const {
-    if (compared_.revision != 0 && set.shares_all_with(compared_.set)) return hidden_.rows(*compared_.ids);
+    if (compared_.revision != 0 && set.shares_all_with(compared_.set)) return hidden_.of_rows(*compared_.ids);
     if (set.shares_all_with(state().base) && !set.shares_all_with(state().current)) {
         std::vector<RowId> ids(set.size());
         std::iota(ids.begin(), ids.end(), RowId{0});
-        return hidden_.rows(ids);
+        return hidden_.of_rows(ids);
     }
-    const auto rows = hidden_document_rows();
+    const auto rows = hidden_.of_document();
     std::vector<float> visible(rows.size());
     std::transform(rows.begin(), rows.end(), visible.begin(),
                    [](auto hidden) { return hidden != 0 ? 0.0f : 1.0f; });
@@ -194,34 +193,10 @@ std::vector<std::uint8_t> ViewController::hidden_rows(const GaussianSet& set, co
 }
 
 GaussianSet ViewController::seen(const GaussianSet& set, const Stage& stage) {
-    if (hidden_.empty()) return set;
-    constexpr std::size_t sides = 2;  // of a comparison
-    const auto known = std::find_if(seen_.begin(), seen_.end(),
-                                    [&](const auto& one) { return one.of.shares_all_with(set); });
-    if (known != seen_.end()) return known->set;
-    if (seen_.size() >= sides) seen_.pop_front();
-    seen_.push_back({set, with_hidden(set, hidden_rows(set, stage))});
-    return seen_.back().set;
+    return hidden_.seen(set, [&](const GaussianSet& whole) { return hidden_rows(whole, stage); });
 }
 
 GaussianSet ViewController::seen_document() { return seen(state().current, {}); }
-
-void ViewController::hidden_changed() {
-    seen_.clear();
-    ++hidden_number_;
-    ++workspace_.content;
-    const auto rows = hidden_document_rows();
-    hidden_count_ = static_cast<std::size_t>(std::count(rows.begin(), rows.end(), std::uint8_t{1}));
-}
-
-void ViewController::hide(bool others) {
-    const NamedLabel* label = workspace_.active_label();
-    if (label == nullptr || !label->bits) return;
-    if (std::none_of(label->bits->begin(), label->bits->end(), [](auto bit) { return bit != 0; })) return;
-    if (others) hidden_.isolate(*state().row_ids, *label->bits);
-    else hidden_.hide(*state().row_ids, *label->bits);
-    hidden_changed();
-}
 
 // Settings and projects
 
@@ -237,14 +212,11 @@ void ViewController::from_json(const nlohmann::json& json) {
 
 // Commands
 
-template <> void ViewController::on(const command::HideLabel&) { hide(false); }
+template <> void ViewController::on(const command::HideLabel&) { hidden_.hide_label(false); }
 
-template <> void ViewController::on(const command::IsolateLabel&) { hide(true); }
+template <> void ViewController::on(const command::IsolateLabel&) { hidden_.hide_label(true); }
 
-template <> void ViewController::on(const command::ShowHidden&) {
-    hidden_.show_all();
-    if (!workspace_.document.empty()) hidden_changed();
-}
+template <> void ViewController::on(const command::ShowHidden&) { hidden_.show_all(); }
 
 template <> void ViewController::on(const command::SetCamera& one) { set_camera(one.camera); }
 

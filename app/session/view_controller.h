@@ -3,17 +3,16 @@
 
 #include <chrono>
 #include <cstdint>
-#include <deque>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "app/session/hidden_splats.h"
 #include "app/session/stage.h"
 #include "app/session/workspace.h"
 #include "app/window/preview_host.h"
-#include "engine/scene/hidden_rows.h"
 
 namespace gse::app {
 
@@ -21,7 +20,7 @@ constexpr double MovingSeconds = 0.25;  // after the last movement of the camera
 
 class ViewController {
 public:
-    explicit ViewController(Workspace& workspace) : workspace_(workspace) {}
+    explicit ViewController(Workspace& workspace) : workspace_(workspace), hidden_(workspace) {}
 
     void run(const ui::ViewCommand& command);
     /// Another document is open: its orbit. Nothing is hidden or compared with.
@@ -61,15 +60,10 @@ public:
     /// Comparisons are with the state before an edit again, or with the original.
     void compare_as_usual();
 
-    // Hidden splats
-    bool any_hidden() const { return !hidden_.empty(); }
-    std::size_t hidden_count() const { return hidden_count_; }
-    std::uint64_t hidden_number() const { return hidden_number_; }  // another one after each change
-    /// 1 for each hidden row of the document.
-    std::vector<std::uint8_t> hidden_document_rows() const { return hidden_.rows(*state().row_ids); }
+    const HiddenSplats& hidden() const { return hidden_; }
     /// 1 for each hidden row of a set on the screen; rows that a running edit added are seen.
     std::vector<std::uint8_t> hidden_rows(const GaussianSet& set, const Stage& stage) const;
-    /// The set as it is seen; the same arrays as long as nothing changes, so that nothing is uploaded anew.
+    /// The set as it is seen.
     GaussianSet seen(const GaussianSet& set, const Stage& stage);
     /// The document's splats as they are seen.
     GaussianSet seen_document();
@@ -92,9 +86,6 @@ private:
         GaussianSet set;
         std::shared_ptr<const std::vector<RowId>> ids;
     };
-    struct SeenSet {
-        GaussianSet of, set;
-    };
     struct DrawnKey {
         std::uint64_t revision = 0, content = 0;
         int mode = -1, active = -1;
@@ -114,8 +105,6 @@ private:
     PictureRequest request(const Stage& stage);
     RowValues values_of(const Stage& stage) const;
     void go_home();
-    void hide(bool others);
-    void hidden_changed();
 
     Workspace& workspace_;
     ui::ViewSettings settings_;
@@ -128,10 +117,7 @@ private:
     Vec3 up_shown_{};        // that the orbit stands on
     ui::Comparison comparison_ = ui::Comparison::None;
     Comparing compared_;
-    HiddenRows hidden_;
-    std::size_t hidden_count_ = 0;
-    std::uint64_t hidden_number_ = 0;
-    std::deque<SeenSet> seen_;  // the last ones, made for hidden_ and the document's rows as they are
+    HiddenSplats hidden_;
     Drawn drawn_;
     PictureState shown_;
 };

@@ -5,6 +5,8 @@ import re
 import sys
 import tempfile
 
+from class_sizes import class_sizes
+
 # folder -> folders of engine it may include besides itself
 ARROWS = {
     "base": set(),
@@ -59,6 +61,27 @@ DOORS = {"neural": ("engine/neural/api/", {"neural", "laboratory/starter"})}
 TORCH_FREE = "engine/neural/api/"
 UNIT_LIMIT = 15        # units (files of one stem) directly in a folder of a room that has sub-rooms
 UI_FORBIDDEN = {"vulkan", "preview", "neural"}
+MEMBER_LIMIT = 25      # data members of a class or struct in app and ui; lists of settings (visit_fields) may be as long as they are:
+METHOD_LIMIT = 40      # functions of one         each field is one line there, read and written by one loop
+# Threads meet in engine/base (queue, mailbox, job thread, pools). Other locks are of caches, and of handles of libraries that
+# serve one thread at a time.
+LOCK = re.compile(r"\bstd::((shared_|recursive_|timed_)*mutex|condition_variable(_any)?|lock_guard|unique_lock|scoped_lock|shared_lock)\b")
+LOCK_OWNERS = {
+    "engine/io/image/video": "frames on their way to the encoder, bounded",
+    "engine/io/project/autosave": "one call at a time writes the file",
+    "engine/io/project/project_file": "one call at a time writes, with the writer's cache of blocks",
+    "engine/io/project/project_writer": "the same",
+    "engine/laboratory/starter/starter_training": "the first failure of several threads",
+    "engine/neural/guidance/attention_source": "cache of contexts",
+    "engine/neural/layers/buffer_cache": "cache of buffers",
+    "engine/neural/model": "cache of shapes",
+    "engine/neural/weights/torch_file": "a handle of libzip serves one thread at a time",
+    "engine/pipeline/models/cached_model": "cache of answers",
+    "engine/pipeline/models/model_words": "cache of vocabularies",
+    "engine/pipeline/models/segmenters": "cache of weights",
+    "engine/vulkan/device": "messages of the validation layers, from threads of the driver",
+    "engine/vulkan/instance": "the same",
+}
 SOURCE_LIMIT = 600     # lines of a file
 FUNCTION_LIMIT = 60    # lines of a function body
 SUFFIXES = {".h", ".cpp", ".inl", ".cu", ".comp"}
@@ -123,15 +146,23 @@ def check_subrooms(relative, line_number, target):
 
 
 def check_units(root):
-    """Folders of a room with sub-rooms hold few units."""
-    for room in SUB_ROOMS:
+    """Folders of app, of ui, and of a room with sub-rooms hold few units."""
+    for room in ["app", "ui", *(f"engine/{room}" for room in SUB_ROOMS)]:
         units = {}
-        for path in (root / "engine" / room).rglob("*"):
+        for path in (root / room).rglob("*"):
             if path.suffix in SUFFIXES:
                 units.setdefault(path.parent, set()).add(path.stem)
         for folder, stems in sorted(units.items()):
             if len(stems) > UNIT_LIMIT:
                 yield f"{folder.relative_to(root)}: {len(stems)} units (at most {UNIT_LIMIT})"
+
+
+def check_lock_owners(root):
+    """An exception that is none any more goes."""
+    for owner in LOCK_OWNERS:
+        files = [path for path in (root / f"{owner}.h", root / f"{owner}.cpp") if path.is_file()]
+        if not any(LOCK.search(path.read_text(encoding="utf-8")) for path in files) and files:
+            yield f"{owner}: has no lock; take it off LOCK_OWNERS"
 
 
 def circles(table):
@@ -206,12 +237,25 @@ def check_file(root, path):
             yield f"{relative}:{number}: glm is included by {GLM_DOOR}"
         if '"[skip]' in line and relative.parts[0] == "tests" and str(relative) not in SKIP_DOORS:
             yield f"{relative}:{number}: a check is left out with skip() or skip_missing(), so that the program returns 77"
+        if LOCK.search(line.split("//")[0]) and relative.parts[0] != "tests" and not str(relative).startswith("engine/base/") and \
+                str(relative.with_suffix("")) not in LOCK_OWNERS:
+            yield f"{relative}:{number}: threads meet in a queue or a mailbox (engine/base), not under a lock"
         if JSON_PARSE.search(line) and relative.parts[0] != "tests" and str(relative) != JSON_PARSER:
             yield f"{relative}:{number}: JSON is parsed with parse_json() or try_parse_json()"
+    if relative.parts[0] in {"app", "ui"}:
+        yield from check_classes(relative, "\n".join(lines))
     if relative.parts[0] in {"engine", "app", "ui"}:
         for begin, length in function_lengths(lines):
             if length > FUNCTION_LIMIT:
                 yield f"{relative}:{begin}: a function of {length} lines (at most {FUNCTION_LIMIT})"
+
+
+def check_classes(relative, text):
+    for name, line, data, functions, settings in class_sizes(text):
+        if data > MEMBER_LIMIT and not settings:
+            yield f"{relative}:{line}: {name} has {data} data members (at most {MEMBER_LIMIT})"
+        if functions > METHOD_LIMIT:
+            yield f"{relative}:{line}: {name} has {functions} functions (at most {METHOD_LIMIT})"
 
 
 def check_tree(root):
@@ -221,6 +265,7 @@ def check_tree(root):
             if path.suffix in SUFFIXES and path.is_file():
                 violations.extend(check_file(root, path))
     violations.extend(check_units(root))
+    violations.extend(check_lock_owners(root))
     for room, table in SUB_ROOMS.items():
         violations.extend(f"engine/{room}/{name}: its arrows lead back to it" for name in circles(table))
     allowed = {"CMakeLists.txt", "CMakePresets.json", "LICENSE", "README.md", "app", "engine", "shaders", "ui", "assets",
@@ -254,6 +299,14 @@ def self_test():
         **{f"engine/io/files/unit{number}.h": ("// x\n", "") for number in range(15)},
         "engine/io/files/unit15.h": ("// x\n", "engine/io/files: 16 units"),
         "tests/unit/m_test.cpp": ("// x\nvoid f() { std::printf(\"[skip] no device\\n\"); }\n", "left out with skip()"),
+        "app/session/s.h": ("// x\n#include <mutex>\nstruct A {\n    std::mutex mutex;\n};\n", "not under a lock"),
+        "app/session/t.h": ("// x\nclass Many : public Base {\npublic:\n    Many() : a_(1) {}\n    static constexpr int Most = 3;\n"
+                            "    struct Part {\n        int x;\n    };\n    std::function<void(int)> f = {};\n" +
+                            "".join(f"    std::map<int, std::string> a{i}_{{}}, b{i}_ = g(1, 2);  // c;\n" for i in range(13)) + "};\n",
+                            "Many has 27 data members"),
+        "ui/u.h": ("// x\nstruct Busy {\n" + "".join(f"    template <class C> void f{i}(const C& c) {{ g(c); }}\n" for i in range(41)) + "};\n",
+                   "Busy has 41 functions"),
+        "ui/v.h": ("// x\nstruct Settings {\n" + "    int a = 1;\n" * 30 + "    template <class F> static void visit_fields(F&& f) {}\n};\n", ""),
         "strange": (None, "not a top-level name"),
     }
     with tempfile.TemporaryDirectory() as folder:

@@ -51,7 +51,7 @@ void ask_about_edit(Context& context, const std::string& what, const std::functi
                         // What else is unsaved is asked about next.
                         {"Discard it", true, [&commands, state = &context.state, what, act] {
                              commands.push(command::LeaveEdit{false, [state, what, act] {
-                                                                  state->leave_asked = {what, act};
+                                                                  state->asked.leave = {what, act};
                                                               }});
                          }}};
     question.pending = true;
@@ -69,8 +69,8 @@ void with_unsaved_work(Context& context, const std::string& what, std::function<
     question.answers.clear();
     if (context.model.project_path.empty()) {
         question.answers.push_back({"Save as...", false, [state = &context.state, act] {
-                                        state->save_as_asked = true;
-                                        state->after_save = act;
+                                        state->asked.save_as = true;
+                                        state->asked.after_save = act;
                                     }});
     } else {
         question.answers.push_back({"Save, then go on", false, [&commands, act] {
@@ -247,7 +247,7 @@ void ask_open(Context& context) {
          .saves = false,
          .folder_allowed = true,
          .start = context.model.recent.empty() ? std::string() : context.model.recent.front(),
-         .answer = [state](const std::filesystem::path& path) { state->open_asked = utf8_of(path); }});
+         .answer = [state](const std::filesystem::path& path) { state->asked.open = utf8_of(path); }});
 }
 
 void recover(Context& context, const std::string& file) {
@@ -301,7 +301,7 @@ void quit(Context& context) {
     question.text = fmt::format("\"{}\" is still at work.", files.title);
     question.answers = {{"Wait", false, {}}, {"Stop it", true, [&commands, state = &context.state] {
                                                   commands.push(command::CancelFileJob{});
-                                                  state->leave_asked = {
+                                                  state->asked.leave = {
                                                       "The window is to be closed.",
                                                       [&commands] { commands.push(command::Quit{}); }};
                                               }}};

@@ -23,7 +23,7 @@ void ask_model(Context& context) {
                              .extensions = {".safetensors", "model_index.json"},
                              .saves = false,
                              .folder_allowed = true,
-                             .start = context.state.model_path,
+                             .start = context.state.models.model_path,
                              .answer = [&commands](const std::filesystem::path& path) {
                                  commands.push(command::ChooseModel{utf8_of(path)});
                              }});
@@ -66,7 +66,7 @@ void ask_lora(Context& context) {
                              .extensions = {".safetensors"},
                              .saves = false,
                              .folder_allowed = false,
-                             .start = context.state.lora_text,
+                             .start = context.state.models.lora_text,
                              .answer = [&commands](const std::filesystem::path& path) {
                                  commands.push(command::AddLora{utf8_of(path)});
                              }});
@@ -103,7 +103,7 @@ void draw_loras(Context& context) {
     for (std::size_t index = 0; index < loras.size(); ++index) draw_lora(context, loras[index], index);
     if (context.model.loras_checking)
         dim_text("The model is being loaded with them, to see whether they fit.");
-    auto& text = context.state.lora_text;
+    auto& text = context.state.models.lora_text;
     const bool entered =
         text_input(context, "models.lora.path", text, "file.safetensors, or file.safetensors:0.8",
                    ImGuiInputTextFlags_EnterReturnsTrue);
@@ -154,15 +154,16 @@ const SegmenterTexts& segmenter_texts(SegmenterRole role) {
 
 void ask_segmenter(Context& context, const SegmenterTexts& texts) {
     auto& commands = context.commands;
-    context.state.files.ask({.title = texts.question,
-                             .confirm = "Use",
-                             .extensions = texts.extensions,
-                             .saves = false,
-                             .folder_allowed = true,
-                             .start = context.state.segmenter_paths[static_cast<std::size_t>(texts.role)],
-                             .answer = [&commands, role = texts.role](const std::filesystem::path& path) {
-                                 commands.push(command::ChooseSegmenter{role, utf8_of(path)});
-                             }});
+    context.state.files.ask(
+        {.title = texts.question,
+         .confirm = "Use",
+         .extensions = texts.extensions,
+         .saves = false,
+         .folder_allowed = true,
+         .start = context.state.models.segmenter_paths[static_cast<std::size_t>(texts.role)],
+         .answer = [&commands, role = texts.role](const std::filesystem::path& path) {
+             commands.push(command::ChooseSegmenter{role, utf8_of(path)});
+         }});
 }
 
 void draw_segmenter(Context& context, const SegmenterTexts& texts) {
@@ -178,7 +179,7 @@ void draw_segmenter(Context& context, const SegmenterTexts& texts) {
             context.emit(command::ChooseSegmenter{texts.role, {}});
     }
     if (segmenter.checking) dim_text("The weights are being loaded, to see whether they can be used.");
-    auto& text = context.state.segmenter_paths[static_cast<std::size_t>(texts.role)];
+    auto& text = context.state.models.segmenter_paths[static_cast<std::size_t>(texts.role)];
     const bool entered =
         text_input(context, name + ".path", text, texts.hint, ImGuiInputTextFlags_EnterReturnsTrue);
     if (button(context,
@@ -221,13 +222,13 @@ void draw_models_panel(Context& context) {
     draw_segmenter(context, segmenter_texts(SegmenterRole::Clicks));
     draw_segmenter(context, segmenter_texts(SegmenterRole::Words));
     heading(context, "Another model");
-    const bool entered = text_input(context, "models.path", context.state.model_path,
+    const bool entered = text_input(context, "models.path", context.state.models.model_path,
                                     "path of a folder or .safetensors", ImGuiInputTextFlags_EnterReturnsTrue);
     if (button(context, {.name = "models.choose",
                          .text = "Use this path",
-                         .why_off = context.state.model_path.empty() ? "Type a path first" : ""}) ||
-        (entered && !context.state.model_path.empty()))
-        context.emit(command::ChooseModel{context.state.model_path});
+                         .why_off = context.state.models.model_path.empty() ? "Type a path first" : ""}) ||
+        (entered && !context.state.models.model_path.empty()))
+        context.emit(command::ChooseModel{context.state.models.model_path});
     flow(button_width("Locate..."));
     if (button(context, {.name = "models.browse", .text = "Browse..."})) ask_model(context);
     dim_text(

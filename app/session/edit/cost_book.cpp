@@ -51,7 +51,8 @@ PlannedMemory CostBook::memory() const {
     memory.process = current_rss_mb();
     memory.loaded = models_.loaded_fits() && models_.load().before_mb >= 0;
     memory.before_load = models_.load().before_mb;
-    memory.weights = static_cast<double>(models_.bytes_in_use()) / 1e6;
+    if (const auto* row = models_.list().find(models_.in_use()))
+        memory.weights = static_cast<double>(row->bytes) / 1e6;
     memory.scene = static_cast<double>(current.byte_size()) / 1e6;
     memory.labelled_share =
         workspace_.labelled > 0 && current.size() > 0
