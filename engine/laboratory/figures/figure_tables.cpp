@@ -237,8 +237,9 @@ std::string encoder_table(const Json& clip) {
                         fmt::format("{} of {}", within, fronts.size())});
     }
     for (const auto& [kind, tally] : clip["retrieval"].items())
-        rows.push_back(
-            {"true word of a picture ranks first: " + kind, text_of(tally["right"], Format::Percent)});
+        if (!kind.starts_with("front"))
+            rows.push_back(
+                {"true word of a picture ranks first: " + kind, text_of(tally["right"], Format::Percent)});
     return markdown_table(rows);
 }
 

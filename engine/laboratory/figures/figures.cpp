@@ -107,7 +107,8 @@ private:
             "figures "
             "--seeds \"{}\" --results FOLDER --out engine/FIGURES.md\n```\n\nMeasured on: {}, {} cores, {}; "
             "the bundled model, everything "
-            "else as it is set by default. Goals and words are explained in "
+            "else as it is set by default. What FOLDER lacks is measured, what it holds is taken. Goals and "
+            "words are explained in "
             "[METHOD.md](METHOD.md#metrics).\n",
             run_.parameters.seeds, machine["processor"].get<std::string>(), machine["cores"].get<int>(),
             machine["instruction_sets"].get<std::string>());
