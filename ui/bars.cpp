@@ -54,7 +54,7 @@ void draw_tools(Context& context) {
     }
 }
 
-/// Step, share and time left in one line.
+/// Line with step, share and time left.
 std::string job_text(const JobStatus& job) {
     std::string text = job.stage;
     if (job.total > 0) text += fmt::format("  {} / {}", job.step, job.total);

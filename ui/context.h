@@ -1,5 +1,5 @@
-// What every panel is handed in a frame: what to show, whom to ask, the window's own state, and where widgets
-// are noted.
+// Context of every panel in a frame: the view model, the commands, the window's own state, and the map of
+// widgets.
 #pragma once
 
 #include <imgui.h>
@@ -26,7 +26,7 @@ struct Rect {
 
 using WidgetMap = std::map<std::string, Rect, std::less<>>;
 
-/// Copies of settings that panels change; the shell hands them on at the end of the frame when `..._changed`.
+/// Copies of settings that panels change. The shell hands them on at the end of the frame when `..._changed`.
 struct Context {
     const ViewModel& model;
     CommandSink& commands;
@@ -56,9 +56,9 @@ struct Context {
     }
 };
 
-/// Notes where the last ImGui item is, under a name that tests and scripts find it by.
+/// Notes the place of the last ImGui item, under a name that tests and scripts find it by.
 void note(Context& context, std::string_view name, float text_width = 0);
-/// The same for a rectangle that is no item.
+/// Notes the place of a rectangle that is no item.
 void note_rect(Context& context, std::string_view name, ImVec2 low, ImVec2 high);
 
 inline ImTextureID imgui_texture(TextureId id) {

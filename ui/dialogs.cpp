@@ -38,7 +38,7 @@ void draw_about(Context& context) {
     ImGui::EndPopup();
 }
 
-/// What is chosen, -1 = nothing yet. A list first, the buttons below it.
+/// Index of the chosen answer, -1 = nothing yet. A list first, the buttons below it.
 int draw_answers(Context& context, const std::vector<Question::Answer>& answers) {
     constexpr std::size_t most_rows = 10;
     int chosen = -1;

@@ -1,4 +1,4 @@
-// fontconfig says which font has a character, FreeType paints it.
+// Characters from other fonts: fontconfig finds the font, FreeType paints.
 #include "ui/foreign_fonts.h"
 
 #include <fontconfig/fontconfig.h>
@@ -22,7 +22,7 @@ constexpr float EmojiShare = 1.0f;
 
 using Fonts = std::unique_ptr<FcFontSet, void (*)(FcFontSet*)>;
 
-/// Installed fonts, those that suit the pattern best first.
+/// Installed fonts, the best ones for the pattern first.
 Fonts sorted_fonts(const char* name) {
     const std::unique_ptr<FcPattern, void (*)(FcPattern*)> wanted(
         FcNameParse(reinterpret_cast<const FcChar8*>(name)), FcPatternDestroy);

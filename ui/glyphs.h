@@ -1,5 +1,5 @@
-// Characters that the fonts of the panels do not have (Chinese, Japanese, Korean, emoji, ...): which texts
-// have asked for, and what stands for those that do not fit into ImGui's 16 bits.
+// Characters that the fonts of the panels do not have (Chinese, Japanese, Korean, emoji, ...). Keeps the
+// asked characters, and codes for those that do not fit into ImGui's 16 bits.
 #pragma once
 
 #include <imgui.h>
@@ -30,12 +30,12 @@ class ForeignGlyphs {
 public:
     /// The text as ImGui takes it. Characters that the present font lacks are remembered.
     std::string shown(std::string_view text);
-    /// Back from there to what was meant.
+    /// Original text of a text from there.
     std::string meant(std::string_view text) const;
-    /// The same for one character.
+    /// Original character of one code.
     ImWchar shown(char32_t character);
 
-    /// Everything that was asked for, with its code in ImGui; grows only.
+    /// All asked characters with their codes in ImGui; grows only.
     const std::vector<std::pair<char32_t, ImWchar>>& all() const { return all_; }
 
 private:
@@ -46,7 +46,7 @@ private:
     std::map<ImWchar, char32_t> large_;  // what stands for characters beyond 16 bits
 };
 
-/// The table of the present ImGui context; null = none: texts are shown as they are.
+/// Table of the present ImGui context; null = none: texts are shown as they are.
 ForeignGlyphs* foreign_glyphs();
 void set_foreign_glyphs(ForeignGlyphs* glyphs);
 

@@ -1,4 +1,4 @@
-// Where panels are, which tabs are in front and how large the areas are; saved as JSON in the project.
+// Places of panels, tabs in front and sizes of the areas; saved as JSON in the project.
 #include "ui/layout.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Where panels are, which tabs are in front and how large the areas are; saved as JSON in the project.
+// Places of panels, tabs in front and sizes of the areas; saved as JSON in the project.
 #pragma once
 
 #include <array>
@@ -26,12 +26,12 @@ inline constexpr std::array<const char*, PanelCount> PanelNames{
     "Prompt", "Labels",   "Scene",     "Models",  "History",  "Views",
     "Export", "Settings", "Attention", "Targets", "Progress", "Log"};
 
-/// Where a tab can be: the right column is split in two, the bottom area runs below the viewport.
+/// Place of a tab. The right column is split in two; the bottom area runs below the viewport.
 enum class Area { RightTop, RightBottom, Bottom };
 inline constexpr std::size_t AreaCount = 3;
 inline constexpr std::array<const char*, AreaCount> AreaNames{"right, top", "right, bottom", "bottom"};
 
-/// Sizes are in font sizes, so that they mean the same at every scale.
+/// Sizes in font sizes, so that they fit every scale.
 struct Layout {
     struct Place {
         Area area = Area::RightTop;
@@ -46,7 +46,8 @@ struct Layout {
 
     static Layout standard();
     std::string to_json() const;
-    /// Unknown names and values out of range are passed over; what is no JSON gives the standard layout.
+    /// Reads a layout. Unknown names and values out of range are passed over. A text that is no JSON gives
+    /// the standard layout.
     static Layout from_json(const std::string& text);
 
     Place& place(PanelId panel) { return places[static_cast<std::size_t>(panel)]; }

@@ -1,4 +1,4 @@
-// The menu bar: everything the window can do, with its key, and why it cannot be done now.
+// The menu bar: all commands of the window with their keys, and reasons for those that are off.
 #include "ui/menu.h"
 
 #include <fmt/format.h>
@@ -231,7 +231,7 @@ void window_menu(Context& context) {
     }
 }
 
-/// What is open and whether it is saved, at the right end of the bar.
+/// Name of the open document and whether it is saved, at the right end of the bar.
 void draw_title(Context& context) {
     if (!context.scene_open()) return;
     const auto& model = context.model;

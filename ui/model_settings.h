@@ -1,4 +1,4 @@
-// What a recipe has beside the request, as panels show and projects keep it.
+// Parts of a recipe beside the request, as panels show and projects keep them.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -11,8 +11,8 @@
 
 namespace gse::ui {
 
-/// How the model is run, asked and taught: what a recipe has beside the request. One list of fields for each
-/// part.
+/// Settings to run, ask and teach the model: the parts of a recipe beside the request. One list of fields for
+/// each part.
 struct ModelSettings {
     bool gate = true;
     bool review = false;
@@ -34,9 +34,9 @@ struct ModelSettings {
           "Method views: before the scene is fitted to redrawn views, wait until you have looked at them.");
         f("learn_scene", self.learn_scene,
           "DreamBooth: the model learns this scene from renders of it first.");
-        f("device", self.device, "Where the networks run: cpu, or cuda where there is one.");
+        f("device", self.device, "Device of the networks: cpu, or cuda if there is one.");
         f("rasterizer", self.rasterizer,
-          "What draws the splats of an edit: cpu, cuda where there is one, or auto, which is cpu.");
+          "Rasterizer of an edit: cpu, cuda if there is one, or auto, which is cpu.");
         f("precision", self.precision,
           "Numbers the UNet computes in: fp32, bf16, or auto: bf16 where a large model was measured to be "
           "faster with it.");
@@ -57,8 +57,8 @@ struct ModelSettings {
 
 /// An object of the fields, with one more object for each part.
 nlohmann::ordered_json model_settings_to_json(const ModelSettings& settings);
-/// Reads what is there over `settings`, older projects too. Throws Error for what is no setting or out of its
-/// range.
+/// Reads known fields over `settings`, of older projects too. Throws Error for a field that is no setting or
+/// out of its range.
 ModelSettings model_settings_from_json(nlohmann::ordered_json json, ModelSettings settings);
 
 }  // namespace gse::ui

@@ -1,5 +1,4 @@
-// What can be said about a sentence before anything runs: known words, the target it implies, why it cannot
-// be run.
+// Facts about a sentence before anything runs: known words, the target it implies, why it cannot be run.
 #include "ui/sentence.h"
 
 #include <fmt/format.h>
@@ -48,7 +47,7 @@ bool within(const std::string& sentence, const std::string& phrase, std::size_t 
     return index >= first && index < first + edit::words_of(phrase).size();
 }
 
-/// What the engine would say, in the window's words where they are clearer.
+/// Sentence of the engine, in the window's words if they are clearer.
 std::string problem_of(const edit::EditRequest& request, const SentenceGround& ground, SentenceFacts& facts) {
     if (request.prompt.empty() || facts.chips.empty())
         return "Describe the scene after the edit in one sentence";

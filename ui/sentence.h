@@ -1,5 +1,4 @@
-// What can be said about a sentence before anything runs: known words, the target it implies, why it cannot
-// be run.
+// Facts about a sentence before anything runs: known words, the target it implies, why it cannot be run.
 #pragma once
 
 #include <string>
@@ -10,7 +9,7 @@
 
 namespace gse::ui {
 
-/// What a sentence is held against.
+/// Vocabulary and settings that a sentence is held against.
 struct SentenceGround {
     std::vector<std::string> known = {};  // words of the model; empty = it takes any word
     std::vector<std::string> said = {};   // words that the scene shows already, from the edits applied
@@ -33,18 +32,19 @@ struct SentenceFacts {
     std::string cut_at;          // first word that the text encoder does not read; empty = it reads all
 };
 
-/// The request with a target: the chosen one, else the one that a search has read off the scene, else the one
-/// that the sentence implies against what the scene shows already. Without a source it stays open.
+/// The request with a target. It is the chosen one, else the one that a search has read off the scene.
+/// Failing both, it is the one that the sentence implies against the scene's present look. Without a source
+/// it stays open.
 edit::EditRequest with_target(edit::EditRequest request, const std::vector<std::string>& said,
                               const std::string& read_target);
 
 SentenceFacts facts_of(const edit::EditRequest& request, const SentenceGround& ground);
 
-/// The request that Locate runs: with a sentence that cannot be run (`problem`), the source alone is looked
+/// The request that Locate runs. For a sentence that cannot be run (`problem`), the source alone is looked
 /// for.
 edit::EditRequest locate_request(const edit::EditRequest& request, const std::string& problem);
 
-/// The target grown to the word number `index` of the sentence: all words from the one to the other.
+/// The target grown to the word number `index` of the sentence: all words between them.
 std::string target_to(const std::string& sentence, const std::string& target, std::size_t index);
 
 /// The sentence with its word number `index` replaced.

@@ -97,7 +97,7 @@ struct Box {
     ImVec2 size() const { return {high.x - low.x, high.y - low.y}; }
 };
 
-/// Where everything lies in the space below the menu.
+/// Places of the areas in the space below the menu.
 struct Plan {
     Box tools, viewport, bottom, right_top, right_bottom, job;
     Box split_right, split_bottom, split_column;

@@ -21,36 +21,37 @@ public:
     Shell(const Shell&) = delete;
     Shell& operator=(const Shell&) = delete;
 
-    /// Call between ImGui::NewFrame() and ImGui::Render(). The style follows the font size by itself; the
-    /// fonts are those of build_fonts() (theme.h). Returns the commands of the frame in their order.
+    /// Draws a frame. Call it between ImGui::NewFrame() and ImGui::Render(). The style follows the font size
+    /// by itself; the fonts are those of build_fonts() (theme.h). Returns the commands of the frame in their
+    /// order.
     [[nodiscard]] std::vector<Command> draw(const ViewModel& model, Textures& textures);
 
     /// True when the next frame will look different even without input: a camera glides, a key is held.
     bool animating() const;
-    /// A text field has the focus; its caret blinks.
+    /// True when a text field has the focus, whose caret blinks.
     bool takes_text() const;
 
-    /// Sizes, places and front tabs of the panels as JSON; unknown parts are passed over.
+    /// Sizes, places and front tabs of the panels as JSON. Unknown parts are passed over.
     std::string layout() const;
     void set_layout(const std::string& json);
     void reset_layout();
     /// Brings a panel to the front.
     void show(PanelId panel);
 
-    /// As if chosen from the menu: asks when there is unsaved work. For the window's close button and for
-    /// dropped files.
+    /// Opens as if chosen from the menu: asks when there is unsaved work. For the window's close button and
+    /// for dropped files.
     void request_quit();
     void request_open(const std::filesystem::path& path);
 
-    /// Where the important widgets of the last frame are, in window coordinates: "prompt.edit", "tool.brush",
+    /// Places of the important widgets of the last frame, in window coordinates: "prompt.edit", "tool.brush",
     /// "viewport"...
     const WidgetMap& widgets() const { return widgets_; }
-    /// The control that has the keyboard's focus and shows it; empty = none.
+    /// Control that has the keyboard's focus and shows it; empty = none.
     std::string focused() const;
-    /// The same as a JSON file, for scripts that click.
+    /// Widget map as a JSON file, for scripts that click.
     void write_widgets(const std::filesystem::path& path) const;
 
-    /// What texts of the window ask for beyond its fonts (theme.h).
+    /// Characters of the window's texts beyond its fonts (theme.h).
     ForeignGlyphs& glyphs() { return glyphs_; }
 
     UiState& state() { return *state_; }

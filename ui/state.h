@@ -1,5 +1,4 @@
-// What the window itself remembers between frames: tools, open dialogs, caches of widgets. Never the
-// document.
+// State of the window between frames: tools, open dialogs, caches of widgets. Never the document.
 #pragma once
 
 #include <array>
@@ -34,7 +33,7 @@ struct Question {
     bool pending = false;
 };
 
-/// Viewport: camera, tools and what is being drawn with the mouse.
+/// Viewport: camera, tools and the shape that is drawn with the mouse.
 struct ViewportState {
     CameraControl camera;
     SentCameras sent;
@@ -60,7 +59,7 @@ struct ViewportState {
     int drag_button = -1;   // mouse button that navigates, -1 = none
 };
 
-/// What is known about the sentence, kept until it changes.
+/// Facts about the sentence, kept until it changes.
 struct PromptState {
     std::string key;  // what the rest was computed from
     std::vector<Chip> chips;
@@ -76,7 +75,7 @@ struct PromptState {
     bool advanced = false;
 };
 
-/// What of the chosen view of a search lies over the picture while the camera stands there.
+/// Layer of the chosen search view over the picture, while the camera stands there.
 enum class Over : std::uint8_t { Nothing, Attention, Mask };
 
 struct AttentionState {
@@ -104,7 +103,7 @@ struct LabelsState {
     int steps = 1;
 };
 
-/// Splats by a property; of each property what was chosen last.
+/// Splats by a property, with the last choice of each property.
 struct PickState {
     int property = 0;
     bool within = false;

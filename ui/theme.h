@@ -59,13 +59,13 @@ Fonts current_fonts();
 /// Colours and sizes; `em` is the font size in pixels. Overwrites the whole style.
 void apply_theme(ImGuiStyle& style, float em);
 
-/// Fonts of the system and the style for a scale: what a window calls when its scale changes.
+/// Fonts of the system and the style for a scale. A window calls it when its scale changes.
 void dress(ImFontAtlas& atlas, ImGuiStyle& style, float scale);
-/// The same with characters that other fonts have; builds the atlas.
+/// Fonts and style with characters that other fonts have. Builds the atlas.
 void dress(ImFontAtlas& atlas, ImGuiStyle& style, float scale, const ForeignGlyphs& glyphs,
            const GlyphPainter& painter);
 
-/// The same colour with another opacity in [0,1].
+/// `colour` with another opacity in [0,1].
 ImU32 with_alpha(ImU32 colour, float alpha);
 
 }  // namespace gse::ui

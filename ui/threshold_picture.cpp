@@ -1,4 +1,4 @@
-// What a threshold keeps of an attention map, drawn over the render; fast enough to follow a slider.
+// Pixels of an attention map above a threshold, drawn over the render. Fast enough to follow a slider.
 #include "ui/threshold_picture.h"
 
 #include <algorithm>

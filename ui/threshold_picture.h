@@ -1,4 +1,4 @@
-// What a threshold keeps of an attention map, drawn over the render; fast enough to follow a slider.
+// Pixels of an attention map above a threshold, drawn over the render. Fast enough to follow a slider.
 #pragma once
 
 #include "engine/base/image.h"
@@ -10,8 +10,8 @@ struct ThresholdPicture {
     double share = 0;  // of the pixels, kept
 };
 
-/// `map` is [h,w,1] in [0,1]; where its size differs from the render's the nearest value counts. Non-finite
-/// values are not kept.
+/// `map` is [h,w,1] in [0,1]. At another size than the render's, the nearest value counts. Non-finite values
+/// are not kept.
 ThresholdPicture threshold_picture(const Image& render, const Image& map, double threshold);
 
 }  // namespace gse::ui

@@ -1,5 +1,5 @@
-// What the panels show: plain data that the application refreshes before every frame. No Vulkan, no torch, no
-// threads.
+// Values that the panels show: plain data that the application refreshes before every frame. No Vulkan, no
+// torch, no threads.
 #pragma once
 
 #include <array>
@@ -39,7 +39,7 @@ public:
     virtual TextureId texture(const std::shared_ptr<const Image>& image) = 0;
 };
 
-/// How the viewport shows splats; the order is that of the menu.
+/// Display of the splats in the viewport; the order is that of the menu.
 enum class DisplayMode {
     Beauty,
     Centres,
@@ -60,7 +60,7 @@ enum class Tool { Orbit, Brush, Rectangle, Lasso, CutOut, PickColour };
 enum class SetOperation { Add, Remove, Intersect, Replace };
 enum class Comparison { None, Wipe, Original };
 
-/// Everything of the window an artist sets; saved in the project. One list of fields.
+/// Settings of the window that an artist makes; saved in the project. One list of fields.
 struct ViewSettings {
     int mode = 0;  // DisplayMode
     int sh_degree = 3;
@@ -89,7 +89,7 @@ struct ViewSettings {
         f("front_only", self.front_only, "Selecting touches the front only, not what is behind.");
         f("brush_px", self.brush_px, "Radius of the brush in pixels.", Range{1, 500});
         f("background", self.background, "Colour behind the scene.");
-        f("wipe", self.wipe, "Where the wipe between before and after stands.", Range{0, 1});
+        f("wipe", self.wipe, "Place of the wipe between before and after.", Range{0, 1});
         f("fov_degrees", self.fov_degrees, "Horizontal field of view.", Range{5, 150});
         f("move_speed", self.move_speed, "Speed of flying.", Range{0.01, 100});
     }
@@ -107,10 +107,10 @@ struct SnapshotView {
     std::size_t splats = 0;
 };
 
-/// What Locate found, per view.
+/// Result of Locate, per view.
 using AttentionView = pipeline::SeenView;
 
-/// What came of the last search.
+/// Outcome of the last search.
 struct SearchView {
     std::uint64_t number = 0;  // another one for each search; 0 = there was none
     edit::Confidence confidence;
@@ -133,10 +133,10 @@ struct LoraView {
     double strength = 1;
 };
 
-/// What a segmenter finds by: clicks on the attention (SAM), or a noun (CLIPSeg).
+/// Prompt of a segmenter: clicks on the attention (SAM), or a noun (CLIPSeg).
 enum class SegmenterRole : std::uint8_t { Clicks, Words };
 
-/// What cuts masks out of pictures.
+/// Segmenter that cuts masks out of pictures.
 struct SegmenterView {
     std::string
         path;  // of its weights; empty = none: GrabCut follows clicks, and nouns are left to the attention
@@ -149,7 +149,7 @@ struct LogLine {
     std::string text;
 };
 
-/// What an edit will cost, before it starts.
+/// Cost of an edit, before it starts.
 struct Estimate {
     double seconds = -1;  // negative = not known yet
     double tflop = -1;    // 10^12 operations of the networks
@@ -166,7 +166,7 @@ struct Toast {
     std::string button;  // empty = none
 };
 
-/// Something the application wants to know; the choice comes back as command::Answer.
+/// Question of the application. The choice comes back as command::Answer.
 struct AskedQuestion {
     struct Answer {
         std::string text, detail = {};
@@ -220,7 +220,7 @@ struct ExportSettings {
         f("frames", self.frames, "Frames of the turntable.", Range{1, 100000});
         f("fps", self.fps, "Frames per second.", Range{1, 240});
         f("degrees", self.degrees, "How far it turns.", Range{-36000, 36000});
-        f("start_degrees", self.start_degrees, "Where it starts.", Range{-3600, 3600});
+        f("start_degrees", self.start_degrees, "Direction of the start, degrees.", Range{-3600, 3600});
         f("ease", self.ease, "Start and stop gently.");
         f("radius_factor", self.radius_factor, "Distance, relative to the fitted one.", Range{0.05, 20});
         f("elevation_degrees", self.elevation_degrees, "Height above the horizon.", Range{-89, 89});
@@ -240,7 +240,7 @@ struct ExportSettings {
     }
 };
 
-/// What the model made of a few views before the loop.
+/// The model's drawing of a few views before the loop.
 struct GateView {
     std::vector<std::shared_ptr<const Image>> pictures;  // [S,S,3]
     std::string verdict;                                 // empty = nobody can judge them
@@ -266,7 +266,7 @@ struct TargetRound {
     std::vector<std::string> warnings = {};
 };
 
-/// What the next edit may change: what the active label marks, or what a search finds.
+/// Scope of the next edit: the active label, or the result of a search.
 struct EditReach {
     std::string label;       // active, with splats in it; empty = there is none
     std::size_t splats = 0;  // of it
@@ -274,7 +274,7 @@ struct EditReach {
     bool corrected = false;  // something of it was set by hand
 };
 
-/// Splats that are chosen by a property, to be seen before anything is done with them.
+/// Splats that are chosen by a property, shown before anything is done with them.
 struct PickedRows {
     bool shown = false;    // they take the place of the label's tint
     bool working = false;  // the property is being measured
@@ -283,7 +283,7 @@ struct PickedRows {
         values;  // [N] of the property, NaN where there is none; null until it is measured
 };
 
-/// What the networks were asked for by the running or last job.
+/// Requests of the running or last job to the networks.
 struct NetworkCost {
     std::uint64_t unet = 0, encoder = 0, decoder = 0;  // passes over one picture
     double tflop = 0;                                  // 10^12 operations
@@ -328,7 +328,7 @@ struct ViewportPart {
     std::string compared_name;            // of that step
 };
 
-/// The request and what was found for it.
+/// The request and its search results.
 struct SearchPart {
     edit::EditRequest request;
     std::vector<std::string> said_words;  // by the applied edits of the scene: no news any more
@@ -409,7 +409,7 @@ struct WindowPart {
     float ui_scale = 1;
 };
 
-/// Everything the panels read: assembled before every frame, never changed by them. Pointers and spans are
+/// Everything the panels read. Assembled before every frame, never changed by them. Pointers and spans are
 /// valid for the frame.
 struct ViewModel : DocumentPart,
                    ViewportPart,

@@ -37,13 +37,13 @@ struct Open {
     std::filesystem::path path;
 };
 struct OpenSample {};
-/// Saves the project; an empty path = where it was saved last. Calls `then` (may be empty) once it is saved.
+/// Saves the project; an empty path = its last file. Calls `then` (may be empty) once it is saved.
 struct SaveProject {
     std::filesystem::path path = {};
     std::function<void()> then = {};
 };
-/// Stops a running edit, then calls `then`. Keep: its state and all else unsaved go to the recovery folder;
-/// otherwise its state, or the result that waits, is dropped.
+/// Stops a running edit, then calls `then`. With Keep, its state and all other unsaved work go to the
+/// recovery folder. Otherwise its state, or the result that waits, is dropped.
 struct LeaveEdit {
     bool keep = false;
     std::function<void()> then;
@@ -87,7 +87,7 @@ struct FitToTargets {};
 struct ApplyResult {};
 /// Drops the result that waits and those beside it.
 struct DiscardResult {};
-/// Edits once more with another seed; the result that waits is kept beside the new one.
+/// Edits once more with another seed. The result that waits is kept beside the new one.
 struct AnotherResult {};
 struct ShowResult {
     std::size_t index = 0;
@@ -103,17 +103,17 @@ struct TakeSnapshot {
 struct BranchFromSnapshot {
     int iteration = 0;
 };
-/// Moves the threshold of the attention; a drag is one step of undo.
+/// Moves the threshold of the attention. A drag is one step of undo.
 struct SetAttentionThreshold {
     double value = 0;
     bool drag_ends = true;
 };
-/// Excludes a view of the search, or includes it; the label is voted again.
+/// Excludes a view of the search, or includes it. The label is voted again.
 struct LeaveOutView {
     std::size_t view = 0;
     bool out = true;
 };
-/// Chooses what may change: the active label, or what a search finds.
+/// Chooses the splats that may change: those of the active label, or those that a search finds.
 struct SetReach {
     bool by_label = true;
 };
@@ -157,12 +157,12 @@ struct GrowLabel {
 struct InvertLabel {};
 struct ClearLabel {};
 struct DeleteLabelledSplats {};
-/// Adjusts the colours of the labelled splats, or of all where none is labelled. Several in a row start from
-/// the same colours and are one step of undo; the neutral adjustment takes them back.
+/// Adjusts the colours of the labelled splats, or of all if none is labelled. Several in a row start from
+/// their common colours and are one step of undo. The neutral adjustment takes them back.
 struct AdjustColours {
     ColourAdjustment adjustment;
 };
-/// Shows the splats of a choice by property until they are dropped; only UsePicked changes anything.
+/// Shows the splats of a choice by property until they are dropped. Only UsePicked changes anything.
 struct PickRows {
     localize::RowChoice choice;
 };
@@ -179,7 +179,7 @@ struct SetEditEnabled {
     std::uint64_t id = 0;
     bool enabled = true;
 };
-/// Blends an edit with the scene before it; a drag is one step of undo.
+/// Blends an edit with the scene before it. A drag is one step of undo.
 struct SetEditStrength {
     std::uint64_t id = 0;
     double strength = 1;
@@ -207,7 +207,7 @@ struct SetViewSettings {
 struct SetComparison {
     Comparison comparison = Comparison::None;
 };
-/// Compares with a step of undo; a step that is compared with already = the original again.
+/// Compares with a step of undo. A second time = the original again.
 struct CompareWith {
     std::size_t position = 0;
 };
@@ -227,11 +227,11 @@ struct SetViewportSize {
 struct SetModelSettings {
     ModelSettings settings;
 };
-/// Tries a model, lists it, and uses it where it loads.
+/// Tries a model, lists it, and uses it if it loads.
 struct ChooseModel {
     std::string path;
 };
-/// Merges a LoRA (FILE or FILE:strength); the model stays as it was where that fails.
+/// Merges a LoRA (FILE or FILE:strength). The model stays as it was if that fails.
 struct AddLora {
     std::string text;
 };
@@ -329,13 +329,13 @@ using WindowCommand = std::variant<command::OpenGuide, command::ToggleFullscreen
 using Command = std::variant<FileCommand, SearchCommand, EditCommand, LabelCommand, ViewCommand, ModelCommand,
                              ExportCommand, NoticeCommand, WindowCommand>;
 
-/// Commands of a frame in their order, kept until the frame is drawn: nothing that panels read changes
-/// under their hands.
+/// Commands of a frame in their order, kept until the frame is drawn. Nothing that panels read changes under
+/// their hands.
 class CommandSink {
 public:
     void push(Command command) { commands_.push_back(std::move(command)); }
     bool empty() const { return commands_.empty(); }
-    /// The commands so far; what is pushed while they run waits for the next time.
+    /// Commands so far. Those pushed while they run wait for the next time.
     std::vector<Command> take() { return std::exchange(commands_, {}); }
 
 private:

@@ -1,4 +1,4 @@
-// What menus, keys and buttons share: when a thing can be done, why not, and doing it.
+// Conditions, reasons and actions that menus, keys and buttons share.
 #include "ui/commands/guarded.h"
 
 #include <fmt/format.h>
@@ -21,7 +21,7 @@ constexpr double AskAfterSeconds = 30;           // of work, before a cancel is 
 constexpr std::uint64_t LargestSeed = 1u << 31;  // still easy to read and to type
 constexpr float SmallestScale = 0.6f, LargestScale = 4.0f;
 
-/// What was typed in this very frame goes first.
+/// Sends the request first, with text that was typed in this very frame.
 void send_request(Context& context) {
     if (context.request_changed) context.emit(command::SetRequest{context.request});
     context.request_changed = false;

@@ -19,7 +19,7 @@ bool focus_shown() {
     return g.NavId != 0 && !g.NavDisableHighlight;
 }
 
-/// The window that keeps the keyboard to itself: an open dialog or list; null = none.
+/// Window that keeps the keyboard to itself: an open dialog or list; null = none.
 const ImGuiWindow* keeper() {
     const ImGuiContext& g = *ImGui::GetCurrentContext();
     for (int at = g.OpenPopupStack.Size; at-- > 0;)
@@ -60,7 +60,8 @@ void focus(Context& context, const FocusStop& stop) {
     context.state.keyboard.on = true;
 }
 
-/// `step` stops further among those that `wanted` lets through, around the end; nothing when there is none.
+/// Control `step` stops further among those that `wanted` accepts, around the end. Nothing when there is
+/// none.
 template <class Wanted> void move_focus(Context& context, int from, int step, Wanted&& wanted) {
     const auto& stops = context.state.keyboard.stops;
     const int count = static_cast<int>(stops.size());
@@ -71,7 +72,7 @@ template <class Wanted> void move_focus(Context& context, int from, int step, Wa
     }
 }
 
-/// Where Tab starts: the control that has the focus or was used last, else just before the prompt.
+/// Start of Tab: the control that has the focus or was used last, else just before the prompt.
 int start_of(const Context& context, int step) {
     const auto& stops = context.state.keyboard.stops;
     const ImGuiContext& g = *ImGui::GetCurrentContext();
@@ -100,7 +101,7 @@ void next_area(Context& context) {
     move_focus(context, from, step, [&](const FocusStop& stop) { return area_of(stop.window) != here; });
 }
 
-/// Alt pressed and let go with nothing else between.
+/// Notes that Alt was pressed and let go with nothing else between.
 void watch_alt(Context& context) {
     auto& keyboard = context.state.keyboard;
     const auto& io = ImGui::GetIO();

@@ -1,6 +1,6 @@
-// The window without a mouse: which control has the focus, and the keys that move it. Tab goes through all
-// controls in the order they are drawn, arrows to the nearest one (ImGui's own navigation), Space and Enter
-// press, Alt opens the menus.
+// Use of the window without a mouse: the focus, and the keys that move it. Tab goes through all controls in
+// the order they are drawn, arrows to the nearest one (ImGui's own navigation). Space and Enter press; Alt
+// opens the menus.
 #pragma once
 
 #include <imgui.h>
@@ -35,7 +35,7 @@ struct KeyboardState {
     std::string menu_asked;     // to be opened with the next menu bar; empty = none
 };
 
-/// Reads the keys that move the focus; before anything is drawn, with the stops of the frame before.
+/// Reads the keys that move the focus. Call it before anything is drawn, with the stops of the frame before.
 void begin_keyboard(Context& context);
 /// Says whether ImGui's navigation works in the next frame.
 void end_keyboard(Context& context);
@@ -47,19 +47,18 @@ void takes_letters(Context& context);
 /// Gives the last item the focus.
 void focus_last_item(Context& context);
 
-/// Whether a key went down in this frame.
+/// True when a key went down in this frame.
 bool pressed(int index, bool repeats = false);
-/// Whether the last item has the focus and shows it.
+/// True when the last item has the focus and shows it.
 bool has_focus();
-/// The same for a control of the last frame, and by its name.
+/// True when a control of the last frame, by its name, has the focus.
 bool has_focus(const FocusStop& stop);
 bool has_focus(const Context& context, std::string_view name);
-/// The last item is a closed menu of the bar: opens it when Alt asked for it, or when arrows came from
-/// another one.
+/// Opens the last item, a closed menu of the bar, when Alt asked for it or arrows came from another one.
 void open_menu_by_key(Context& context, const char* menu);
 /// Arrow pressed while the last item has the focus: -1, 1 or 0. The focus stays.
 int focus_step_sideways();
-/// The arrows of this frame do not move the focus.
+/// Keeps the arrows of this frame from moving the focus.
 void keep_focus();
 
 }  // namespace gse::ui

@@ -30,7 +30,7 @@ constexpr std::array<std::pair<int, std::string_view>, 16> NamedKeys{{{key::Spac
                                                                       {330, "Keypad ."}}};
 constexpr int LastFunctionKey = key::F1 + 11;
 
-/// What a convention does otherwise; "" = no key.
+/// Keys that a convention has otherwise; "" = no key.
 struct Override {
     KeyPreset preset;
     Shortcut command;

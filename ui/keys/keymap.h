@@ -1,4 +1,4 @@
-// Which keys do what: one of a few conventions, and what the artist has chosen on top of it.
+// Keys of the commands: one of a few conventions, and the artist's choices on top of it.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ struct Chord {
     bool operator==(const Chord&) const = default;
 };
 
-/// "Ctrl + Shift + Z", empty for none; and back, nothing for what is no chord.
+/// Text of a chord: "Ctrl + Shift + Z", empty for none. And back: nothing for a text that is no chord.
 std::string chord_text(const Chord& chord);
 std::optional<Chord> parse_chord(const std::string& text);
 
@@ -26,9 +26,9 @@ inline constexpr std::array<const char*, 3> KeyPresetNames{"Splat", "Blender", "
 class Keymap {
 public:
     explicit Keymap(KeyPreset preset = KeyPreset::Splat);
-    /// As text() wrote it; what cannot be read is left as it is by default.
+    /// Reads a text of text(). Unreadable entries keep their defaults.
     static Keymap parse(const std::string& json);
-    /// The preset and what differs from it, JSON.
+    /// Preset and its differences, as JSON.
     std::string text() const;
 
     KeyPreset preset() const { return preset_; }
@@ -38,10 +38,10 @@ public:
     bool changed(Shortcut command) const;
     /// The command that has these keys.
     std::optional<Shortcut> user_of(const Chord& chord) const;
-    /// Gives a command its keys; the one that had them has none any more, and is returned. Keys with a fixed
+    /// Gives a command its keys. The command that had them loses them, and is returned. Keys with a fixed
     /// meaning are refused: `why_not`.
     std::optional<Shortcut> bind(Shortcut command, const Chord& chord);
-    /// Why these keys cannot be chosen: "W flies"; empty = they can.
+    /// Reason why these keys cannot be chosen: "W flies"; empty = they can.
     static std::string why_not(const Chord& chord);
 
 private:

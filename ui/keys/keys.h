@@ -1,5 +1,5 @@
-// Key numbers as GLFW reports them (printable keys are their US-layout ASCII), and the table of all keys:
-// those of commands, which can be chosen (keymap.h), and fixed ones.
+// Key numbers as GLFW reports them, and the table of all keys. Printable keys are their US-layout ASCII. Keys
+// of commands can be chosen (keymap.h); others are fixed.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ inline constexpr int Space = 32, LeftBracket = 91, RightBracket = 93, Grave = 96
                      KeypadEnter = 335;
 }  // namespace key
 
-/// What keys can be chosen for (keymap.h).
+/// Commands that keys can be chosen for (keymap.h).
 enum class Shortcut {
     Frame,
     Home,
@@ -58,7 +58,7 @@ struct KeyHelp {
     const char* name = nullptr;     // of the command, in the settings
 };
 
-/// All keys; what the shortcuts and the camera do must agree with it.
+/// All keys. Shortcuts and camera must agree with it.
 inline constexpr std::array<KeyHelp, 53> KeyTable{{
     {"Camera", "Left drag (no tool), middle drag", "Orbit"},
     {"Camera", "Shift + middle drag, right drag", "Pan"},

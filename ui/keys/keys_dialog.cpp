@@ -14,7 +14,7 @@ namespace {
 
 void send(Context& context) { context.emit(command::SetKeymap{context.state.keymap.text()}); }
 
-/// The keys that are pressed now become those of the command that waits for them; Esc leaves it as it was.
+/// Gives the pressed keys to the command that waits for them. Esc leaves it as it was.
 void choose_keys(Context& context) {
     auto& keys = context.state.keys;
     const auto& io = ImGui::GetIO();

@@ -5,8 +5,7 @@
 
 namespace gse::ui {
 
-/// The next window comes to the middle of the screen, at most that large; a width of 0 = as large as what is
-/// in it.
+/// Centres the next window, at most that large. A width of 0 = as large as its contents.
 void centre_next(ImVec2 size);
 
 /// While UiState::help_open.

@@ -1,4 +1,4 @@
-// What keys do: those of commands, as the keymap says, and fixed ones (KeyTable lists them for Help).
+// Effects of keys: those of commands, by the keymap, and fixed ones (KeyTable lists them for Help).
 #include <array>
 #include <utility>
 
@@ -14,7 +14,7 @@ namespace {
 
 bool enter_pressed() { return pressed(key::Enter) || pressed(key::KeypadEnter); }
 
-/// Whether the keys of a command were pressed in this frame, with just these modifiers.
+/// True when the keys of a command were pressed in this frame, with just these modifiers.
 bool hit(const Context& context, Shortcut command) {
     const Chord chord = context.state.keymap.of(command);
     const auto& io = ImGui::GetIO();
@@ -30,7 +30,7 @@ void export_turn(Context& context) {
     if (why_not_export(context, context.exports.film_path).empty()) context.emit(command::ExportTurntable{});
 }
 
-/// Those that do no harm to text that is typed, where their keys do not type.
+/// Commands that do no harm to text that is typed, if their keys do not type.
 void file_keys(Context& context, bool typing) {
     const auto free = [&](Shortcut command) {
         const Chord chord = context.state.keymap.of(command);
@@ -72,7 +72,7 @@ void resize_brush(Context& context, float factor) {
     context.view_changed = true;
 }
 
-/// To another view: of the search while one of them is looked through, else of the scene.
+/// Goes to another view: of the search while one of them is looked through, else of the scene.
 void step(Context& context, int by) {
     const int count = static_cast<int>(context.model.attention.size());
     if (view_looked_through(context) == nullptr) return step_view(context, by);
@@ -122,7 +122,7 @@ void view_keys(Context& context) {
     if (arrows_free && pressed(key::Right)) step(context, 1);
 }
 
-/// Those that mean something else while text is typed.
+/// Commands whose keys mean something else while text is typed.
 void free_keys(Context& context) {
     if (hit(context, Shortcut::Prompt)) {
         show_panel(context.state, PanelId::Prompt);

@@ -1,4 +1,4 @@
-// Colours of what is labelled, by hand: seen while the controls move, one edit of the stack.
+// Colours of the labelled splats, by hand: seen while the controls move, one edit of the stack.
 #include <fmt/format.h>
 
 #include "ui/commands/guarded.h"
@@ -10,7 +10,7 @@
 namespace gse::ui {
 namespace {
 
-/// True while it changes; a right click brings the default back.
+/// True while it changes. A right click brings the default back.
 bool slider_row(Context& context, const char* name, double& value, const char* help, const Range& range,
                 double standard) {
     const std::string text = fmt::format("{}\nRight click: back to {}.", help, standard);

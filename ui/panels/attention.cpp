@@ -1,5 +1,4 @@
-// Attention: per view what was rendered, where the word landed, what the threshold keeps and what the view
-// voted for.
+// Attention: per view the render, the map of the word, the pixels above the threshold and the view's vote.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -36,7 +35,7 @@ std::string branch_words(const AttentionView& view) {
     return view.branch.empty() ? std::string() : fmt::format("The mask was made by \"{}\".", view.branch);
 }
 
-/// Of a mask that was cut out of the attention of its own view.
+/// Caption of a mask that was cut out of the attention of its own view.
 std::string captured_words(const AttentionView& view) {
     const bool of_all_views = view.branch == "drawn" || view.branch == "anchor" || view.branch == "label";
     return of_all_views ? std::string()
@@ -49,7 +48,7 @@ ImU32 state_colour(const AttentionView& view) {
     return view.captured >= 0.5 ? palette::Good : palette::Warning;
 }
 
-/// A slanted line through what does not count.
+/// Slanted line through an excluded thumbnail.
 void cross_out(Context& context, ImVec2 low, ImVec2 high) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     const float inset = context.em * 0.3f;
@@ -212,7 +211,7 @@ void draw_controls(Context& context, const AttentionView& view) {
         look_through_attention(context, state.chosen);
 }
 
-/// What a search came to that labelled nothing, and the ways on.
+/// Outcome of a search that labelled nothing, and the ways on.
 void draw_problem(Context& context) {
     const auto& search = context.model.search;
     if (search.problem == edit::SearchProblem::None) return;
@@ -255,7 +254,7 @@ void draw_confidence(Context& context) {
     tooltip(parts);
 }
 
-/// Which side of the scene the model takes for its front, where it was read off the scene.
+/// Side of the scene that the model takes for its front, if it was read off the scene.
 void draw_front(Context& context) {
     const auto& front = context.model.search.front;
     if (!front) return;
@@ -271,7 +270,7 @@ void draw_front(Context& context) {
         "before Locate, or set Front in Settings, in degrees, or none.");
 }
 
-/// What the pictures below show that is no part of the scene.
+/// Note about pictures that show more than the scene.
 void draw_ground(Context& context) {
     if (!context.model.search.on_ground) return;
     const char* text = "on a plain ground";
@@ -318,7 +317,7 @@ void draw_summary(Context& context) {
     note(context, "attention.corrected");
 }
 
-/// The chosen view's pictures, `columns` beside each other; the first is left out where they would get too
+/// Pictures of the chosen view, `columns` beside each other. The first is left out where they would get too
 /// small.
 void draw_pictures(Context& context, const AttentionView& view, ImVec2 space, int columns) {
     const std::array<std::pair<const std::shared_ptr<const Image>*, const char*>, 4> all{

@@ -1,4 +1,4 @@
-// Export: picture, turntable, camera path and scene; says in words what will be written before it is.
+// Export: picture, turntable, camera path and scene. Says in words what will be written before it is.
 #include <fmt/format.h>
 #include <imgui.h>
 #include <imgui_stdlib.h>
@@ -26,7 +26,7 @@ constexpr std::array<Size, 5> Sizes{
     {{"Current", 0, 0}, {"HD", 1920, 1080}, {"QHD", 2560, 1440}, {"4K", 3840, 2160}, {"Square", 1024, 1024}}};
 constexpr double LargestPixels = 16384.0 * 8192.0;
 
-/// One of the paths to be written, with a button that asks for it.
+/// One of the paths to write, with a button that asks for it.
 void path_row(Context& context, const char* name, std::string ExportSettings::*member,
               std::vector<std::string> endings) {
     std::string& path = context.exports.*member;
@@ -63,7 +63,7 @@ std::string endings_text(const std::vector<std::string>& endings) {
     return text;
 }
 
-/// Off because of the scene, the path or its ending.
+/// Reason to be off: the scene, the path or its ending.
 std::string why_not_write(const Context& context, const std::string& path,
                           const std::vector<std::string>& endings) {
     const std::string why = why_not_export(context, path);
@@ -71,7 +71,7 @@ std::string why_not_write(const Context& context, const std::string& path,
     return fmt::format("The name must end in {}", endings_text(endings));
 }
 
-/// What will happen, or in amber why it cannot.
+/// Sentence about the coming file, or in amber why there is none.
 void say(const std::string& why, const std::string& what) {
     if (why.empty()) return dim_text(what);
     coloured_text(palette::Warning, why.ends_with('.') ? why : fmt::format("{}.", why));
@@ -139,7 +139,7 @@ std::string film_text(const ExportSettings& settings) {
         settings.before_after ? ", before and after side by side" : "");
 }
 
-/// A film has a known ending; without an ending the name is a folder.
+/// Reason to refuse a film's name. A film has a known ending; without an ending the name is a folder.
 std::string why_not_film(const Context& context) {
     const std::string why = why_not_export(context, context.exports.film_path);
     if (!why.empty()) return why;

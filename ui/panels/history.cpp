@@ -57,7 +57,7 @@ void draw_buttons(Context& context, const EditNode& edit, std::size_t place, std
         context.emit(command::DeleteEdit{id});
 }
 
-/// How much of the edit is seen; follows the drag.
+/// Strength of the edit; follows the drag.
 void draw_strength(Context& context, const EditNode& edit) {
     constexpr double least = 0;
     double strength = edit.strength;
@@ -106,7 +106,7 @@ void draw_edit(Context& context, std::size_t place, std::size_t count) {
     ImGui::PopID();
 }
 
-/// Wipes between this step and what is shown.
+/// Wipe between this step and the shown scene.
 void draw_compare(Context& context, std::size_t at, float side) {
     const bool compared = context.model.document->revision_at(at) == context.model.compared_revision;
     ImGui::SameLine();

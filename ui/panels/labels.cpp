@@ -1,4 +1,4 @@
-// Labels: named selections of splats, their weights, and correcting them by hand.
+// Labels: named selections of splats, their weights, and corrections by hand.
 #include <fmt/format.h>
 #include <imgui.h>
 #include <imgui_stdlib.h>

@@ -1,4 +1,4 @@
-// Log: what the program told, filtered by level and text, to be copied.
+// Log: messages of the program, filtered by level and text, to be copied.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Models: where each part was looked for, what was found, what is missing and what to do about it.
+// Models: the places searched for each part, the parts found, and advice for those that are missing.
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -94,7 +94,7 @@ void draw_lora(Context& context, const LoraView& lora, std::size_t index) {
         context.emit(command::RemoveLora{index});
 }
 
-/// What is merged into the model in use.
+/// LoRAs that are merged into the model in use.
 void draw_loras(Context& context) {
     heading(context, "LoRAs");
     const auto& loras = context.model.loras;
@@ -118,7 +118,7 @@ void draw_loras(Context& context) {
     if (button(context, {.name = "models.lora.browse", .text = "Browse..."})) ask_lora(context);
 }
 
-/// What the panel says of a segmenter.
+/// Line about a segmenter.
 struct SegmenterTexts {
     SegmenterRole role;
     const char* name;  // of its widgets

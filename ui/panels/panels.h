@@ -28,7 +28,7 @@ void draw_log_panel(Context& context);
 /// The panel of this name.
 void draw_panel(Context& context, PanelId panel);
 
-/// "Apply" and "Discard" of a finished edit, where it asks for them; nothing when no result waits.
+/// "Apply" and "Discard" of a finished edit, if it asks for them. Nothing when no result waits.
 void draw_result_notice(Context& context, const char* prefix);
 
 }  // namespace gse::ui

@@ -1,4 +1,4 @@
-// Splats by what they are: faint, large, of one colour, alone; seen while the line moves, then labelled or
+// Splats by a property (faint, large, of one colour, alone): seen while the line moves, then labelled or
 // deleted.
 #include <fmt/format.h>
 
@@ -55,7 +55,7 @@ void draw_colour(Context& context, localize::RowChoice& choice, bool& changed) {
     }
 }
 
-/// Histogram with the line, or word that it is being measured.
+/// Histogram with the line, or a note that it is being measured.
 void draw_values(Context& context, PickState& pick, localize::RowChoice& choice, bool& changed) {
     const auto& picked = context.model.picked;
     if (picked.working || picked.values == nullptr) {

@@ -43,7 +43,7 @@ void draw_job(Context& context) {
         cancel_job(context);
 }
 
-/// The gate: what the model itself makes of a few views.
+/// The gate: the model's own drawing of a few views.
 void draw_gate(Context& context) {
     const auto& gate = context.model.gate;
     if (gate.pictures.empty()) return;
@@ -65,7 +65,7 @@ void draw_gate(Context& context) {
     if (!gate.verdict.empty()) coloured_text(gate.warns ? palette::Warning : palette::TextDim, gate.verdict);
 }
 
-/// What the running or last job has asked of the networks, and the way to what came of it.
+/// Requests of the running or last job to the networks, and the way to its outcome.
 void draw_cost(Context& context) {
     const auto& cost = context.model.cost;
     if (cost.unet > 0) {
@@ -89,7 +89,7 @@ std::string why_not_branch(const Context& context, int iteration) {
     return {};
 }
 
-/// What is given up by it is asked about first.
+/// Asks before going on from a snapshot gives up any work.
 void ask_branch(Context& context, int iteration) {
     auto& commands = context.commands;
     const auto branch = [&commands, iteration] { commands.push(command::BranchFromSnapshot{iteration}); };

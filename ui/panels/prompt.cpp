@@ -46,7 +46,7 @@ constexpr std::array<const char*, 4> ModeHelp{
     "Put something else in the source's place: a cat for the bear.",
     "Put something new there, such as a hat on the bear."};
 
-/// What can be done about a source that the model does not know.
+/// Advice for a source that the model does not know.
 void draw_unknown_source(Context& context) {
     const auto& prompt = context.state.prompt;
     const std::string word = edit::unknown_word(context.model.known_words, context.request.source);
@@ -133,7 +133,7 @@ void draw_sentence(Context& context) {
     if (!chosen) dim_text("Click the word that is new: it is the target of the edit.");
 }
 
-/// What a model that edits pictures is told to do.
+/// Instruction for a model that edits pictures.
 void draw_instruction(Context& context) {
     if (!context.model.edits_by_instruction) return;
     dim_text("What is to be done");
@@ -261,7 +261,7 @@ void draw_seed(Context& context) {
         roll_seed(context);
 }
 
-/// What the model does before the loop; more of it is under "All settings".
+/// Work of the model before the loop. More of it is under "All settings".
 void draw_model_settings(Context& context) {
     context.model_settings_changed |=
         checkbox(context, "prompt.learn", "Learn the scene first", context.model_settings.learn_scene,
@@ -293,7 +293,7 @@ std::string memory_warning(const Estimate& estimate) {
     return tight ? "That is more memory than is free: fewer views or a smaller image size help." : "";
 }
 
-/// What stands in the way is said without hovering too.
+/// Obstacles, shown without hovering too.
 std::string obstacle_text(const Context& context) {
     if (!context.scene_open() || context.model.job.running) return {};
     const std::string why = why_not_edit(context);

@@ -1,4 +1,4 @@
-// Scene: what is open, its statistics, what is odd about it and what to do, and which way is up.
+// Scene: the open file, its statistics, oddities and remedies, and the up direction.
 #include <fmt/format.h>
 
 #include <algorithm>

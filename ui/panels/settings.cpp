@@ -1,4 +1,4 @@
-// Settings: how the scene is shown, size of the interface, and the keys.
+// Settings: display of the scene, size of the interface, and the keys.
 #include <fmt/format.h>
 
 #include <algorithm>

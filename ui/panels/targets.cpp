@@ -1,5 +1,5 @@
-// Targets: the views that the model has redrawn, as a contact sheet: what the scene is fitted to, and what
-// the artist says of it.
+// Targets: the views that the model has redrawn, as a contact sheet. The scene is fitted to them, and the
+// artist may keep or drop each.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 using edit::TargetChoice;
 
-/// The round that is looked at.
+/// The shown round.
 const TargetRound& shown_round(Context& context) {
     const auto& rounds = context.model.target_rounds;
     auto& chosen = context.state.targets.chosen;
@@ -76,7 +76,7 @@ std::string state_text(const TargetView& target) {
     return text;
 }
 
-/// What can be said about a view; off where `why` says so.
+/// Buttons for a view; off when `why` says so.
 void draw_choices(Context& context, const TargetRound& round, const TargetView& target,
                   const std::string& name, const std::string& why) {
     const auto order = [&](TargetChoice choice) {
@@ -166,7 +166,7 @@ void draw_wait(Context& context) {
     end_notice();
 }
 
-/// What is suspicious about the shown round.
+/// Suspicious facts of the shown round.
 void draw_warnings(Context& context) {
     for (std::size_t i = 0; const auto& warning : shown_round(context).warnings) {
         begin_notice(context, fmt::format("targets.warning.{}", i++), palette::Warning);

@@ -1,5 +1,4 @@
-// What floats at the picture's foot and top: the result that waits, and what is hidden, looked through or can
-// be had back.
+// Bars at the picture's foot and top: the result that waits, and notes on hidden, viewed or recoverable work.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,8 +14,8 @@ namespace {
 
 constexpr float PictureEm = 7.5f;  // width of a thumbnail
 
-/// A small window over the picture that sizes itself; `below`: its lower edge is at that place, not its upper
-/// one.
+/// Small window over the picture that sizes itself. With `below`, its lower edge is at that place, else its
+/// upper one.
 void begin_floating(const char* name, ImVec2 at, bool below = false) {
     ImGui::SetNextWindowPos(at, ImGuiCond_Always, {0.5f, below ? 1.0f : 0.0f});
     ImGui::SetNextWindowBgAlpha(0.96f);
@@ -32,7 +31,7 @@ void end_floating(Context& context) {
     ImGui::End();
 }
 
-/// The same at the foot.
+/// Closes a bar at the foot and notes where it ends.
 void end_foot(Context& context) {
     ImVec2& low = context.state.viewport.foot_low;
     const ImVec2 at = ImGui::GetWindowPos();
@@ -42,7 +41,7 @@ void end_foot(Context& context) {
 
 constexpr float ResultEm = 3.4f;  // width of one of several results
 
-/// All that can be applied, small, above its bar: a click shows one.
+/// All results that can be applied, small, above the bar. A click shows one.
 void draw_results(Context& context) {
     const auto& results = context.model.results;
     const auto& state = context.state.viewport;
@@ -121,7 +120,7 @@ void draw_result_bar(Context& context) {
     if (model.results.size() > 1) draw_results(context);
 }
 
-/// That something is not to be seen must be seen.
+/// Note that something is hidden.
 void draw_hidden_bar(Context& context, ImVec2 at) {
     begin_floating("hidden bar", at);
     ImGui::AlignTextToFramePadding();
@@ -141,7 +140,7 @@ void draw_hidden_bar(Context& context, ImVec2 at) {
     end_floating(context);
 }
 
-/// What of the search lies over the picture, and whether the view votes.
+/// Layer of the search over the picture, and the view's vote.
 void draw_evidence_bar(Context& context, ImVec2 at, const AttentionView& view) {
     auto& state = context.state.attention;
     begin_floating("evidence bar", at);

@@ -1,5 +1,5 @@
-// Camera of the viewport: orbit, pan, zoom to the cursor, fly, frame; glides to where it is sent and then
-// stands still.
+// Camera of the viewport: orbit, pan, zoom to the cursor, fly, frame. Glides to its target and then stands
+// still.
 #include "ui/viewport/camera_control.h"
 
 #include <algorithm>

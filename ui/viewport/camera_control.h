@@ -1,5 +1,5 @@
-// Camera of the viewport: orbit, pan, zoom to the cursor, fly, frame; glides to where it is sent and then
-// stands still.
+// Camera of the viewport: orbit, pan, zoom to the cursor, fly, frame. Glides to its target and then stands
+// still.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace gse::ui {
 
-/// Where the camera is: it looks along row 2 of `rotation` at `pivot` from `distance` away.
+/// Pose of the camera. It looks along row 2 of `rotation` at `pivot` from `distance` away.
 struct CameraPose {
     Vec3 pivot{};
     double distance = 1;
@@ -20,22 +20,23 @@ struct CameraPose {
 /// Pixels are those of the picture given by set_size(). Drags act at once; wheel, frame and home glide.
 class CameraControl {
 public:
-    /// The fitted orbit and what is to be seen from home; also the world's up, and the size of things. Does
-    /// not move the camera.
+    /// Sets the fitted orbit and the view from home, the world's up, and the size of objects. Does not move
+    /// the camera.
     void set_home(const OrbitParameters& orbit, const Bounds& bounds);
-    /// A camera that has not moved since it was sent home sees all of the scene at the new size, too.
+    /// Sets the picture's size. A camera that has not moved since it was sent home sees all of the scene at
+    /// the new size, too.
     void set_size(int width, int height);
     void set_fov(double radians) { fov_x_ = radians; }
     double fov() const { return fov_x_; }
 
-    /// Takes over a camera that came from elsewhere (a view that is looked through); the pivot is put at the
-    /// scene's depth.
+    /// Takes over a camera from elsewhere (a view that is looked through). The pivot is put at the scene's
+    /// depth.
     void adopt(const Camera& camera);
 
     void orbit(double dx_px, double dy_px);
     void pan(double dx_px, double dy_px);
-    /// `notches` > 0 = nearer. What is at the cursor stays there. `depth` > 0 = distance of it along the
-    /// view, else the pivot's.
+    /// Zooms; `notches` > 0 = nearer. The point at the cursor stays there. `depth` > 0 = its distance along
+    /// the view, else the pivot's.
     void zoom(double notches, double x_px, double y_px, double depth);
     /// Moves along the camera's axes (right, down, forward), in scene sizes.
     void fly(const Vec3& direction, double seconds, double speed);
@@ -44,7 +45,7 @@ public:
     void home();
     /// Looks at the pivot from this direction of the world.
     void look_from(const Vec3& direction);
-    /// Turns around this point from now on: it glides to the middle of the picture.
+    /// Turns around this point from now on. It glides to the middle of the picture.
     void set_pivot(const Vec3& point);
 
     /// Point under a pixel at this depth along the view.
@@ -72,15 +73,15 @@ private:
     bool gliding_ = false, moved_ = false, at_home_ = false;
 };
 
-/// True when both see the same, whatever the size of the picture.
+/// True when both show one view, whatever the size of the picture.
 bool same_view(const Camera& a, const Camera& b);
 
-/// Cameras handed to the application that may still come back in later frames (rendering lags behind); what
-/// comes back and is not among them was set by somebody else.
+/// Cameras handed to the application that may still come back in later frames, since rendering lags behind. A
+/// camera that is not among them was set by somebody else.
 class SentCameras {
 public:
     void sent(const Camera& camera);
-    /// True for a camera that is not one of ours; ours and all older ones are forgotten when they came back.
+    /// True for a camera that is not one of ours. Ours and all older ones are forgotten when they came back.
     bool is_foreign(const Camera& shown);
     void clear() { sent_.clear(); }
 

@@ -1,4 +1,4 @@
-// What a search saw in one view, over the picture: shown while the camera stands where that view is.
+// Evidence of a search in one view, over the picture. Shown while the camera stands at that view.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -15,7 +15,7 @@ namespace {
 constexpr double SameTurn = 1e-4;   // of an axis, 0.006 degrees: a camera that is sent glides no nearer
 constexpr double SamePlace = 1e-4;  // of the home radius
 
-/// Whether the picture is seen from there, whatever its size.
+/// True when the picture is seen from there, whatever its size.
 bool stands_at(const Context& context, const Camera& camera) {
     const Camera& shown = context.model.camera;
     if (shown.width <= 0 || camera.width <= 0 || !(camera.fx > 0) || !(shown.fx > 0)) return false;
@@ -25,7 +25,7 @@ bool stands_at(const Context& context, const Camera& camera) {
     return true;
 }
 
-/// [H,W,4]: attention in false colour, what has none darkened.
+/// Picture [H,W,4]: attention in false colour, pixels without any darkened.
 Image attention_layer(const Image& map) {
     Image layer(map.width, map.height, 4);
     for (std::size_t i = 0; i < layer.pixel_count(); ++i) {
@@ -36,7 +36,7 @@ Image attention_layer(const Image& map) {
     return layer;
 }
 
-/// [H,W,4]: the mask tinted, the rest darkened.
+/// Picture [H,W,4]: the mask tinted, the rest darkened.
 Image mask_layer(const Mask& mask) {
     Image layer(mask.width, mask.height, 4);
     for (std::size_t i = 0; i < mask.data.size(); ++i) {

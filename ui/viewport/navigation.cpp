@@ -1,4 +1,4 @@
-// Camera of the viewport: whose it is, how mouse and keys move it, and when the application is told.
+// Camera of the viewport: its owner, its movement by mouse and keys, and reports to the application.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -27,8 +27,8 @@ Pixels framebuffer_size(const ViewportState& state) {
             std::max(1, static_cast<int>(std::lround((state.high.y - state.low.y) * scale.y)))};
 }
 
-/// The stored view that this camera looks through, -1 = none. A view that is looked through is fitted into
-/// the picture.
+/// Stored view that this camera looks through, -1 = none. A view that is looked through is fitted into the
+/// picture.
 int view_of(const Context& context, const Camera& shown) {
     const auto& views = context.document().views;
     const auto sees = [&](std::size_t index) {
@@ -82,7 +82,7 @@ void fly(Context& context) {
     context.state.viewport.camera.fly(direction, io.DeltaTime, speed);
 }
 
-/// A click on a ball of the axes looks along it; once more, from the other side.
+/// Looks along the axis of a clicked ball; once more, from the other side.
 bool look_along_axis(Context& context, ImVec2 mouse) {
     if (!context.view.show_axes) return false;
     for (int axis = 0; axis < 3; ++axis) {

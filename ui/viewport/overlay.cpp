@@ -1,4 +1,4 @@
-// What is drawn over the picture with lines: axes, bounds, cameras, the wipe, and the numbers in the corner.
+// Lines over the picture: axes, bounds, cameras, the wipe, and the numbers in the corner.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -128,7 +128,7 @@ void shaded_text(Context& context, ImDrawList* list, ImVec2 at, const std::strin
     list->AddText({at.x + pad, at.y + pad * 0.5f}, colour, text.c_str());
 }
 
-/// Splats of what the viewport shows.
+/// Number of shown splats.
 std::size_t shown_splats(const Context& context) {
     const auto& model = context.model;
     const bool listed =
@@ -181,7 +181,7 @@ void draw_wipe(Context& context, ImDrawList* list) {
     note_rect(context, "viewport.wipe", {x - r, middle - r}, {x + r, middle + r});
 }
 
-/// A line below the numbers: what the active tool does, and with which keys; as much as fits.
+/// Line below the numbers: the effect of the active tool and its keys, as much as fits.
 void draw_hint(Context& context, ImDrawList* list) {
     const auto& state = context.state.viewport;
     if (state.tool == Tool::Orbit) return;

@@ -1,5 +1,4 @@
-// What the viewport shows while nothing is open: what can be dropped, recent scenes, the sample, what a crash
-// left.
+// Start page of the viewport: files to drop, recent scenes, the sample, recoverable work of a crash.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -57,7 +56,7 @@ void draw_recent(Context& context) {
     }
 }
 
-/// Sentences to begin with: the sample opens, they stand in the panel Prompt.
+/// Sentences to begin with. They open the sample and fill the panel Prompt.
 void draw_examples(Context& context) {
     heading(context, "Try it on the sample");
     std::size_t index = 0;

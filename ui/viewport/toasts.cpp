@@ -1,5 +1,4 @@
-// Short messages at the lower right of the picture, placed so that nothing that can be pressed lies below
-// them.
+// Short messages at the lower right of the picture. No control lies below them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +13,7 @@ namespace {
 constexpr float WidestEm = 26, NarrowestEm = 9;
 constexpr float AxesCornerEm = 6;  // the corner of the axes, which turn the view when they are pressed
 
-/// Where toasts may lie.
+/// Area for toasts.
 struct Space {
     float left = 0, right = 0, top = 0, bottom = 0;
 };

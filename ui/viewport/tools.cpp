@@ -1,5 +1,4 @@
-// Brush, rectangle, lasso and box in the viewport, the wipe's handle, and the cursor that shows what they
-// will do.
+// Brush, rectangle, lasso and box in the viewport, the wipe's handle, and the cursor that shows their effect.
 #include <algorithm>
 #include <cmath>
 
@@ -15,7 +14,7 @@ constexpr float WipeGrabEm = 0.7f;
 constexpr float DabSpacing = 0.35f;  // of the radius, between the circles of a stroke
 constexpr float LassoSpacingPx = 3;
 
-/// From the window to pixels of the viewport's texture.
+/// Point of the window in pixels of the viewport's texture.
 std::array<float, 2> to_texture(const Context& context, std::array<float, 2> point) {
     const auto& state = context.state.viewport;
     const float x = (point[0] - state.low.x) / std::max(1.0f, state.high.x - state.low.x);
@@ -89,8 +88,7 @@ void end_stroke(Context& context, ImVec2 mouse) {
     context.emit(command::Select{region, state.stroke_operation, true});
 }
 
-/// The base colour of what is seen there, for "Select by property"; the nearest that there is a few pixels
-/// around.
+/// Base colour of the splats at a point, for "Select by property". The nearest one within a few pixels.
 void pick_colour(Context& context, ImVec2 mouse) {
     constexpr float first_px = 2, most_px = 60;
     const auto& set = context.document().current;

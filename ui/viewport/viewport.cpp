@@ -1,4 +1,4 @@
-// The picture in the middle: its header, the picture itself, and who gets the mouse over it.
+// The picture in the middle: its header, the picture itself, and the receiver of the mouse over it.
 #include "ui/viewport/viewport.h"
 
 #include <fmt/format.h>

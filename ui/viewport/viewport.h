@@ -1,4 +1,4 @@
-// The picture in the middle: its header, the camera and tools that work in it, and what is drawn over it.
+// The picture in the middle: its header, the camera and tools that work in it, and its overlays.
 #pragma once
 
 #include "ui/context.h"
@@ -22,35 +22,35 @@ bool use_tool(Context& context, bool hovered);
 /// Operation of the keys held now, else the chosen one.
 SetOperation operation_now(const Context& context);
 
-/// The chosen view of the last search, where the picture is seen from there and something of it lies over it;
-/// else null.
+/// Chosen view of the last search, if the picture is seen from there and a layer of it lies over it. Else
+/// null.
 const AttentionView* view_looked_through(const Context& context);
 /// Chooses it, turns the camera there and shows its attention or mask over the picture.
 void look_through_attention(Context& context, int index);
-/// Whether that view of the search votes, as a box to tick.
+/// Box to tick: the vote of that view of the search.
 void draw_vote(Context& context, const char* name, int index);
-/// That attention or mask.
+/// Layer of that view: attention or mask.
 void draw_evidence(Context& context, ImDrawList* list);
 void draw_overlays(Context& context, ImDrawList* list);
 void draw_tool_cursor(Context& context, ImDrawList* list, bool hovered);
 void draw_start_page(Context& context);
-/// Messages at the lower right, clear of whatever can be pressed; none above `top` (screen). How high they
-/// are with their margin, 0 = none. Part of the current ImGui window, so that dialogs and menus lie above.
+/// Messages at the lower right, clear of all controls; none above `top` (screen). Returns their height with
+/// their margin, 0 = none. Part of the current ImGui window, so that dialogs and menus lie above.
 float draw_toasts(Context& context, float top);
-/// Floats at the top of the picture: apply, discard and compare while a result waits, and work of another
-/// session that can be had back.
+/// Bar at the top of the picture: apply, discard and compare while a result waits, and work of another
+/// session that can be recovered.
 void draw_bars(Context& context);
-/// What a session left: picture, scene, time, what ran; with its buttons, named PREFIX.recover.INDEX and so
-/// on.
+/// Recoverable work of a session: picture, scene, time, and what ran. Its buttons are named
+/// PREFIX.recover.INDEX and so on.
 void draw_recovery(Context& context, const char* prefix, std::size_t index, bool can_wait);
 
-/// Depth along the view under a point of the window; not positive = nothing there or unknown.
+/// Depth along the view under a point of the window. Not positive = nothing there or unknown.
 double depth_at(const Context& context, ImVec2 point);
-/// Pixel of the shown camera to the window.
+/// Place in the window of a pixel of the shown camera.
 ImVec2 to_screen(const Context& context, double x_px, double y_px);
-/// Where the ball of a world axis (0, 1, 2) is drawn in the corner.
+/// Place of the ball of a world axis (0, 1, 2) in the corner.
 ImVec2 axis_ball(const Context& context, int axis);
-/// The shown camera's view that lies under the point, -1 = none.
+/// Stored view whose drawing lies under the point, -1 = none.
 int view_at(const Context& context, ImVec2 point);
 
 }  // namespace gse::ui

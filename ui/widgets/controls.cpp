@@ -1,5 +1,4 @@
-// The small controls all panels are made of: buttons that say why they are off, rows, badges, numbers in
-// words.
+// Small controls of all panels: buttons that say why they are off, rows, badges, numbers in words.
 #include "ui/widgets/controls.h"
 
 #include <fmt/format.h>
@@ -209,7 +208,7 @@ bool checkbox(Context& context, std::string_view name, std::string_view label, b
 
 namespace {
 
-/// Padding with which all choices fit into one row; the usual one where they do anyway, or would become too
+/// Padding with which all choices fit into one row. The usual one if they fit anyway, or would become too
 /// narrow.
 ImVec2 segment_padding(const Context& context, std::span<const char* const> choices) {
     const ImVec2 usual = ImGui::GetStyle().FramePadding;

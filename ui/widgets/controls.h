@@ -1,5 +1,4 @@
-// The small controls all panels are made of: buttons that say why they are off, rows, badges, numbers in
-// words.
+// Small controls of all panels: buttons that say why they are off, rows, badges, numbers in words.
 #pragma once
 
 #include <span>
@@ -24,8 +23,8 @@ struct ButtonOptions {
 
 bool button(Context& context, const ButtonOptions& options);
 
-/// Keeps the next item on this line when `width` pixels are left of it, else starts a new one. `row_width`:
-/// pixels of a whole line where the window's own width follows from what is in it; 0 = what the window has.
+/// Keeps the next item on this line when `width` pixels are left of it, else starts a new one. `row_width` is
+/// the width of a whole line in pixels, for windows that fit their contents. 0 = that of the window.
 void flow(float width, float row_width = 0);
 /// Width a button with this text takes.
 float button_width(std::string_view text);
@@ -49,7 +48,7 @@ void property(Context& context, std::string_view label, std::string_view value);
 bool checkbox(Context& context, std::string_view name, std::string_view label, bool& value,
               std::string_view help = {});
 
-/// One of a few, as joined buttons; wraps when the line is too short. True when another one was chosen.
+/// One of a few, as joined buttons. Wraps when the line is too short. True when another one was chosen.
 bool segmented(Context& context, std::string_view name, std::span<const char* const> choices, int& chosen);
 
 /// A list to drop down; `width` pixels, 0 = all there is.
@@ -60,13 +59,13 @@ bool combo(Context& context, std::string_view name, std::span<const char* const>
 bool text_input(Context& context, std::string_view name, std::string& text, std::string_view hint = {},
                 ImGuiInputTextFlags flags = 0);
 
-/// A group that folds; true while it is open.
+/// Group that folds. True while it is open.
 bool folding(Context& context, std::string_view name, std::string_view text);
 
-/// Label on the left of a row, the control takes the rest; call before the control.
+/// Label on the left of a row; the control takes the rest. Call it before the control.
 void row_label(Context& context, std::string_view label, std::string_view help = {});
 
-/// A box with a coloured edge and wrapped text: news that wait for an answer.
+/// Box with a coloured edge and wrapped text, for news that wait for an answer.
 void begin_notice(Context& context, std::string_view name, ImU32 colour);
 void end_notice();
 

@@ -32,7 +32,7 @@ template <class T> std::string help_text(const FieldRow& row, const T& standard)
     return row.unused.empty() ? text : fmt::format("{}\n{}", row.unused, text);
 }
 
-/// Label, and the reset by right click on the control that was drawn last.
+/// Label of a row, and the reset by right click on the last control.
 template <class T> bool finish(Context& context, const FieldRow& row, T& value, const T& standard) {
     note(context, fmt::format("{}.{}", row.prefix, row.name));
     tooltip(help_text(row, standard));

@@ -12,7 +12,7 @@
 
 namespace gse::ui {
 
-/// What one row is about; `prefix` + "." + name is its place in the widget map.
+/// Subject of one row. `prefix` + "." + name is its place in the widget map.
 struct FieldRow {
     const char* prefix;
     const char* name;
@@ -22,7 +22,7 @@ struct FieldRow {
     std::string_view unused = {};  // why it has no effect now; empty = it has
 };
 
-/// Why the field of that name has no effect now; empty = it has.
+/// Reason why the field of that name has no effect now; empty = it has one.
 using UnusedField = std::function<std::string_view(const char* name)>;
 
 /// One row each: label with help, control, right click = back to `standard`. True when the value changed.
@@ -36,13 +36,13 @@ bool field_row(Context& context, const FieldRow& row, std::string& value, const 
 /// "attention_threshold" -> "attention threshold"
 std::string field_label(const char* name);
 
-/// What the program takes where nobody says anything.
+/// Values of the program without any choice.
 template <class P> const P& program_defaults() {
     static const P defaults{};
     return defaults;
 }
 
-/// The value of the same name and type in another struct of the kind; Value{} when there is none.
+/// Value of a field of that name and type in another struct of the kind. Value{} when there is none.
 template <class Value, class P> Value value_named(const P& parameters, const char* name) {
     Value found{};
     P::visit_fields(parameters, [&](const char* other, const auto& value, const char*, auto...) {
@@ -52,7 +52,7 @@ template <class Value, class P> Value value_named(const P& parameters, const cha
     return found;
 }
 
-/// Rows for the fields that `wanted(name, help)` lets through; `before(name)` may put a header first and say
+/// Rows for the fields that `wanted(name, help)` accepts. `before(name)` may put a header first, and says
 /// whether the rows that follow are shown (a folded group). `standard` has the values to go back to.
 template <class P, class Wanted, class Before>
 bool field_rows(Context& context, const char* prefix, P& parameters, Wanted&& wanted, Before&& before,

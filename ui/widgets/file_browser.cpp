@@ -17,7 +17,7 @@
 namespace gse::ui {
 namespace {
 
-/// Tab completes what was typed.
+/// Completes the typed text on Tab.
 int complete(ImGuiInputTextCallbackData* data) {
     const std::string longer =
         completed_path(std::string(data->Buf, static_cast<std::size_t>(data->BufTextLen)));
@@ -36,7 +36,7 @@ bool is_there(const std::filesystem::path& path) {
     return std::filesystem::exists(path, ignored);
 }
 
-/// Keeps the list clear of what stands below it.
+/// Keeps the list clear of the controls below it.
 float footer_height(Context& context, bool saves) {
     return ImGui::GetFrameHeightWithSpacing() * (saves ? 2.0f : 1.0f) + context.em * 0.2f;
 }

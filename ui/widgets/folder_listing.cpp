@@ -1,4 +1,4 @@
-// What the file browser shows of a folder, and how typed paths are completed; no drawing.
+// Entries of a folder in the file browser, and completion of typed paths. No drawing.
 #include "ui/widgets/folder_listing.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What the file browser shows of a folder, and how typed paths are completed; no drawing.
+// Entries of a folder in the file browser, and completion of typed paths. No drawing.
 #pragma once
 
 #include <cstdint>
@@ -21,10 +21,10 @@ struct FolderListing {
     bool truncated = false;            // more than the browser shows
 };
 
-/// Files whose name ends in one of `extensions` (".ply"; empty = all); hidden ones are left out.
+/// Files whose name ends in one of `extensions` (".ply"; empty = all). Hidden ones are left out.
 FolderListing list_folder(const std::filesystem::path& folder, std::span<const std::string> extensions);
 
-/// `typed` made longer as far as all names that begin with it agree; a single folder gets its slash. "~" is
+/// `typed` made longer as far as all names that begin with it agree. A single folder gets its slash. "~" is
 /// the home.
 std::string completed_path(const std::string& typed);
 
@@ -34,7 +34,7 @@ std::filesystem::path expanded_path(const std::string& typed);
 std::filesystem::path home_folder();
 std::string utf8_of(const std::filesystem::path& path);
 std::filesystem::path path_of(const std::string& utf8);
-/// True when the name ends in one of them, whatever the case.
+/// True when the name ends in one of them, in any case.
 bool has_extension(const std::string& name, std::span<const std::string> extensions);
 
 }  // namespace gse::ui

@@ -10,12 +10,12 @@
 
 namespace gse::ui {
 
-/// Counts of one weight array; recomputed only when another array is handed in.
+/// Counts of one weight array. Recomputed only when another array is handed in.
 class WeightHistogram {
 public:
     static constexpr int Bins = 1024;
     void update(const std::shared_ptr<const std::vector<float>>& weight);
-    /// How many values are above, to the resolution of a bin.
+    /// Number of values above, to the resolution of a bin.
     std::size_t above(float threshold) const;
     const std::vector<std::uint32_t>& counts() const { return counts_; }
 
@@ -25,8 +25,8 @@ private:
     std::vector<std::size_t> above_ = std::vector<std::size_t>(Bins + 1);
 };
 
-/// Draws it over the width there is, `height` pixels high. True while the threshold is dragged; `released`
-/// when let go. `below`: what is left of the threshold counts.
+/// Draws the histogram over the free width, `height` pixels high. True while the threshold is dragged;
+/// `released` when let go. With `below`, values left of the threshold count.
 struct ThresholdDrag {
     bool changed = false;
     bool released = false;

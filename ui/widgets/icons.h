@@ -46,7 +46,7 @@ enum class Icon {
     Warning
 };
 
-/// Draws it centred in a square of `size` pixels.
+/// Draws the icon centred in a square of `size` pixels.
 void draw_icon(ImDrawList* list, Icon icon, ImVec2 centre, float size, ImU32 colour);
 
 struct IconButton {

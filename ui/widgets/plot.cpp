@@ -111,7 +111,7 @@ void draw_raw(const Axes& axes, std::span<const LossPoint> points, const Curve& 
     list->PathStroke(with_alpha(curve.colour, 0.3f), ImDrawFlags_None, width * 0.7f);
 }
 
-/// Running mean in the heights of the axis: what the noise goes around.
+/// Running mean in the heights of the axis: the trend without the noise.
 void draw_smooth(const Axes& axes, std::span<const LossPoint> points, const Curve& curve, float width) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     const double keep = 1 - 1.0 / std::clamp(static_cast<double>(points.size()) * SmoothShare, 1.0, 100.0);

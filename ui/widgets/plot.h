@@ -10,7 +10,7 @@
 
 namespace gse::ui {
 
-/// One curve; `value(i)` is the height of point i. `shown` is switched by a click on the legend.
+/// One curve. `value(i)` is the height of point i. `shown` is switched by a click on the legend.
 struct Curve {
     const char* label;
     ImU32 colour;
