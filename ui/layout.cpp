@@ -13,8 +13,9 @@ using Json = nlohmann::ordered_json;
 constexpr float LeastRightEm = 14, MostRightEm = 80;
 
 int index_of_panel(const std::string& name) {
-    const auto found = std::find(PanelNames.begin(), PanelNames.end(), name);
-    return found == PanelNames.end() ? -1 : static_cast<int>(found - PanelNames.begin());
+    const auto found = std::find_if(PanelTable.begin(), PanelTable.end(),
+                                    [&](const PanelRow& panel) { return panel.name == name; });
+    return found == PanelTable.end() ? -1 : static_cast<int>(found - PanelTable.begin());
 }
 
 float number_or(const Json& json, const char* name, float fallback) {
@@ -49,10 +50,8 @@ void read_front(const Json& json, Layout& layout) {
 
 Layout Layout::standard() {
     Layout layout;
-    for (const auto panel : {PanelId::History, PanelId::Views, PanelId::Export, PanelId::Settings})
-        layout.place(panel).area = Area::RightBottom;
-    for (const auto panel : {PanelId::Attention, PanelId::Targets, PanelId::Progress, PanelId::Log})
-        layout.place(panel).area = Area::Bottom;
+    for (std::size_t panel = 0; panel < PanelCount; ++panel)
+        layout.places[panel].area = PanelTable[panel].area;
     layout.front = {static_cast<int>(PanelId::Prompt), static_cast<int>(PanelId::History),
                     static_cast<int>(PanelId::Attention)};
     return layout;
@@ -64,10 +63,10 @@ std::string Layout::to_json() const {
     json["right_split"] = right_split;
     json["bottom_share"] = bottom_share;
     for (std::size_t panel = 0; panel < PanelCount; ++panel)
-        json["panels"][PanelNames[panel]] = {{"area", static_cast<int>(places[panel].area)},
-                                             {"open", places[panel].open}};
+        json["panels"][PanelTable[panel].name] = {{"area", static_cast<int>(places[panel].area)},
+                                                  {"open", places[panel].open}};
     json["front"] = Json::array();
-    for (const int panel : front) json["front"].push_back(PanelNames[static_cast<std::size_t>(panel)]);
+    for (const int panel : front) json["front"].push_back(PanelTable[static_cast<std::size_t>(panel)].name);
     return json.dump();
 }
 

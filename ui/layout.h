@@ -21,15 +21,26 @@ enum class PanelId {
     Progress,
     Log
 };
-inline constexpr std::size_t PanelCount = 12;
-inline constexpr std::array<const char*, PanelCount> PanelNames{
-    "Prompt", "Labels",   "Scene",     "Models",  "History",  "Views",
-    "Export", "Settings", "Attention", "Targets", "Progress", "Log"};
 
 /// Place of a tab. The right column is split in two; the bottom area runs below the viewport.
 enum class Area { RightTop, RightBottom, Bottom };
 inline constexpr std::size_t AreaCount = 3;
 inline constexpr std::array<const char*, AreaCount> AreaNames{"right, top", "right, bottom", "bottom"};
+
+/// A panel's name and its place in the standard layout.
+struct PanelRow {
+    const char* name;
+    Area area;
+};
+/// Rows by PanelId. The functions that draw the panels are in panels.h, in this order.
+inline constexpr std::array PanelTable{
+    PanelRow{"Prompt", Area::RightTop},     PanelRow{"Labels", Area::RightTop},
+    PanelRow{"Scene", Area::RightTop},      PanelRow{"Models", Area::RightTop},
+    PanelRow{"History", Area::RightBottom}, PanelRow{"Views", Area::RightBottom},
+    PanelRow{"Export", Area::RightBottom},  PanelRow{"Settings", Area::RightBottom},
+    PanelRow{"Attention", Area::Bottom},    PanelRow{"Targets", Area::Bottom},
+    PanelRow{"Progress", Area::Bottom},     PanelRow{"Log", Area::Bottom}};
+inline constexpr std::size_t PanelCount = PanelTable.size();
 
 /// Sizes in font sizes, so that they fit every scale.
 struct Layout {

@@ -210,8 +210,8 @@ void window_menu(Context& context) {
     for (std::size_t index = 0; index < PanelCount; ++index) {
         const auto panel = static_cast<PanelId>(index);
         const bool open = layout.place(panel).open;
-        if (!item(context,
-                  {fmt::format("menu.panel.{}", PanelNames[index]).c_str(), PanelNames[index], "", "", open}))
+        if (!item(context, {fmt::format("menu.panel.{}", PanelTable[index].name).c_str(),
+                            PanelTable[index].name, "", "", open}))
             continue;
         if (open) layout.close(panel);
         else show_panel(context.state, panel);

@@ -251,18 +251,19 @@ void Shell::draw_area(Context& context, Area area) {
         if (!layout.place(panel).open || layout.place(panel).area != area) continue;
         const bool front = layout.front[index] == static_cast<int>(at);
         ImGui::PushStyleColor(ImGuiCol_Text, front ? palette::Text : palette::TextDim);
-        const bool shown = ImGui::BeginTabItem(
-            PanelNames[at], nullptr, bring && front ? ImGuiTabItemFlags_SetSelected : ImGuiTabItemFlags_None);
+        const bool shown =
+            ImGui::BeginTabItem(PanelTable[at].name, nullptr,
+                                bring && front ? ImGuiTabItemFlags_SetSelected : ImGuiTabItemFlags_None);
         ImGui::PopStyleColor();
         if (shown) underline_tab(context);
-        note(context, fmt::format("tab.{}", PanelNames[at]));
+        note(context, fmt::format("tab.{}", PanelTable[at].name));
         draw_tab_menu(context, panel);
         if (!shown) continue;
         if (!bring) layout.front[index] = static_cast<int>(at);
-        if (ImGui::BeginChild(PanelNames[at], {0, 0}, false, ImGuiWindowFlags_NavFlattened))
-            draw_panel(context, panel);
+        if (ImGui::BeginChild(PanelTable[at].name, {0, 0}, false, ImGuiWindowFlags_NavFlattened))
+            DrawPanel[at](context);
         ImGui::EndChild();
-        note(context, fmt::format("panel.{}", PanelNames[at]));
+        note(context, fmt::format("panel.{}", PanelTable[at].name));
         ImGui::EndTabItem();
     }
     ImGui::EndTabBar();
@@ -345,23 +346,6 @@ std::vector<Command> Shell::draw(const ViewModel& model, Textures& textures) {
     if (context.model_settings_changed) context.emit(command::SetModelSettings{context.model_settings});
     state_->animating |= !commands_.empty();
     return commands_.take();
-}
-
-void draw_panel(Context& context, PanelId panel) {
-    switch (panel) {
-        case PanelId::Prompt: return draw_prompt_panel(context);
-        case PanelId::Labels: return draw_labels_panel(context);
-        case PanelId::Scene: return draw_scene_panel(context);
-        case PanelId::Models: return draw_models_panel(context);
-        case PanelId::History: return draw_history_panel(context);
-        case PanelId::Views: return draw_views_panel(context);
-        case PanelId::Export: return draw_export_panel(context);
-        case PanelId::Settings: return draw_settings_panel(context);
-        case PanelId::Attention: return draw_attention_panel(context);
-        case PanelId::Targets: return draw_targets_panel(context);
-        case PanelId::Progress: return draw_progress_panel(context);
-        case PanelId::Log: return draw_log_panel(context);
-    }
 }
 
 }  // namespace gse::ui

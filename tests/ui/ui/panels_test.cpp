@@ -72,8 +72,8 @@ DOCTEST_TEST_CASE("every panel draws in every state, size and scale") {
             for (std::size_t panel = 0; panel < ui::PanelCount; ++panel) {
                 harness.shell.show(static_cast<ui::PanelId>(panel));
                 harness.frame(3);
-                DOCTEST_CAPTURE(ui::PanelNames[panel]);
-                DOCTEST_CHECK(harness.find(std::string("panel.") + ui::PanelNames[panel]) != nullptr);
+                DOCTEST_CAPTURE(ui::PanelTable[panel].name);
+                DOCTEST_CHECK(harness.find(std::string("panel.") + ui::PanelTable[panel].name) != nullptr);
                 check_widgets(harness, screen);
                 check_right_edges(harness);
             }
@@ -90,7 +90,7 @@ DOCTEST_TEST_CASE("panels can live in every area") {
             layout.move(static_cast<ui::PanelId>(panel), area);
             harness.shell.set_layout(layout.to_json());
             harness.frame(3);
-            DOCTEST_CHECK(harness.find(std::string("panel.") + ui::PanelNames[panel]) != nullptr);
+            DOCTEST_CHECK(harness.find(std::string("panel.") + ui::PanelTable[panel].name) != nullptr);
             check_right_edges(harness);
         }
 }
