@@ -167,7 +167,7 @@ struct ModelsState {
     std::array<std::string, 2> segmenter_paths;  // by SegmenterRole
 };
 
-/// What is to be asked, or done, before the next frame is drawn.
+/// Requests to carry out before the next frame is drawn.
 struct Asked {
     bool save_as = false;
     std::function<void()> after_save;  // of save_as

@@ -12,7 +12,7 @@
 
 namespace gse::app {
 
-/// What the commands share: quiet output, and the progress bar with its stop token.
+/// State shared by the commands: quiet output, and the progress bar with its stop token.
 struct CommandContext {
     bool quiet = false;
     JobControl job() const;

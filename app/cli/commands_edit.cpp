@@ -60,7 +60,7 @@ void add_options(CLI::App& command, const std::shared_ptr<EditOptions>& options)
     add_dreambooth_options(command, options->recipe);
 }
 
-/// What is in the folder, and in the report, only when it was asked for.
+/// Output that is in the folder, and in the report, only when it was asked for.
 void add_optional_parts(nlohmann::ordered_json& report, const std::filesystem::path& folder, EditJob& job,
                         const std::optional<PreviewCheck>& gate) {
     if (gate) {
@@ -222,8 +222,8 @@ nlohmann::ordered_json edit_into(const std::filesystem::path& output, const Edit
     return report;
 }
 
-/// The edit from several seeds, each in a folder of its own, and one picture of them all. One that cannot be
-/// drawn is left out.
+/// The edit from several seeds, each in a folder of its own, and one picture of them all. Seeds that cannot
+/// be drawn are excluded.
 void run_variations(const EditOptions& options, const CommandContext& context) {
     VariationSheet sheet;
     auto reports = nlohmann::ordered_json::array();

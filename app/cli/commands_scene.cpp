@@ -143,7 +143,7 @@ void add_adjust(CLI::App& app, CommandContext&) {
     command->add_option("input", options->input, "Scene file or folder")->required();
     command->add_option("output", options->output, output_help())->required();
     command->add_flag("--use-label", options->use_label,
-                      "Of what the scene's own label marks, not of all splats");
+                      "Adjust the splats that the scene's own label marks, not all");
     bind_fields(*command, options->colours, "Colours");
     command->callback([options] {
         Scene scene = load_scene(options->input);
@@ -210,7 +210,7 @@ void add_render(CLI::App& app, CommandContext&) {
     });
 }
 
-/// What `turntable` films.
+/// Subject of `turntable`.
 struct FilmOptions {
     SceneOptions scene;
     std::filesystem::path before, path;

@@ -20,7 +20,7 @@ bool is_asked_for(const std::string& field) {
 
 void add_eval_settings(CLI::App& command, EditRecipe& settings) {
     add_model_options(command, settings.job);
-    command.add_option("--device", settings.job.device, "Where the networks run: cpu or cuda")
+    command.add_option("--device", settings.job.device, "Device of the networks: cpu or cuda")
         ->capture_default_str();
     command
         .add_option("--threads", settings.job.threads,

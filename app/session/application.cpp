@@ -19,7 +19,7 @@ namespace command = ui::command;
 
 template <class... F> struct Overloaded : F... { using F::operator()...; };
 
-/// Of the window's settings, those that are not of one scene or one moment.
+/// Settings of the window that do not belong to one scene or one moment.
 nlohmann::ordered_json lasting(nlohmann::ordered_json fields) {
     for (auto field = fields.begin(); field != fields.end();) {
         const std::string& name = field.key();

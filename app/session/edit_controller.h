@@ -34,12 +34,12 @@ public:
 
     bool runs() const { return workspace_.jobs->works_at(JobKind::Edit); }
     void discard_result();
-    /// What the viewport shows: a state that is looked at, the result that waits, the newest state, else the
+    /// Splats of the viewport: a state that is looked at, the result that waits, the newest state, else the
     /// document.
     Stage stage();
     /// Hands a corrected label to the edit that runs; the loop takes it over before its next step.
     void correct_label(const std::vector<std::uint8_t>& bits);
-    /// What an export writes where that is not what the document holds; empty = it is.
+    /// Splats of an export that differ from the document's; empty = the document's.
     std::string said_of_stage() const;
 
     // For the recovery folder

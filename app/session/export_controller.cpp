@@ -59,13 +59,13 @@ bool ExportController::something_to_export() {
     return false;
 }
 
-/// What an export writes of a set: all of it unless the artist said otherwise.
+/// Part of a set that an export writes: all of it unless the artist said otherwise.
 GaussianSet ExportController::exported(const GaussianSet& set, const Stage& stage) const {
     if (!settings_.visible_only || !view_.hidden().any()) return set;
     return without_hidden(set, view_.hidden_rows(set, stage));
 }
 
-/// What is shown is written, which need not be what the document holds.
+/// Tells that an export writes the shown splats, which may differ from the document's.
 std::string ExportController::said_of_export() const {
     if (const auto said = edits_.said_of_stage(); !said.empty()) return said;
     if (!view_.hidden().any()) return {};

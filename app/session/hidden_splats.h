@@ -30,7 +30,7 @@ public:
     /// Rows have come or gone.
     void follow_document();
 
-    /// The set without what is hidden, made by `hidden_of`; the same arrays as long as nothing changes, so
+    /// The set without hidden splats, made by `hidden_of`. Its arrays stay as long as nothing changes, so
     /// that nothing is uploaded anew.
     template <class F> GaussianSet seen(const GaussianSet& set, F hidden_of) {
         if (rows_.empty()) return set;

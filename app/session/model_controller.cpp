@@ -133,7 +133,7 @@ void ModelController::use(const std::string& path, const neural::ModelProfile& p
     workspace_.settings_changed = true;
 }
 
-/// What the artist has not changed takes the model's values, unless the settings came with this model.
+/// Gives fields that the artist has not changed the model's values, unless the settings came with this model.
 void ModelController::use_profile(const neural::ModelProfile& profile, bool takes_settings) {
     EditRecipe next;
     apply_profile(profile, next, {});

@@ -54,7 +54,7 @@ public:
     const std::shared_ptr<neural::TextToImage>& loaded() const { return loaded_; }
     bool loaded_fits() const { return loaded_ != nullptr && loaded_key_ == key(); }
     const ModelLoad& load() const { return load_; }
-    /// What a job was begun with.
+    /// Facts about a job when it began.
     Ticket ticket() const { return {key(), path_, settings_.device == "cpu"}; }
     /// The model that a job loaded stays in memory; one that it could not load (null) gives way.
     void take_back(const Ticket& ticket, std::shared_ptr<neural::TextToImage> model, const ModelLoad& load,

@@ -1,5 +1,5 @@
-// The request and what was found for it: searches, votes of their views, and whether a label or a search says
-// what an edit may change.
+// The request and its search results: searches, votes of their views, and the scope of an edit (label or
+// search).
 #include "app/session/search_controller.h"
 
 #include <fmt/format.h>
@@ -84,7 +84,7 @@ EditRecipe SearchController::open_recipe(EditRecipe recipe) const {
     return recipe;
 }
 
-/// What the last search saw to be new, where it was of this sentence and of the scene as it is now.
+/// Word that the last search saw to be new, if it was of this sentence and of the scene as it is now.
 std::string SearchController::read_target() const {
     return last_.of(workspace_.document.state().current) ? last_.read_target(request_) : std::string();
 }

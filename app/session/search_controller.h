@@ -1,5 +1,5 @@
-// The request and what was found for it: searches, votes of their views, and whether a label or a search says
-// what an edit may change.
+// The request and its search results: searches, votes of their views, and the scope of an edit (label or
+// search).
 #pragma once
 
 #include <chrono>
@@ -21,7 +21,7 @@
 
 namespace gse::app {
 
-/// What a job is made of beside its recipe and model, as it is now.
+/// Inputs of a job beside its recipe and model, as they are now.
 struct SearchGround {
     Scene scene;
     std::vector<View> views;
@@ -88,7 +88,7 @@ public:
 
 private:
     using Clock = std::chrono::steady_clock;
-    /// What the views of the last search are to vote with, that it has not been told yet.
+    /// Votes of the last search's views that it has not been told yet.
     struct Vote {
         edit::LabelThresholds with;
         std::string step, merge_key;  // of the undo step it makes; empty = none: undo brought it back

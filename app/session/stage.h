@@ -1,4 +1,4 @@
-// What the viewport shows beside the document: a running edit's snapshot, a result that waits, chosen splats.
+// The viewport's splats beside the document: a running edit's snapshot, a result that waits, chosen splats.
 #pragma once
 
 #include <cstddef>

@@ -94,7 +94,7 @@ private:
         bool tint = false;
         bool operator==(const DrawnKey&) const = default;
     };
-    /// What was made for the picture, until something of it changes.
+    /// Parts of the picture, kept until something of it changes.
     struct Drawn {
         DrawnKey key;
         GaussianSet set;

@@ -1,4 +1,4 @@
-// What the application asks of whatever paints the viewport, without saying how.
+// Interface between the application and any painter of the viewport.
 #pragma once
 
 #include <cstdint>

@@ -29,10 +29,10 @@ public:
     void record();
     /// A picture is being made or uploaded: draw another frame soon.
     bool busy();
-    /// The camera moves and the newest picture is still being painted, by threads that wake the window when
-    /// it is there: frames before that would show nothing new and take the processor from it.
+    /// True while the camera moves and the newest picture is still being painted, by threads that wake the
+    /// window. Frames before that would show nothing new and take the processor from it.
     bool waits_for_picture();
-    /// What a frame of the window takes beside the picture.
+    /// Time of a frame of the window beside the picture.
     void set_window_ms(double milliseconds);
 
     void drop_device() override;

@@ -1,4 +1,4 @@
-// What work took with each model on this machine, and what the next edit will take.
+// Costs of past work with each model on this machine, and estimates for the next edit.
 #include "app/session/edit/cost_book.h"
 
 #include <fmt/format.h>

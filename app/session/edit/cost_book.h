@@ -1,4 +1,4 @@
-// What work took with each model on this machine, and what the next edit will take.
+// Costs of past work with each model on this machine, and estimates for the next edit.
 #pragma once
 
 #include <map>

@@ -43,7 +43,7 @@ void LastSearch::take_attention(const GaussianSet& splats, std::vector<float> at
     views_.clear();
 }
 
-/// What was rendered and attended stays as it is on the screen where only the threshold is another.
+/// Shows the evidence. Renders and attention stay on the screen when only the threshold changed.
 void LastSearch::show_evidence(const EditJob& job) {
     const auto& located = job.located();
     const bool again = views_.size() == located.views.size();

@@ -33,7 +33,7 @@ public:
     bool of(const GaussianSet& splats) const { return splats_.shares_all_with(splats); }
     /// The word that it saw to be new, where it was of this source and sentence.
     std::string read_target(const edit::EditRequest& request) const;
-    /// What its model learned, where it is what this recipe's would learn.
+    /// Weights that its model learned, if this recipe's model would learn them.
     std::optional<neural::TunedModel> tuning(const EditRecipe& recipe) const;
     const std::string& key() const { return key_; }  // of the recipe
     const edit::LabelThresholds& voted_with() const { return voted_with_; }

@@ -95,7 +95,7 @@ private:
     int round_ = -1;
 };
 
-/// What the model makes of a few views before the loop.
+/// Shows the model's drawing of a few views before the loop.
 void show_preview(EditJob& job, Teller& teller) {
     const PreviewCheck check = look_through_gate(job);
     ui::GateView gate;

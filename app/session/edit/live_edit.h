@@ -73,7 +73,7 @@ struct EditRoads {
     Mailbox<std::vector<std::uint8_t>> label;  // corrected by the artist, to the edit
 };
 
-/// What an edit is begun with beside its job.
+/// Inputs of an edit beside its job.
 struct EditStart {
     std::vector<std::uint8_t> label;             // empty = as located
     bool shows_preview = false;                  // what the model makes of a few views, before the loop
@@ -89,7 +89,7 @@ void run_edit(MeasuredRun& run, const EditStart& start, const neural::NetworkUse
 
 ui::NetworkCost cost_of(const neural::NetworkUse& use);
 
-/// What the window knows of the running or last edit.
+/// The window's knowledge of the running or last edit.
 struct LiveEdit {
     std::shared_ptr<EditRoads> roads = std::make_shared<EditRoads>();
     std::string name, recipe, target;  // recipe as JSON

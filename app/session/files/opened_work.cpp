@@ -1,4 +1,4 @@
-// What the file thread reads of scenes, projects and autosaves, on its way to the window.
+// Scenes, projects and autosaves that the file thread reads, on their way to the window.
 #include "app/session/files/opened_work.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace gse::app {
 namespace {
 
-/// What can be opened of a folder that is no scene by itself.
+/// Files to open in a folder that is no scene by itself.
 std::vector<std::filesystem::path> files_of_folder(const std::filesystem::path& folder) {
     auto files = scenes_in_folder(folder);
     if (files.empty()) return files;

@@ -1,4 +1,4 @@
-// What the file thread reads of scenes, projects and autosaves, on its way to the window.
+// Scenes, projects and autosaves that the file thread reads, on their way to the window.
 #pragma once
 
 #include <filesystem>

@@ -24,7 +24,7 @@ public:
         std::uint64_t keys = 0;      // of the camera path
         bool operator==(const Moment&) const = default;
     };
-    /// What is written; state and picture are made on the saver's thread.
+    /// Work to write. State and picture are made on the saver's thread.
     struct Content {
         std::shared_ptr<ProjectData> data;
         std::function<DocumentState()> state;
@@ -47,7 +47,7 @@ public:
     void begin(const Moment& moment, std::optional<Recoverable> recovered);
     /// The last one is older than what was saved since.
     void outdate() { moment_.reset(); }
-    /// What was recovered is saved: it is not needed any more.
+    /// Notes that recovered work is saved and not needed any more.
     void forget_recovered();
     void keep(bool keep) { keep_ = keep; }  // the autosave stays when this document goes
     bool keeps() const { return keep_; }

@@ -1,4 +1,4 @@
-// What the Scene panel tells of the splats, counted beside the frames: large scenes take a while.
+// Statistics of the splats for the Scene panel, counted beside the frames: large scenes take a while.
 #pragma once
 
 #include "app/session/workspace.h"

@@ -11,7 +11,7 @@
 namespace gse::app {
 namespace {
 
-/// Of a model that was needed for more than the cache holds.
+/// Measures the load of a model that was needed for more than the cache holds.
 void measure_load(MeasuredRun& run) {
     const auto load = run.model ? load_of(*run.model) : std::nullopt;
     if (!load) return;

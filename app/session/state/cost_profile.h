@@ -12,7 +12,7 @@
 
 namespace gse::app {
 
-/// What a run leaves for the thread that began it.
+/// Results of a run for the thread that began it.
 struct MeasuredRun {
     std::shared_ptr<EditJob> job;
     std::shared_ptr<neural::TextToImage> model;

@@ -9,8 +9,8 @@
 
 namespace gse::app {
 
-/// Of a job that has run, with its report (edit_output.h): as the window has it after Apply. The scene's file
-/// is read again for its fingerprint. Throws Error.
+/// Project of a job that has run, with its report (edit_output.h): the window's state after Apply. The
+/// scene's file is read again for its fingerprint. Throws Error.
 ProjectData project_of(EditJob& job, const nlohmann::ordered_json& report);
 
 }  // namespace gse::app

@@ -45,7 +45,7 @@ bool draws_key_view(const edit::EditRequest& request, edit::EditMode mode, bool 
     return !thing.empty() && !edit::is_described(edit::as_told(request.prompt), thing);
 }
 
-/// What the rounds that begin after an iteration ask of the model; one that was begun is not begun again.
+/// Requests to the model by the rounds that begin after an iteration. One that was begun is not begun again.
 struct Redrawing {
     double views = 0, early = 0;  // pictures of the last round, and of those before it
     double steps = 0;             // denoising steps of single pictures; those that are not guided count half
@@ -72,7 +72,7 @@ Redrawing redrawing_from(const edit::EditRequest& request, edit::EditMode mode, 
     return left;
 }
 
-/// What a polish asks for beside its steps: the views that it is judged by.
+/// Requests of a polish beside its steps: the views that it is judged by.
 Redrawing held_out(const edit::EditRequest& request, edit::EditMode mode) {
     const auto plan = edit::round_plan(request, mode);
     constexpr double views = edit::HeldOutViews;
@@ -109,9 +109,9 @@ void add_idea(Sum& sum, const CostProfile& measured) {
     sum.add(passes, std::max(0.0, measured.pass), measured.pass_tflop);
 }
 
-/// What a scene takes beside its own splats: the working set and two sets put together (the newest snapshot
-/// and the one that is looked at); of the labelled rows gradients, two moments, anchors, colours at birth and
-/// scratch; and the snapshots.
+/// Memory of a scene beside its own splats. It holds the working set, two sets put together (the newest
+/// snapshot and the one that is looked at), and the snapshots. Labelled rows also have gradients, two
+/// moments, anchors, colours at birth and scratch.
 double scene_work_mb(const PlannedMemory& memory) {
     constexpr double sets = 1 + 2, labelled_sets = 6;
     return (sets + labelled_sets * memory.labelled_share) * memory.scene + memory.snapshots;
@@ -299,7 +299,7 @@ double guided_steps(const EditJob& job, int view_steps) {
     return plan.guided_steps_of(0);
 }
 
-/// A short polish behind one step; `redrawn`: of the same without it.
+/// A short polish behind one step. `redrawn` is the time without it.
 void probe_polish(CostProfile& measured, EditJob& job, const EditJob::ProbeSize& size,
                   const Edited& redrawn) {
     constexpr int polish_steps = 2;
@@ -313,8 +313,8 @@ void probe_polish(CostProfile& measured, EditJob& job, const EditJob::ProbeSize&
         std::max(0.0, tflop_of(edited.use) - tflop_of(redrawn.use) - judging) / polish->steps;
 }
 
-/// Redraws with one step and with three: what a step takes, and what a view takes beside its steps, in the
-/// last round and in others.
+/// Redraws with one step and with three. Tells the time of a step, and that of a view beside its steps, in
+/// the last round and in others.
 Edited probe_views(CostProfile& measured, EditJob& job) {
     constexpr double pixels_at_once = 8 * 64 * 64;  // as many as the model takes in one piece
     constexpr int more_steps = 3, least_outlines = 3;

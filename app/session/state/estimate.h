@@ -1,4 +1,4 @@
-// What an edit will take, from what its parts took on this machine.
+// Estimates of an edit, from the costs of its parts on this machine.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@
 
 namespace gse::app {
 
-/// What parts of the work took with one model and one size of pictures; negative = not measured yet. Seconds,
-/// and 10^12 operations of the networks where the name says so.
+/// Costs of parts of the work with one model and one size of pictures; negative = not measured yet. Seconds,
+/// and 10^12 operations of the networks if the name says so.
 struct CostProfile {
     double load = -1, load_mb = -1;
     double work_mb = -1;
@@ -61,7 +61,7 @@ struct CostProfile {
         f("place_step_tflop", self.place_step_tflop, "Operations of that.", any);
         f("idea", self.idea, "The pictures before the edit.", any);
         f("idea_tflop", self.idea_tflop, "Operations of that.", any);
-        f("begin", self.begin, "What the loop does before its first step.", any);
+        f("begin", self.begin, "Work of the loop before its first step.", any);
         f("guidance", self.guidance, "The model's part of a step.", any);
         f("guidance_tflop", self.guidance_tflop, "Operations of that.", any);
         f("redraw", self.redraw, "One guided denoising step of one redrawn view.", any);
@@ -69,7 +69,7 @@ struct CostProfile {
         f("redraw_view", self.redraw_view, "One redrawn view beside its steps: encoding and decoding.", any);
         f("redraw_view_tflop", self.redraw_view_tflop, "Operations of that.", any);
         f("redraw_early", self.redraw_early,
-          "The same in a round that is not the last: a tiny autoencoder does for it.", any);
+          "One redrawn view in a round that is not the last: a tiny autoencoder does for it.", any);
         f("redraw_early_tflop", self.redraw_early_tflop, "Operations of that.", any);
         f("polish", self.polish, "The model's part of a step of a polish, with what it is judged by.", any);
         f("polish_tflop", self.polish_tflop, "Operations of that.", any);
@@ -86,7 +86,7 @@ struct CostProfile {
     }
 };
 
-/// What decides about an edit's cost besides its request.
+/// Facts that decide an edit's cost, besides its request.
 struct PlannedWork {
     bool loaded = false;   // the model is in memory
     bool located = false;  // the search is done
@@ -106,11 +106,11 @@ struct Cost {
 };
 Cost estimated_cost(const CostProfile& measured, const edit::EditRequest& request, const PlannedWork& work);
 
-/// The same for every quality, in the order of edit::Qualities.
+/// Estimates for every quality, in the order of edit::Qualities.
 std::array<Cost, edit::Qualities.size()> costs_by_quality(const CostProfile& measured,
                                                           edit::EditRequest request, const PlannedWork& work);
 
-/// What decides about an edit's memory, in MB.
+/// Facts that decide an edit's memory, in MB.
 struct PlannedMemory {
     double process = 0;         // of this process now
     bool loaded = false;        // with the model in it,
@@ -122,14 +122,14 @@ struct PlannedMemory {
 };
 /// The most that the process will hold.
 double estimated_memory_mb(const CostProfile& measured, const PlannedMemory& memory);
-/// What a job tells whose peak was so high; `after_load` is of the process before it began, with the model in
-/// it.
+/// Measures memory by a job with such a peak. `after_load` is of the process before it began, with the model
+/// in it.
 void measure_memory(CostProfile& measured, const PlannedMemory& memory, double after_load, double peak);
 
-/// What a finished search tells; `seconds` of the whole search.
+/// Measures costs by a finished search. `seconds` is the time of the whole search.
 void measure_search(CostProfile& measured, const EditJob& job, double seconds);
-/// What a run of the loop tells; nothing when it was shorter than that. Where views led it, `measured` may
-/// hold what is known of its parts.
+/// Measures costs by a run of the loop; nothing when it was too short. If views led it, `measured` may hold
+/// known costs of its parts.
 void measure_loop(CostProfile& measured, const EditJob& job, int least_steps);
 /// Whether the steps of the job's loop were measured, by the method it is led by.
 bool steps_measured(const CostProfile& measured, const EditJob& job);

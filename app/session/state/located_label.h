@@ -1,4 +1,4 @@
-// What a search found as a label of the document.
+// Result of a search as a label of the document.
 #pragma once
 
 #include "app/cli/engine_names.h"
@@ -7,10 +7,9 @@
 
 namespace gse::app {
 
-/// The state with the label of what a job found active: that of the same word, whatever it is called now,
-/// else a new one. Where the search is no new one (`fresh` = false: another threshold, or views left out),
-/// what was corrected by hand stays, and so does how sure is sure enough. The job must be of the state's
-/// splats.
+/// The state with the label of a job's search active: that of its word, under any name, else a new one. For a
+/// search that is not new (`fresh` = false: another threshold, or other excluded views), corrections by hand
+/// stay, and so does the threshold. The job must be of the state's splats.
 DocumentState with_located_label(DocumentState state, const EditJob& job, bool fresh);
 
 }  // namespace gse::app

@@ -15,14 +15,15 @@
 
 namespace gse::app {
 
-/// What an edit made another thing of, and what that is; empty for other edits. Words as as_told() has them.
+/// The object that an edit turned into another, and that other; empty for other edits. Words as as_told() has
+/// them.
 struct Renamed {
     std::string from, to;
 };
-/// Of a job that has located.
+/// Renaming by a job that has located.
 Renamed renamed_by(const EditJob& job);
 
-/// What came of an edit that has not been applied yet.
+/// Outcome of an edit that has not been applied yet.
 struct PendingResult {
     GaussianSet before, set;
     std::shared_ptr<const std::vector<std::int64_t>> base_to_new;  // [before rows]
@@ -35,9 +36,9 @@ struct PendingResult {
     std::shared_ptr<const Image> thumbnail;
 };
 
-/// Takes what a finished run leaves. Throws Error (Cancelled) when it was stopped before its first step.
+/// Takes the outcome of a finished run. Throws Error (Cancelled) when it was stopped before its first step.
 void fill_pending(EditJob& job, PendingResult& pending);
-/// The same with its report (edit_output.h).
+/// Takes the outcome with its report (edit_output.h).
 void fill_pending(EditJob& job, const nlohmann::ordered_json& report, PendingResult& pending);
 
 /// The edit of the stack that it becomes, without identity and delta.

@@ -10,11 +10,11 @@
 
 namespace gse::app {
 
-/// What edits of one scene came to with different seeds or settings. One of them is shown, and is what
-/// operators mean, until all are set aside for another edit to run.
+/// Outcomes of edits of one scene with different seeds or settings. One of them is shown and is the operand
+/// of commands, until all are set aside for another edit.
 class WaitingResults {
 public:
-    /// Of splats, in all that are kept: the oldest are dropped where there are more.
+    /// Most splats in all kept results together. The oldest are dropped beyond it.
     static constexpr std::size_t MostBytes = std::size_t{2} << 30;
     static constexpr std::size_t Most = 8;
 
@@ -42,7 +42,7 @@ public:
     /// An index that is none changes nothing.
     void show(std::size_t index);
     void set_aside();
-    /// What was shown before it was set aside, where nothing is shown.
+    /// The result that was shown before it was set aside, if nothing is shown.
     void come_back();
     /// None is left, or this one alone.
     void reset(std::optional<PendingResult> result = std::nullopt);
