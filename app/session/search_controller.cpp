@@ -86,7 +86,9 @@ EditRecipe SearchController::open_recipe(EditRecipe recipe) const {
 
 /// Word that the last search saw to be new, if it was of this sentence and of the scene as it is now.
 std::string SearchController::read_target() const {
-    return last_.of(workspace_.document.state().current) ? last_.read_target(request_) : std::string();
+    const auto& document = workspace_.document;
+    const bool fits = !document.empty() && last_.of(document.state().current);
+    return fits ? last_.read_target(request_) : std::string();
 }
 
 void SearchController::from_json(const nlohmann::json& json) {
