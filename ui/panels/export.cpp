@@ -222,6 +222,14 @@ void draw_format_options(Context& context, const io::SceneFormat& format) {
     }
 }
 
+/// Titles of the formats that can be written and for which `keeps` is true.
+std::string titles_that_keep(bool io::SceneFormat::*keeps) {
+    std::vector<std::string> titles;
+    for (const io::SceneFormat& format : scene_formats())
+        if (format.writable() && format.*keeps) titles.push_back(format.title);
+    return in_words(titles, "or");
+}
+
 void draw_scene_file(Context& context) {
     heading(context, "Scene");
     path_row(context, "export.scene_path", &ExportSettings::scene_path, writable_extensions());
@@ -229,7 +237,8 @@ void draw_scene_file(Context& context) {
     const bool exact = format != nullptr && format->exact;
     const bool labels = format != nullptr && format->keeps_labels;
     if (checkbox(context, "export.with_labels", "With the label as a column", context.exports.with_labels,
-                 "A float per splat; plain PLY only"))
+                 fmt::format("A float per splat; plain {} only",
+                             titles_that_keep(&io::SceneFormat::keeps_labels))))
         context.exports_changed = true;
     if (format != nullptr) draw_format_options(context, *format);
     const std::string why = why_not_write(context, context.exports.scene_path, writable_extensions());
@@ -239,7 +248,9 @@ void draw_scene_file(Context& context) {
             fmt::format("{}, {} splats", context.model.result_waiting ? " with the result that waits" : "",
                         count_text(context.model.result_waiting ? context.model.result_splats
                                                                 : context.document().current.size()));
-    if (!exact) what += ". This format rounds values; PLY keeps every bit";
+    if (!exact)
+        what += fmt::format(". This format rounds values; {} keeps every bit",
+                            titles_that_keep(&io::SceneFormat::exact));
     if (context.exports.with_labels && !labels) what += "; labels are left out";
     say(why, what + ".");
     if (button(context,

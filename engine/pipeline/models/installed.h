@@ -1,4 +1,4 @@
-// Where the program's own files are: beside the sources, or installed.
+// Folders of the program's own files: beside the sources, or installed.
 #pragma once
 
 #include <filesystem>

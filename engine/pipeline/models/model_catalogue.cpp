@@ -1,5 +1,5 @@
-// Finds models in the places where artists keep them and tells what they are from their headers, without
-// loading networks.
+// Finds models in the usual places of artists and tells their kind from their headers, without loading
+// networks.
 #include "engine/pipeline/models/model_catalogue.h"
 
 #include <fmt/format.h>
@@ -29,7 +29,7 @@ std::uint64_t shape_at(const nlohmann::json& header, const char* key, std::size_
     return header[key]["shape"][header[key]["shape"].size() - 1 - from_end].get<std::uint64_t>();
 }
 
-/// What a UNet takes beside the four channels of the latents.
+/// Inputs of a UNet beside the four channels of the latents.
 void describe_channels(std::uint64_t channels, FoundModel& model) {
     if (channels == 8) model.structure += ", InstructPix2Pix";
     for (const auto& [others, what] :
@@ -40,7 +40,7 @@ void describe_channels(std::uint64_t channels, FoundModel& model) {
     }
 }
 
-/// ux.md: told apart by keys and by the width of the cross-attention.
+/// Kind of a model, told by its keys and by the width of the cross-attention.
 void describe_checkpoint(const fs::path& path, FoundModel& model) {
     const nlohmann::json header = safetensors_header(path);
     if (!header.is_object()) {

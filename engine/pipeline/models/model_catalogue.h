@@ -1,4 +1,4 @@
-// The models that are to be had on this machine.
+// Models available on this machine.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace gse::pipeline {
 
-/// What a file or folder says of itself by its headers; networks are not loaded.
+/// Facts of a file or folder, read from its headers. Networks are not loaded.
 struct FoundModel {
     std::string name;
     std::string path;
@@ -17,8 +17,8 @@ struct FoundModel {
     std::string problem;  // what is missing or not supported, and what to do; empty where nothing is
 };
 
-/// The starter model first, then what lies in GSE_MODELS (folders, separated by colons), in the usual folders
-/// of other programs and at `also`. Throws nothing: what cannot be read says so in its `problem`.
+/// The starter model first. Then the models in GSE_MODELS (folders, separated by colons), in the usual
+/// folders of other programs and at `also`. Throws nothing: an unreadable entry says so in its `problem`.
 std::vector<FoundModel> find_models(const std::vector<std::string>& also);
 
 }  // namespace gse::pipeline

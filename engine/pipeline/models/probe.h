@@ -1,4 +1,4 @@
-// What an edit is tried on for its time: a large scene is thinned out, its time follows from the number of
+// Trial scene to measure an edit's time. A large scene is thinned out; its time follows from the number of
 // splats.
 #pragma once
 
@@ -15,8 +15,8 @@ struct ProbeScene {
     edit::EditPlan plan;
 };
 
-/// Every k-th labelled and every k-th other splat of `scene`, so that at most about `most` are left (the
-/// first of each kind always is), and the plan with their label. The scene itself where it is no larger.
+/// Every k-th labelled and every k-th other splat of `scene`, at most about `most`, and the plan with their
+/// label. The first of each kind is always among them. The scene itself if it is no larger.
 ProbeScene probe_scene(const GaussianSet& scene, const edit::EditPlan& plan, std::size_t most = MostProbed);
 
 }  // namespace gse::pipeline

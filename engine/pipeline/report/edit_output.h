@@ -1,4 +1,4 @@
-// What a run of locate or edit leaves in its folder.
+// Files that a run of locate or edit leaves in its folder.
 #pragma once
 
 #include <cstdint>
@@ -9,34 +9,34 @@
 
 namespace gse::pipeline {
 
-/// A map in [0,1] in colours: black, red, yellow, white.
+/// Colour of a value in [0,1]: black, red, yellow, white.
 Image heat_map(const Image& map);
 
 /// Per view: render, attention map, points and mask as PNG, and index.json.
 void write_evidence(const std::filesystem::path& folder, ThreadPool& threads,
                     const edit::LocateResult& located, const std::vector<View>& views);
 
-/// The input as loaded, same row order, with label and label_weight columns.
+/// Writes the input as loaded, in its row order, with label and label_weight columns.
 void write_labelled_source(const std::filesystem::path& path, const EditJob& job);
 
-/// What an edit leaves but for its report: scene.ply, source.ply, recipe.json, evidence, before_after.mp4 and
-/// .png.
+/// Writes the files of an edit but for its report: scene.ply, source.ply, recipe.json, evidence,
+/// before_after.mp4 and .png.
 void write_edit(const std::filesystem::path& folder, EditJob& job);
 
 /// A turn around both scenes (MP4) and four directions of it (PNG).
 void write_before_after(const std::filesystem::path& folder, EditJob& job);
 
-/// About what an edit writes: two scenes, pictures of one raw picture per view together, a film of a tenth of
-/// its pixels.
+/// Bytes that an edit writes, about: two scenes, pictures of one raw picture per view together, a film of a
+/// tenth of its pixels.
 std::uint64_t bytes_of_results(const EditJob& job);
 
-/// What was looked for, how sure it was found, and what it came to.
+/// Words that were looked for, confidence and outcome of a search.
 void add_search(nlohmann::ordered_json& report, const EditJob& job);
 
 /// The report of a search.
 nlohmann::ordered_json locate_report(EditJob& job);
 
-/// The report of an edit; `psnr_outside_db` pools all views of the edit.
+/// Report of an edit. `psnr_outside_db` pools all views of the edit.
 nlohmann::ordered_json make_report(EditJob& job);
 
 }  // namespace gse::pipeline

@@ -1,4 +1,4 @@
-// What a search saw, as pictures for the window, and how they come in while it still looks.
+// Evidence of a search, as pictures for the window, and its arrival while the search still runs.
 #pragma once
 
 #include <memory>
@@ -13,10 +13,10 @@ namespace gse::pipeline {
 /// Attention in false colour (dark blue to yellow) over a dimmed render.
 std::shared_ptr<const Image> coloured_map(const Image& render, const Image& map);
 
-/// The mask tinted over a dimmed render.
+/// Mask tinted over a dimmed render.
 std::shared_ptr<const Image> masked_picture(const Image& render, const Mask& mask);
 
-/// What a search found in one view; the pictures are made once, ready for the screen. Null pictures have not
+/// Evidence of a search in one view. The pictures are made once, ready for the screen. Null pictures have not
 /// come yet.
 struct SeenView {
     std::string name;
@@ -35,7 +35,7 @@ struct SeenView {
 };
 
 SeenView seen_view(const View& view, const edit::ViewEvidence& evidence);
-/// The same view after another threshold: what was rendered and attended stays as it is on the screen.
+/// Evidence of a view after another threshold. Render and attention stay on the screen.
 SeenView refreshed(SeenView shown, const edit::ViewEvidence& evidence);
 
 }  // namespace gse::pipeline

@@ -11,7 +11,7 @@
 
 namespace gse::pipeline {
 
-/// What is filmed. With `second` every frame shows `first` on the left half and `second` on the right.
+/// Scenes of a film. With `second` every frame shows `first` on the left half and `second` on the right.
 struct FilmRequest {
     std::vector<Camera> cameras;  // one per frame, all of one size
     GaussianSet first;
@@ -32,17 +32,18 @@ std::vector<Camera> turn_cameras(const OrbitParameters& orbit, const TurntablePa
 /// The picture with straight alpha [H,W,4]: colour without the background.
 Image transparent_picture(const raster::ForwardOutput& output);
 
-/// {"version", "clip_duration", "keyframes": [{"time", "position", "rotation" (w,x,y,z camera to world),
-/// "focal_length_mm" (of a 36 mm wide sensor), "easing" (a number of Easing)}]}, the path file other editors
-/// read (formats.md 4.4).
+/// Camera path file that other editors read. JSON: {"version", "clip_duration", "keyframes": [{"time",
+/// "position", "rotation", "focal_length_mm", "easing"}]}. Rotations are w,x,y,z, camera to world. Focal
+/// lengths are those of a 36 mm wide sensor. Easings are the numbers of Easing.
 void save_camera_path(const std::filesystem::path& path, const std::vector<CameraKey>& keys);
-/// Throws Error (Malformed). Sizes are not part of the format: cameras come as width x height.
+/// Reads a camera path. Throws Error (Malformed). Sizes are not part of the format: cameras come as width x
+/// height.
 std::vector<CameraKey> load_camera_path(const std::filesystem::path& path, int width, int height);
 
-/// The longest film of a path: nine hours at 30 frames a second.
+/// Most frames of a film of a path: nine hours at 30 frames a second.
 constexpr int MostFilmFrames = 1'000'000;
-/// A smooth walk through the keys (positions Catmull-Rom, rotations slerp), `fps` frames a second. Throws
-/// Error (InvalidArgument) when that is more than MostFilmFrames.
+/// Smooth walk through the keys (positions Catmull-Rom, rotations slerp), `fps` frames a second. Throws Error
+/// (InvalidArgument) for more than MostFilmFrames.
 std::vector<Camera> path_cameras(const std::vector<CameraKey>& keys, double fps, int width, int height);
 
 }  // namespace gse::pipeline

@@ -1,4 +1,4 @@
-// What a picture of an edit says about how it was made, in its PNG text chunks.
+// Record of an edit in the PNG text chunks of its pictures.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -9,9 +9,9 @@
 
 namespace gse::pipeline {
 
-/// The sentence, and in the last line "Name: value" pairs with commas between them: source, seed, model, and
-/// every setting that is not the program's own. The form that other tools write and read under the keyword
-/// "parameters"; values with a comma, colon or line end are JSON strings.
+/// Text of the keyword "parameters", in the form of other tools. It is the sentence, and in the last line
+/// "Name: value" pairs with commas between them: source, seed, model, and every setting that is not the
+/// program's own. Values with a comma, colon or line end are JSON strings.
 std::string parameters_text(const EditRecipe& recipe);
 
 /// Chunks of a picture that the edit made: "parameters", "Software", and "Recipe" (`recipe_json`), which

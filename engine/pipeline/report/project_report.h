@@ -1,4 +1,4 @@
-// What a project file holds, as JSON and as text for a terminal.
+// Contents of a project file, as JSON and as text for a terminal.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 namespace gse::pipeline {
 
 nlohmann::ordered_json project_json(const ProjectSummary& summary, const std::filesystem::path& path);
-/// A line each; what comes from the file is escaped.
+/// Text of a line each. Text from the file is escaped.
 std::string project_text(const ProjectSummary& summary, const std::filesystem::path& path);
 
 }  // namespace gse::pipeline

@@ -14,33 +14,33 @@
 namespace gse::pipeline {
 
 struct EditQuality {
-    /// Mean cosine of the pictures' and the sentences' change; none when the model has no encoder to tell, or
-    /// it does not know what the sentence says.
+    /// Mean cosine of the pictures' and the sentences' change. None when the model has no encoder, or the
+    /// encoder does not know the sentence's words.
     std::optional<double> score;
     std::string verdict;  // the score in a sentence; empty without one
     bool warns = false;   // the pictures do not show the edit
-    /// Where a new thing is one that the model draws and its encoder has no word for: the same of the thing
-    /// that it has a word for and that the pictures show most. Says nothing of whether it is the right one,
-    /// but what is like none is a lump. Of such a ground: how much of the way to its usual colour the
-    /// pictures have gone (edit/usual_look.h).
+    /// Similarity to a known thing, for a new thing that the encoder has no word for. It is the score of the
+    /// known thing that the pictures show most. It does not say that the thing is the right one, but a result
+    /// like none is a lump. For such a ground: share of the way to its usual colour (edit/usual_look.h).
     std::optional<double> likeness = {};
 
-    /// Whether another way of drawing is worth a try.
+    /// True when another way of drawing is worth a try.
     bool is_poor() const;
 };
 
 /// A picture before and after.
 using PicturePair = std::pair<const Image*, const Image*>;
 
-/// Of a validated request; `told`: the sentence as the model is told it. Pictures [H,W,3] in [0,1].
+/// Quality of pictures [H,W,3] in [0,1]. The request is validated. `told` is the sentence as the model is
+/// told it.
 EditQuality judge(const neural::TextToImage& model, const edit::EditRequest& request, const std::string& told,
                   const std::vector<PicturePair>& pictures);
 
-/// Of the redrawn views of a round that the fit uses, against the scene as they were drawn from.
+/// Quality of the redrawn views of a round that the fit uses, against the scene as they were drawn from.
 EditQuality judge_targets(const neural::TextToImage& model, const edit::EditRequest& request,
                           const std::string& told, const edit::ViewTargets& round);
 
-/// {"score", "verdict", "warns"}, and "likeness" where it was asked.
+/// JSON {"score", "verdict", "warns"}, and "likeness" if it was asked.
 nlohmann::ordered_json verdict_to_json(const EditQuality& verdict);
 
 }  // namespace gse::pipeline

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int WrittenSide = 256;  // pictures of small models are enlarged to about this, pixel by pixel
 
-/// The same view at another size.
+/// The view at another size.
 Camera resized_camera(const Camera& camera, int side) {
     Camera result = camera;
     const double scale_x = static_cast<double>(side) / camera.width,
@@ -35,7 +35,7 @@ Image enlarged(const Image& image, int factor) {
     return result;
 }
 
-/// A model that has a way of its own to redraw pictures is asked as the edit will ask it.
+/// Sets the request as the edit will make it, for a model that redraws pictures in a way of its own.
 void ask_its_own_way(neural::SampleRequest& request, EditJob& job) {
     const auto kind = job.model().kind();
     if (kind == neural::BundleKind::Plain) return;

@@ -1,5 +1,6 @@
-// The gate (method F25): before the long loop of score distillation, pictures of what the model makes of the
-// scene under the edit's prompt. Redrawn views are judged as they are (verdict.h).
+// The gate before the long loop of score distillation (METHOD.md, The check before score distillation). It
+// holds the model's pictures of the scene under the edit's prompt. Redrawn views are judged as they are
+// (edit_quality.h).
 #pragma once
 
 #include <filesystem>
@@ -17,7 +18,7 @@ struct GateParameters {
     double guidance_scale = 5;
 };
 
-/// One view as it is, and as the model paints it over with the edit's prompt. Both have the model's picture
+/// One view before, and as the model paints it over with the edit's prompt. Both have the model's picture
 /// size.
 struct GatePicture {
     std::size_t view = 0;  // index into the job's views
@@ -32,9 +33,9 @@ struct PreviewCheck : EditQuality {
 /// a stop request.
 PreviewCheck look_through_gate(EditJob& job, const GateParameters& parameters = {});
 
-/// gate_0.png, ...: before and after beside each other.
+/// Writes gate_0.png and so on: before and after beside each other.
 void write_gate(const std::filesystem::path& folder, const PreviewCheck& gate);
-/// {"score", "verdict", "warns", "views"}.
+/// JSON {"score", "verdict", "warns", "views"}.
 nlohmann::ordered_json gate_to_json(const PreviewCheck& gate);
 
 }  // namespace gse::pipeline

@@ -1,4 +1,4 @@
-// Everything that decides what a run does and what comes of it.
+// Recipe of a run: everything that decides its work and its result.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +16,7 @@
 
 namespace gse::pipeline {
 
-/// Files and machine of a run; with the request and the guidance's settings this is the whole recipe.
+/// Files and machine of a run. With the request and the guidance's settings this is the whole recipe.
 struct JobParameters {
     std::string scene;
     std::string cameras;
@@ -56,11 +56,10 @@ struct JobParameters {
         f("text_segmenter", self.text_segmenter,
           "Folder of CLIPSeg, which finds a noun in a picture by itself; where it agrees with the attention, "
           "its mask counts. Empty = none.");
-        f("device", self.device, "Where the networks run: cpu or cuda.");
+        f("device", self.device, "Device of the networks: cpu or cuda.");
         f("rasterizer", self.rasterizer,
-          "What draws the splats and differentiates their pictures: cpu, cuda (a device that draws a test "
-          "scene otherwise is refused), or "
-          "auto: cpu.");
+          "Rasterizer of the splats, drawing and derivative: cpu, cuda, or auto, which is cpu. A CUDA device "
+          "that draws a test scene otherwise is refused.");
         f("precision", self.precision,
           "Numbers the UNet computes in: fp32, bf16 (AVX-512 BF16 or AMX), or auto: bf16 where a large model "
           "was measured to be faster with it.");
@@ -73,28 +72,26 @@ struct JobParameters {
           "on. Empty = read off the "
           "scene where the model's encoder can tell; \"none\" = not told.");
         f("use_label", self.use_label,
-          "What the scene's label column marks may change; nothing is looked for, and the source may be any "
-          "word.");
+          "Let the splats change that the scene's label column marks. Nothing is looked for, and the source "
+          "may be any word.");
         f("cut_out", self.cut_out,
-          "Box around the thing that may change, LEFT,TOP,RIGHT,BOTTOM as shares of the picture that "
-          "\"render\" makes, and where that is not "
-          "the one of its defaults ,AZIMUTH,ELEVATION,ZOOM behind it: the thing is cut out of it, all its "
-          "sides, and nothing is looked for.");
+          "Box around the object that may change, LEFT,TOP,RIGHT,BOTTOM as shares of the picture that "
+          "\"render\" makes. Another picture than its default one is named by ,AZIMUTH,ELEVATION,ZOOM behind "
+          "it. The object is cut out of it with all its sides, and nothing is looked for.");
         f("looked_from", self.looked_from,
-          "Azimuth in degrees from which whoever asks looks at the thing, or made its label by hand; a box "
-          "of cut_out tells its own. That "
-          "side is the front where none is given and the model's encoder is not sure of one. Empty = not "
-          "known.");
+          "Azimuth in degrees from which the artist looks at the object, or made its label by hand. A box of "
+          "cut_out tells its own. That side is the front if none is given and the model's encoder is not "
+          "sure of one. Empty = not known.");
         f("turntable_size", self.turntable_size, "Side of each half of the before/after film in pixels.",
           Range{16, 4096});
         f("turntable_frames", self.turntable_frames, "Frames of the before/after film.", Range{1, 10000});
     }
 
-    /// The source may be any word: what may change is known without it.
+    /// True when the source may be any word, since the label is known without it.
     bool brings_label() const { return use_label || !cut_out.empty(); }
 };
 
-/// Everything that decides the result.
+/// All settings that decide the result.
 struct EditRecipe {
     JobParameters job;
     edit::EditRequest request;
@@ -108,24 +105,24 @@ struct EditRecipe {
         sources;  // where values come from that are not the program's; see model_settings.h
 };
 
-/// {"version", "job", "request", "guidance"}, "attention" where it is not as usual and "dreambooth" where it
-/// is used; reading throws Error for unknown or wrong entries. A relative scene path is taken relative to the
-/// recipe's folder.
+/// JSON {"version", "job", "request", "guidance"}, with "attention" if it is not as usual and "dreambooth" if
+/// it is used. Reading throws Error for unknown or wrong entries. A relative scene path is taken relative to
+/// the recipe's folder.
 nlohmann::ordered_json recipe_to_json(const EditRecipe& recipe);
-/// A recipe.json, or what a picture (.png) of an edit carries. Throws Error (NotFound, Malformed,
+/// Reads a recipe.json, or the recipe in a picture (.png) of an edit. Throws Error (NotFound, Malformed,
 /// InvalidArgument).
 nlohmann::ordered_json read_recipe_json(const std::filesystem::path& path);
 EditRecipe read_recipe(const std::filesystem::path& path);
-/// The same of what was read already; relative files are those of `folder`.
+/// Recipe of a text that was read already. Relative files are those of `folder`.
 EditRecipe recipe_from_json(const nlohmann::ordered_json& json, const std::filesystem::path& folder);
 
-/// What the networks are asked before the loop begins follows from this and the scene: recipes with the same
-/// key find the same. Of a recipe whose request is validated.
+/// Key of all requests to the networks before the loop begins, for a scene. Recipes with equal keys find
+/// equal labels. The recipe's request must be validated.
 std::string search_key(const EditRecipe& recipe);
-/// The key of what the recipe means once its words are completed; empty where they cannot be.
+/// Key of the recipe once its words are completed. Empty if they cannot be.
 std::string valid_search_key(EditRecipe recipe);
 
-/// What a tuning learns of a scene follows from this and the scene.
+/// Key of a tuning on a scene.
 std::string tuning_key(const EditRecipe& recipe);
 
 }  // namespace gse::pipeline

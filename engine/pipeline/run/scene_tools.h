@@ -1,4 +1,4 @@
-// What several commands do with scenes: views, pictures, turntables.
+// Views, pictures and turntables of scenes, shared by several commands.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ namespace gse::pipeline {
 
 constexpr double Degree = std::numbers::pi / 180;
 
-/// How pictures of a scene are taken.
+/// Settings of pictures of a scene.
 struct RenderParameters {
     int width = 1280;
     int height = 720;
@@ -55,33 +55,33 @@ struct RenderParameters {
     }
 };
 
-/// "#rrggbb" or a name to display values. Throws Error.
+/// Display values of "#rrggbb" or a name. Throws Error.
 std::array<float, 3> parse_colour(const std::string& text);
 
-/// "-y" and the like to a unit vector; "auto" gives the scene's own. Throws Error.
+/// Unit vector of "-y" and the like; "auto" gives the scene's own. Throws Error.
 Vec3 parse_up(const std::string& text, const SceneInfo& info);
 
 raster::Settings raster_settings(const RenderParameters& parameters, const SceneInfo& info);
 
-/// The orbit fitted to the scene under these parameters.
+/// Orbit fitted to the scene under these parameters.
 OrbitParameters scene_orbit(const Scene& scene, const RenderParameters& parameters);
-/// The same, around the middle and from where all is seen, where a picture of that shape at a zoom of 1 would
-/// cut off the top or the bottom of what stands tall, from some side.
+/// Orbit fitted to the scene, with a second way for tall scenes. A picture of that shape at a zoom of 1 would
+/// cut off their top or bottom from some side. Then the orbit is around the middle and far enough to see all.
 OrbitParameters whole_orbit(const Scene& scene, const RenderParameters& parameters);
 
-/// The cameras named, or those found beside the scene; none when there are none.
+/// Cameras named, or those found beside the scene; none when there are none.
 std::vector<View> scene_cameras(const std::filesystem::path& scene_path, const std::string& cameras);
 
-/// Viewpoints to be written elsewhere: those that a project holds, that a camera file or folder names, or
-/// that are found beside a scene; with `orbit` > 0 so many around the scene of the project or file instead.
-/// Throws Error (NotFound when there are none).
+/// Viewpoints to write elsewhere: those of a project, a camera file or folder, or those beside a scene. With
+/// `orbit` > 0, so many around the scene of the project or file instead. Throws Error (NotFound) when there
+/// are none.
 std::vector<View> viewpoints_of(const std::filesystem::path& path, int orbit = 0);
 
-/// The one camera `render` uses: the one named, or one of whole_orbit().
+/// Camera of `render`: the one named, or one of whole_orbit().
 Camera choose_camera(const Scene& scene, const std::filesystem::path& scene_path,
                      const RenderParameters& parameters);
 
-/// A rasterizer with its threads.
+/// Rasterizer with its threads.
 class Painter {
 public:
     /// `rasterizer`: auto, cpu or cuda (raster::make_rasterizer, which may throw Error).
@@ -112,7 +112,7 @@ struct TurntableParameters {
     }
 };
 
-/// Azimuth in radians of every frame.
+/// Azimuths in radians of all frames.
 std::vector<double> turntable_azimuths(const TurntableParameters& parameters, double start_degrees);
 
 /// Left and right picture beside each other with a thin line between.

@@ -1,4 +1,4 @@
-// Views -> Located: what of the scene an edit is about.
+// Views -> Located: the splats of the scene that an edit is about.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@
 
 namespace gse::pipeline {
 
-/// What the artist says beyond the recipe.
+/// Orders of the artist beyond the recipe.
 struct Hints {
     std::vector<std::uint8_t> label;  // [N] made by hand: says where when the words do not; empty = none
     std::vector<std::string> said;    // words that the scene is known to show: no news
     bool target_open = false;  // the recipe's target is only guessed from the sentence: the pictures decide
 };
 
-/// What was found. A value: another threshold or a corrected label is another one.
+/// Result of a search. A value: another threshold or a corrected label makes another one.
 struct Located {
     Views views;                      // where it was found from
     EditRecipe recipe;                // for which: with the word that the pictures said is new
@@ -31,27 +31,28 @@ struct Located {
     bool by_label() const { return !label.empty(); }
 };
 
-/// Works out which word is new where that is open, looks from all views, moves in on what was found, looks
-/// again. With a label made by hand, a word that the model does not know is not looked for, and one that is
-/// not found does no harm. A search that comes to nothing is a result too: see found(). The recipe's request
-/// is validated. Throws Error (Cancelled) on a stop request, and for failures of the tools. Views that the
-/// recipe leaves out are of those that it ends with.
+/// Searches a scene. Finds the new word if it is open, looks from all views, moves in on the found label and
+/// looks again. With a label made by hand, unknown words are not looked for, and one that is not found does
+/// no harm. A search without a result is a result too: see found().
+///
+/// The recipe's request is validated. Excluded views of the recipe count among those that the search ends
+/// with. Throws Error (Cancelled) on a stop request, and for failures of the tools.
 Located locate(RunContext& workplace, const EditRecipe& recipe, const Views& views, const Hints& hints,
                const JobControl& control);
 
-/// From the same views for a recipe with the same search_key(): other thresholds; networks are asked only
-/// what they were not asked yet.
+/// Search from its own views for a recipe of equal search_key(): other thresholds. Networks are only asked
+/// new questions.
 Located locate_again(RunContext& workplace, const Located& located, const EditRecipe& recipe,
                      const JobControl& control);
 
-/// The same words with a label made by hand, [N] 0 or 1, which alone says what may change.
+/// Search with a label made by hand, [N] 0 or 1, which alone is the scope of the edit.
 Located locate_by_label(RunContext& workplace, const Located& located, std::vector<std::uint8_t> label,
                         const JobControl& control);
 
 /// The label corrected by hand, [N] 0 or 1 (modify mode).
 Located with_label(const Located& located, const std::vector<std::uint8_t>& bits);
 
-/// The question that a recipe puts to its views; refers to what it is given.
+/// Question that a recipe puts to its views. Refers to its arguments.
 edit::LocateInput question(const RunContext& workplace, const EditRecipe& recipe, const Views& views,
                            const std::vector<std::uint8_t>* label);
 

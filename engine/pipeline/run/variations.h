@@ -11,16 +11,16 @@ namespace gse::pipeline {
 
 constexpr int MostVariations = 64;
 
-/// The recipe of a variation, counted from 0: the same but for the seed.
+/// Recipe of a variation, counted from 0: only the seed differs.
 EditRecipe variation_of(EditRecipe recipe, int index);
 
-/// A contact sheet: the unedited scene in its first row, below it a row for each edit, from four directions.
+/// Contact sheet from four directions: the unedited scene in its first row, below it a row for each edit.
 class VariationSheet {
 public:
-    /// `name`: what its row is called; the seed, and the verdict's score where there is one, are added to it.
+    /// Adds a row called `name`. The seed, and the verdict's score if there is one, are added to it.
     void add(EditJob& job, const std::string& name);
     bool empty() const { return rows_.empty(); }
-    /// As PNG; something must have been added.
+    /// Bytes as PNG. At least one row must have been added.
     void write(const std::filesystem::path& path) const;
 
 private:
@@ -31,7 +31,7 @@ private:
     std::vector<Row> rows_;
 };
 
-/// What a variation is called on the sheet and in a summary: "2: seed 1, score 0.61".
+/// Name of a variation on the sheet and in a summary: "2: seed 1, score 0.61".
 std::string variation_caption(const EditJob& job, const std::string& name);
 
 }  // namespace gse::pipeline

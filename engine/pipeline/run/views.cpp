@@ -1,4 +1,4 @@
-// Cameras of a run and the words for what they see.
+// Cameras of a run and the words for their directions.
 #include "engine/pipeline/run/views.h"
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@
 namespace gse::pipeline {
 namespace {
 
-/// The same camera, cropped to a centred square of `side` pixels.
+/// The camera, cropped to a centred square of `side` pixels.
 Camera square_camera(const Camera& camera, int side) {
     const double shorter = std::min(camera.width, camera.height);
     const double scale = side / shorter;
@@ -37,7 +37,7 @@ Vec3 direction_at(const OrbitParameters& orbit, double azimuth) {
     return normalized(orbit_camera(level, azimuth, 8, 8).centre() - orbit.centre);
 }
 
-/// What the renders of the views follow from, beside the scene.
+/// Key of all inputs of the views' renders beside the scene.
 std::string key_of(const Views& views, const EditRecipe& recipe) {
     ContentHash hash;
     for (const auto& view : views.views) {
@@ -52,7 +52,7 @@ std::string key_of(const Views& views, const EditRecipe& recipe) {
     return hash.key().hex();
 }
 
-/// Fills in what follows from cameras and orbit.
+/// Fills in all values that follow from cameras and orbit.
 Views finished(Views views, const EditRecipe& recipe, const std::map<std::string, std::string>& words) {
     const auto front = parse_front(recipe.job.front);
     views.front = direction_at(views.orbit, front.value_or(0));

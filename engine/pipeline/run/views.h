@@ -1,4 +1,4 @@
-// Recipe -> Views: from where a run looks at its scene.
+// Recipe -> Views: the cameras from which a run looks at its scene.
 #pragma once
 
 #include <map>
@@ -12,7 +12,7 @@
 
 namespace gse::pipeline {
 
-/// From where a scene is looked at. A value: nothing changes it, other views are other values.
+/// Cameras of a scene. A value: nothing changes it, other views are other values.
 struct Views {
     std::vector<View> views;         // squares of the request's image_size
     std::vector<std::string> words;  // "front view" and so on per view, or empty
@@ -34,14 +34,14 @@ struct GivenCameras {
         words;  // what they see, by the camera's name; empty = from the recipe's front
 };
 
-/// The first views of a run: the given cameras, of many those farthest apart (method X9), or an orbit fitted
-/// to the scene.
+/// First views of a run: the given cameras, of many those farthest apart (METHOD.md, Viewpoints), or an orbit
+/// fitted to the scene.
 Views choose_views(const Scene& scene, const EditRecipe& recipe, const GivenCameras& given);
 
-/// As many views as the request asks for on another orbit.
+/// Views on another orbit, as many as the request asks for.
 Views views_on(const OrbitParameters& orbit, const EditRecipe& recipe);
 
-/// "front view" and so on of every view, with the front where `views.front` looks; `sided` as in
+/// "front view" and so on of every view. The front is the direction of `views.front`; `sided` as in
 /// edit::view_words.
 std::vector<std::string> words_around(const Views& views, bool sided);
 
@@ -51,31 +51,30 @@ std::vector<double> azimuths_around(const Views& views);
 /// Elevations of every camera above the orbit's centre, radians.
 std::vector<double> elevations_above(const Views& views);
 
-/// The same views of a scene whose front is seen from an azimuth of their orbit (radians), with words for
-/// what each sees.
+/// These views of a scene whose front is seen from an azimuth of their orbit (radians), with words for their
+/// directions.
 Views facing(Views views, double front, const EditRecipe& recipe);
 
-/// Azimuth from which a camera sees the orbit's centre, radians in the convention of orbit_camera.
+/// Azimuth from which a camera sees the orbit's centre, in radians in the convention of orbit_camera.
 double azimuth_of(const Camera& camera, const OrbitParameters& orbit);
 
-/// The same orbit at a share of its radius.
+/// The orbit at a share of its radius.
 OrbitParameters nearer(OrbitParameters orbit, double share);
 
-/// Farthest-point sample of the cameras (method X9), first camera first, in the order of the file.
+/// Farthest-point sample of the cameras, first camera first, in the order of the file.
 std::vector<View> farthest_views(const std::vector<View>& views, std::size_t count);
 
-/// --front in radians; nothing where it is left open or "none". Throws Error (InvalidArgument).
+/// --front in radians. Nothing if it is open or "none". Throws Error (InvalidArgument).
 std::optional<double> parse_front(const std::string& text, const std::string& option = "--front");
 
-/// Azimuth, as orbit_camera() counts it, of an orbit's camera that looks the same way; degrees in [0,360),
-/// whole ones.
+/// Azimuth, as orbit_camera() counts it, of an orbit's camera with this direction. Whole degrees in [0,360).
 double looked_from(const Camera& camera, const Vec3& up);
 
-/// The same of a camera that somebody turned, as a recipe has it; empty for the direction in which a scene is
+/// Azimuth of a camera that somebody turned, as a recipe has it. Empty for the direction in which a scene is
 /// shown first, and from far above or below.
 std::string turned_to(const Camera& camera, const Vec3& up);
 
-/// How views of a scene are rendered for a run.
+/// Settings of the renders of a run's views.
 raster::Settings render_settings(const Scene& scene, const edit::EditRequest& request);
 
 }  // namespace gse::pipeline

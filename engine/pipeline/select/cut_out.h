@@ -1,4 +1,4 @@
-// A thing on the screen, cut out of the picture: for labelling by hand.
+// An object on the screen, cut out of the picture, for labelling by hand.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace gse::pipeline {
 
-/// How the picture is taken, and what is picked in it.
+/// Settings of the picture, and the area picked in it.
 struct CutOutRequest {
     Camera camera;
     ScreenArea area;            // around the thing, in the camera's pixels
@@ -23,18 +23,18 @@ struct CutOutRequest {
     bool ground = false;        // not what stands on it
 };
 
-/// A box as --cut-out says it: "LEFT,TOP,RIGHT,BOTTOM", shares of the picture that `render` makes of the
-/// scene by default, or with
-/// ",AZIMUTH,ELEVATION,ZOOM" behind it, as `render` takes them. Throws Error (InvalidArgument).
+/// Box of --cut-out: "LEFT,TOP,RIGHT,BOTTOM", shares of the picture that `render` makes of the scene by
+/// default. Another picture is named by ",AZIMUTH,ELEVATION,ZOOM" behind it, as `render` takes them. Throws
+/// Error (InvalidArgument).
 CutOutRequest cut_out_request(const std::string& text, const Scene& scene, const std::string& up);
 
-/// The azimuth of that picture, degrees.
+/// Azimuth of that picture, degrees.
 double azimuth_of_box(const std::string& text);
 
-/// One byte per row of `set`: 1 for the thing, from all sides. `segmenter` cuts it out of a picture of the
-/// view, told the box around the area, and then out of views around it (cut_out_sides.h); null = the one that
-/// needs no weights. Where the first comes to nothing, the area itself is the outline. Throws Error
-/// (Cancelled).
+/// Byte per row of `set`: 1 for the object, from all sides. `segmenter` cuts it out of a picture of the view,
+/// prompted by the box around the area. Then it cuts it out of views around the object (cut_out_sides.h).
+/// Null = the segmenter without weights. If the first cut is empty, the area itself is the outline. Throws
+/// Error (Cancelled).
 std::vector<std::uint8_t> cut_out(const GaussianSet& set, const CutOutRequest& request,
                                   edit::Segmenter* segmenter, const JobControl& control = {});
 

@@ -1,4 +1,4 @@
-// A thing that one view has shown, followed around to its other sides.
+// An object that one view has shown, followed around to its other sides.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace gse::pipeline {
 
-/// What a view shows of a thing.
+/// Rows of an object in a view.
 struct SeenThing {
     Camera camera;
     Mask mask;                        // its outline there
@@ -19,16 +19,15 @@ struct SeenThing {
     Vec3 up{0, -1, 0};                // of the world: around it the views turn
 };
 
-/// Takes in what the outline encloses, where it is `possible`: a dark panel of a thing before something dark
-/// is no hole in it.
+/// Takes in rows that the outline encloses, if `possible`. A dark panel of an object before something dark is
+/// no hole in it.
 void close_holes(Mask& mask, const Mask& possible);
 
-/// One byte per row of `set`: 1 for the thing from all sides. Views are taken around it; in each the rows
-/// that count so far, as they are seen there, tell `segmenter` what to cut out, and its outline tells which
-/// rows count next (SA3D, Cen et al. 2023). Only rows of `front` and those of `cone` that are not too far
-/// behind it can be the thing. A view that something stands in the way of, or whose outline has little to do
-/// with what was expected, does not vote. Rows that no view sees go with their neighbours. Throws Error
-/// (Cancelled).
+/// Byte per row of `set`: 1 for the object from all sides, found in views around it. In each view the rows
+/// that count so far prompt `segmenter`, and its outline tells which rows count next (SA3D, Cen et al. 2023).
+/// Only rows of `front`, and those of `cone` that are not too far behind it, can be the object. Occluded
+/// views, and views whose outline is far from the expected one, do not vote. Rows that no view sees go with
+/// their neighbours. Throws Error (Cancelled).
 std::vector<std::uint8_t> follow_around(const GaussianSet& set, const SeenThing& seen,
                                         const raster::Settings& settings, edit::Segmenter& segmenter,
                                         Painter& painter, const JobControl& control);
