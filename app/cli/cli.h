@@ -53,6 +53,17 @@ CLI::Option* add_field_option(CLI::App& command, const std::string& option, Valu
     return added;
 }
 
+/// A hidden option for each field that is no longer there: its value is ignored.
+template <class P> void bind_retired_fields(CLI::App& command) {
+    if constexpr (requires { P::RetiredFields; })
+        for (const auto& field : P::RetiredFields)
+            command
+                .add_option_function<std::string>(
+                    option_name(std::string(field.name)),
+                    [&field](const std::string&) { note_retired_field(field.name); })
+                ->group("");
+}
+
 /// One option per field; a prefix ("--dreambooth-") where the names are those of other settings too.
 template <class P>
 void bind_fields(CLI::App& command, P& parameters, const std::string& group,
@@ -60,6 +71,7 @@ void bind_fields(CLI::App& command, P& parameters, const std::string& group,
     P::visit_fields(parameters, [&](const char* name, auto& value, const char* help, const auto&... range) {
         add_field_option(command, prefix + option_name(name).substr(2), value, help, range...)->group(group);
     });
+    bind_retired_fields<P>(command);
 }
 
 /// Adds the fields whose options stand on the command line, as "request.image_size".

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/base/log.h"
+
 namespace gse {
 namespace {
 
@@ -58,6 +60,10 @@ Range as_floats(const Range& range) {
 }
 
 }  // namespace
+
+void note_retired_field(std::string_view name) {
+    log::info("the setting \"{}\" is no longer there and is ignored", name);
+}
 
 void check_field(const char* name, float value, const Range* range) {
     const Range rounded = range != nullptr ? as_floats(*range) : Range{};

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -26,6 +27,24 @@ struct Range {
     double low = 0;
     double high = 0;
 };
+
+/// A setting that a struct once had: whoever names it is told that it is ignored. A struct P lists them in
+/// `static constexpr std::array RetiredFields`.
+struct RetiredField {
+    std::string_view name;
+    double unset = 0;  // its default, of which nothing has to be said
+};
+
+/// The retired field of that name; null = there is none.
+template <class P> const RetiredField* retired_field(std::string_view name) {
+    if constexpr (requires { P::RetiredFields; })
+        for (const auto& field : P::RetiredFields)
+            if (field.name == name) return &field;
+    return nullptr;
+}
+
+/// Logs that the setting is ignored.
+void note_retired_field(std::string_view name);
 
 /// All fields as a JSON object, in the order of the list.
 template <class P> nlohmann::ordered_json fields_to_json(const P& parameters) {
@@ -66,8 +85,8 @@ template <class P> void check_fields(const P& parameters) {
     });
 }
 
-/// Sets the fields named in `json`; absent ones keep their value. Throws Error for an unknown name, a wrong
-/// type, or a number that is not finite or out of range. Nothing is set then.
+/// Sets the fields named in `json`; absent ones keep their value, retired ones are ignored. Throws Error for an
+/// unknown name, a wrong type, or a number that is not finite or out of range. Nothing is set then.
 template <class P> void fields_from_json(P& parameters, const nlohmann::ordered_json& json) {
     if (!json.is_object())
         throw Error(ErrorCode::InvalidArgument, "the settings are not an object of names and values");
@@ -86,8 +105,12 @@ template <class P> void fields_from_json(P& parameters, const nlohmann::ordered_
             read_field(name, value, *found);
         }
     });
-    for (const auto& [key, ignored] : json.items()) {
+    for (const auto& [key, value] : json.items()) {
         if (known == json.size()) break;
+        if (const auto* retired = retired_field<P>(key)) {
+            if (value != retired->unset) note_retired_field(key);
+            continue;
+        }
         bool found = false;
         P::visit_fields(parameters,
                         [&found, &wanted = key](const char* name, const auto&, const char*, auto...) {

@@ -37,6 +37,14 @@ class Commands(ProgramTest):
                 self.assert_one_sentence(process, f"gseditpro-lab {command}")
                 self.assertEqual((process.returncode, process.stdout), (2, ""))
 
+    def test_options_of_earlier_versions_are_taken_and_hidden(self):
+        process = run("edit", "--polish-steps", 20, "--help")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertNotIn("polish", process.stdout)
+        process = run("edit", "missing.ply", "--polish-steps", 20, "--source", "bear", "--prompt", "a red bear")
+        self.assertIn("polish_steps", process.stderr)
+        self.assertIn("ignored", process.stderr)
+
     def test_starting_loads_neither_networks_nor_codecs(self):
         linked = subprocess.run([PROGRAM], env={**os.environ, "LD_TRACE_LOADED_OBJECTS": "1"}, capture_output=True, text=True).stdout
         self.assertIn("libc.so", linked)

@@ -212,8 +212,7 @@ void draw_iterations(Context& context) {
                                       : "Optimisation steps. More = closer to the sentence, and longer.";
     row_label(context, "Iterations", help);
     const int least = 1;
-    const int polish = by_views ? request.polish_steps : 0;  // set under "All settings"
-    int steps = edit::loop_steps(request, mode) - polish;
+    int steps = edit::loop_steps(request, mode);
     if (ImGui::DragInt("##prompt.iterations", &steps, by_views ? 1.0f : 5.0f, least, 100000, "%d",
                        ImGuiSliderFlags_AlwaysClamp)) {
         if (by_views)
@@ -415,8 +414,9 @@ void nothing_before(const char*, bool&) {}
 
 /// Which settings count for nothing with the method that the edit is led by.
 UnusedField unused_by_method(const Context& context) {
-    return [by_views = edit::edits_by_views(context.request), polishes = context.request.polish_steps > 0](
-               const char* name) { return edit::why_unused(name, by_views, polishes); };
+    return [by_views = edit::edits_by_views(context.request)](const char* name) {
+        return edit::why_unused(name, by_views);
+    };
 }
 
 /// Fields of the request under the headers of their groups.

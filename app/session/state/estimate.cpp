@@ -50,12 +50,6 @@ struct Redrawing {
     double views = 0, early = 0;  // pictures of the last round, and of those before it
     double steps = 0;             // denoising steps of single pictures; those that are not guided count half
     double pictures() const { return views + early; }
-    Redrawing& operator+=(const Redrawing& more) {
-        views += more.views;
-        early += more.early;
-        steps += more.steps;
-        return *this;
-    }
 };
 
 Redrawing redrawing_from(const edit::EditRequest& request, edit::EditMode mode, int first_iteration,
@@ -70,13 +64,6 @@ Redrawing redrawing_from(const edit::EditRequest& request, edit::EditMode mode, 
     for (int round = (first_iteration + plan.fit_steps - 1) / plan.fit_steps; round < plan.rounds; ++round)
         draw(round, plan.views);
     return left;
-}
-
-/// Requests of a polish beside its steps: the views that it is judged by.
-Redrawing held_out(const edit::EditRequest& request, edit::EditMode mode) {
-    const auto plan = edit::round_plan(request, mode);
-    constexpr double views = edit::HeldOutViews;
-    return {views, 0, views * plan.guided_steps_of(plan.rounds - 1)};
 }
 
 bool led_by_views(const EditJob& job) { return edit::edits_by_views(job.recipe().request); }
@@ -147,10 +134,7 @@ Cost estimated_cost(const CostProfile& measured, const edit::EditRequest& asked,
     const double size = static_cast<double>(work.rows) / measured.rows;
     sum.add(size, std::max(0.0, measured.begin));
     if (by_views) {
-        auto left = redrawing_from(request, work.mode, work.first_iteration, drawn);
-        const int polish = std::min(steps, request.polish_steps);
-        sum.add(polish, measured.polish, measured.polish_tflop);
-        if (polish > 0) left += held_out(request, work.mode);
+        const auto left = redrawing_from(request, work.mode, work.first_iteration, drawn);
         sum.add(left.views, std::max(0.0, measured.redraw_view), std::max(0.0, measured.redraw_view_tflop));
         const bool apart = measured.redraw_early >= 0;  // else as in the last round
         sum.add(left.early, std::max(0.0, apart ? measured.redraw_early : measured.redraw_view),
@@ -276,8 +260,6 @@ void measure_loop(CostProfile& measured, const EditJob& job, int least_steps) {
     const auto& result = job.result();
     const int steps = static_cast<int>(result.history.size());
     if (steps < least_steps || steps == 0) return;
-    if (result.polish && result.polish->steps > 0)
-        measured.polish = stage_seconds(result, "polish") / result.polish->steps;
     if (led_by_views(job)) measure_redrawing(measured, job);
     else measure_pulling(measured, job, job.edited(), steps);
     measured.raster = raster_seconds(result) / steps;
@@ -286,8 +268,7 @@ void measure_loop(CostProfile& measured, const EditJob& job, int least_steps) {
 
 bool steps_measured(const CostProfile& measured, const EditJob& job) {
     if (!led_by_views(job)) return measured.guidance >= 0;
-    return measured.redraw >= 0 && measured.redraw_view >= 0 &&
-           (job.recipe().request.polish_steps == 0 || measured.polish >= 0);
+    return measured.redraw >= 0 && measured.redraw_view >= 0;
 }
 
 namespace {
@@ -297,20 +278,6 @@ double guided_steps(const EditJob& job, int view_steps) {
     auto plan = edit::round_plan(job.recipe().request, job.located().mode);
     plan.view_steps = view_steps;
     return plan.guided_steps_of(0);
-}
-
-/// A short polish behind one step. `redrawn` is the time without it.
-void probe_polish(CostProfile& measured, EditJob& job, const EditJob::ProbeSize& size,
-                  const Edited& redrawn) {
-    constexpr int polish_steps = 2;
-    const Edited edited = job.probe({size.steps, size.edited_views, size.view_steps, polish_steps});
-    const auto& polish = edited.result.polish;
-    if (!polish || polish->steps == 0) return;
-    const double judging = edit::HeldOutViews * (measured.redraw_view_tflop +
-                                                 guided_steps(job, size.view_steps) * measured.redraw_tflop);
-    measured.polish = stage_seconds(edited.result, "polish") / polish->steps;
-    measured.polish_tflop =
-        std::max(0.0, tflop_of(edited.use) - tflop_of(redrawn.use) - judging) / polish->steps;
 }
 
 /// Redraws with one step and with three. Tells the time of a step, and that of a view beside its steps, in
@@ -323,10 +290,10 @@ Edited probe_views(CostProfile& measured, EditJob& job) {
     const int views = std::clamp(static_cast<int>(pixels_at_once / (side * side)),
                                  std::min(plan.anew ? least_outlines : 1, plan.views), plan.views);
     const bool early = plan.rounds > 1;
-    job.probe({1, views, 1, 0, early});  // the first pass of a model takes longer than the others
-    const Edited many = job.probe({1, views, more_steps, 0, early});
+    job.probe({1, views, 1, early});  // the first pass of a model takes longer than the others
+    const Edited many = job.probe({1, views, more_steps, early});
     Edited one = job.probe({ProbeSteps, views, 1});
-    const Edited first_round = early ? job.probe({1, views, 1, 0, true}) : one;
+    const Edited first_round = early ? job.probe({1, views, 1, true}) : one;
     const auto redrawn = static_cast<double>(one.result.redrawn_views);
     if (redrawn <= 0 || many.result.redrawn_views != one.result.redrawn_views ||
         first_round.result.redrawn_views != one.result.redrawn_views)
@@ -342,7 +309,6 @@ Edited probe_views(CostProfile& measured, EditJob& job) {
     measured.redraw_view_tflop = std::max(0.0, work_of(one) - first * measured.redraw_tflop);
     measured.redraw_early = std::max(0.0, seconds_of(first_round) - first * measured.redraw);
     measured.redraw_early_tflop = std::max(0.0, work_of(first_round) - first * measured.redraw_tflop);
-    if (job.recipe().request.polish_steps > 0) probe_polish(measured, job, {ProbeSteps, views, 1}, one);
     return one;
 }
 

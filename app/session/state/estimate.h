@@ -29,7 +29,6 @@ struct CostProfile {
     double redraw = -1, redraw_tflop = -1;
     double redraw_view = -1, redraw_view_tflop = -1;
     double redraw_early = -1, redraw_early_tflop = -1;
-    double polish = -1, polish_tflop = -1;
     double raster = -1;
     double rows = 1;
     double refresh = -1;
@@ -71,8 +70,6 @@ struct CostProfile {
         f("redraw_early", self.redraw_early,
           "One redrawn view in a round that is not the last: a tiny autoencoder does for it.", any);
         f("redraw_early_tflop", self.redraw_early_tflop, "Operations of that.", any);
-        f("polish", self.polish, "The model's part of a step of a polish, with what it is judged by.", any);
-        f("polish_tflop", self.polish_tflop, "Operations of that.", any);
         f("raster", self.raster, "The rest of a step.", any);
         f("rows", self.rows, "Splats of the scene that was measured.", Range{1, 1e12});
         f("refresh", self.refresh, "One mask that follows the edit.", any);

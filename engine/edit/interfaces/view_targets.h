@@ -52,9 +52,6 @@ struct RoundState {
     std::string sentence = {};                           // that the model was told; empty = the edit's
     std::vector<std::string> warnings = {};              // of the round as it was redrawn
     double raised = 0;                                   // strength of redrawing beyond what was asked
-    std::vector<std::size_t> held_out = {};              // views of the plan that a polish is judged by
-    std::shared_ptr<const std::vector<EditView>> held =
-        {};  // the same as the round began; null = there is no polish
 };
 
 }  // namespace gse::edit

@@ -91,7 +91,7 @@ private:
 /// Seconds per stage of the loop.
 struct StageSeconds {
     double originals = 0, render = 0, preserve = 0, guidance = 0, backward = 0, optimise = 0, densify = 0,
-           snapshot = 0, dynamic_mask = 0, polish = 0, held_out = 0;
+           snapshot = 0, dynamic_mask = 0;
 };
 
 /// What is edited: the rows as they came in and as they are drawn, and which of them may be worked with.
@@ -120,7 +120,6 @@ public:
                                 tools.views != nullptr && tools.views->supports_appearance_editing())),
           tools_(tools), set_(base.drawn, label_, plan.seeds, request_, camera_extent(plan.views)),
           preservation_({request.l1, request.ssim, request.preserve}), fit_(FitWeights),
-          polish_steps_(tools.views != nullptr ? request.polish_steps : 0),
           masks_(plan, request_, tools.word, tools.attention, tools.segmenter), cycle_(request.seed),
           rest_(plan.views.size(), request.early_stop_change),
           pictures_(tools.rasterizer.view_session(plan.views.size(), tools.view_bytes)),
@@ -146,7 +145,7 @@ public:
                 throw Error(ErrorCode::InvalidArgument, "no labelled splat is visible in any view",
                             "correct the label, or choose views that show it");
             begin_with(views);
-            while (result.iterations < request_.iterations + polish_steps_ && advance(result)) {}
+            while (result.iterations < request_.iterations && advance(result)) {}
         } catch (const std::bad_alloc&) {
             keep_reached(result, out_of_memory());
         } catch (const OutOfMemory& shortage) { keep_reached(result, shortage); }
@@ -160,7 +159,7 @@ private:
         const int iteration = result.iterations;
         if (tools_.new_label) take_label(result);
         if (tools_.job.stop_requested() || !iterate(iteration, result)) {
-            result.stopped = !result.failure && !unjudged_;
+            result.stopped = !result.failure;
             return false;
         }
         result.iterations = iteration + 1;
@@ -170,7 +169,7 @@ private:
                            rest_.visit(record.view, shown_, masks_.mask(record.view));
         if (tools_.iteration) tools_.iteration(result.history.back());
         if (tools_.snapshot && snapshot_due(iteration)) take_snapshot(iteration);
-        tools_.job.report("editing", iteration + 1, request_.iterations + polish_steps_);
+        tools_.job.report("editing", iteration + 1, request_.iterations);
         if (skipped_in_a_row_ >= SkippedInARow) give_up_on_guidance(result);
         return set_.labelled() > 0 && !result.converged && !result.failure;  // else nothing is left to do
     }
@@ -269,35 +268,6 @@ private:
         log::warning("{}; it grows from the place that was found for it", nothing);
     }
 
-    bool polishes(int iteration) const { return polish_steps_ > 0 && iteration >= request_.iterations; }
-
-    /// Has the views redrawn that both states are judged by; false where there are none, and then nothing is
-    /// polished.
-    bool begin_polish(int iteration) {
-        const StageTimer timer(seconds_.held_out);
-        auto held = phase_->draw_held_out();
-        unjudged_ = held.empty();
-        if (unjudged_)
-            log::warning(
-                "every view that shows enough was redrawn: nothing can tell whether a polish helps, and "
-                "there is none");
-        if (unjudged_) return false;
-        polish_.emplace(std::move(held), set_.snapshot(base_.set, iteration), spans(set_.rows()), settings_,
-                        tools_.rasterizer);
-        draw_only(visible_views());
-        return true;
-    }
-
-    /// Whether the rows as they are now are the result: without a polish always, else where it brought them
-    /// nearer.
-    bool polished(EditResult& result) const {
-        if (!polish_) return true;
-        if (result.shortage) return false;
-        result.polish = polish_->judged(result.iterations - polish_->first_iteration(), spans(set_.rows()),
-                                        settings_, tools_.rasterizer);
-        return result.polish->kept;
-    }
-
     /// From here on only these views are drawn, and have to come to rest.
     void draw_only(const std::vector<std::size_t>& views) {
         rest_ = ConvergenceDetector(plan_.views.size(), request_.early_stop_change);
@@ -318,8 +288,7 @@ private:
         IterationRecord record;
         record.iteration = iteration;
         try {
-            if (phase_ && !polishes(iteration)) begin_round(iteration, record);
-            if (polishes(iteration) && !polish_ && !begin_polish(iteration)) return false;
+            if (phase_) begin_round(iteration, record);
         } catch (const Error& error) {
             if (error.code() != ErrorCode::Cancelled) {
                 if (result.history.empty()) throw;  // nothing was reached yet
@@ -338,7 +307,7 @@ private:
             const StageTimer timer(seconds_.preserve);
             gradient_.resize(output_.colour.width, output_.colour.height, 3);
             std::fill(gradient_.data.begin(), gradient_.data.end(), 0.0f);
-            if (phase_ && !polish_)  // redrawn inside the mask, the original outside: one loss for both
+            if (phase_)  // redrawn inside the mask, the original outside: one loss for both
                 record.preservation = fit_.add_gradient(output_.colour, phase_->target(view), no_mask(),
                                                         gradient_, phase_->trust(view));
             else
@@ -347,8 +316,8 @@ private:
             record.preservation_norm = norm(gradient_);
         }
         try {
-            const StageTimer timer(polish_ ? seconds_.polish : seconds_.guidance);
-            record.skipped = (!phase_ || polish_) && !add_guidance(iteration, view, record);
+            const StageTimer timer(seconds_.guidance);
+            record.skipped = !phase_ && !add_guidance(iteration, view, record);
         } catch (const Error& error) {
             if (error.code() != ErrorCode::Cancelled) throw;
             return false;
@@ -381,8 +350,7 @@ private:
         }
         const StageTimer timer(seconds_.optimise);
         set_.collect(gradients_);
-        return set_.step(gradients_, std::min(iteration, request_.iterations - 1),
-                         request_);  // a polish goes on at the last rates
+        return set_.step(gradients_, iteration, request_);
     }
 
     /// Takes over a corrected label: its rows, masks from where it is seen in the base, and the views that
@@ -401,9 +369,6 @@ private:
         pictures_->forget();
         for (std::size_t v = 0; v < masks.size(); ++v) masks_.set_static(v, std::move(masks[v]));
         ++result.label_changes;
-        if (polish_)
-            polish_->begin_anew(set_.snapshot(base_.set, result.iterations), spans(set_.rows()), settings_,
-                                tools_.rasterizer);
         if (phase_) return phase_->take_masks();
         const auto now = visible_views();
         if (!now.empty() || !seen_in.empty()) draw_only(now.empty() ? seen_in : now);
@@ -478,11 +443,11 @@ private:
             plan_.views[view],
             view,
             plan_.view_words.empty() ? std::string() : plan_.view_words[view],
-            polish_ ? iteration - request_.iterations : iteration,
-            polish_ ? polish_steps_ : request_.iterations,
+            iteration,
+            request_.iterations,
             Random::stream(request_.seed, 1000 + static_cast<std::uint64_t>(iteration)).next(),
             &originals_[view]};
-        GuidanceOutput guidance = tools_.guidance.evaluate(input);
+        GuidanceOutput guidance = tools_.guidance->evaluate(input);
         std::erase_if(guidance.scalars, [](const auto& scalar) { return !std::isfinite(scalar.second); });
         record.guidance = std::move(guidance.scalars);
         GSE_CHECK_EQ(guidance.gradient.data.size(), gradient_.data.size());
@@ -525,8 +490,7 @@ private:
 
     void densify(int iteration, EditResult& result) {
         const int step = iteration + 1;
-        if (polish_ || request_.densify_every == 0 || step % request_.densify_every != 0 ||
-            step < request_.densify_from)
+        if (request_.densify_every == 0 || step % request_.densify_every != 0 || step < request_.densify_from)
             return;
         const StageTimer timer(seconds_.densify);
         const bool may_grow = step <= request_.densify_until * request_.iterations;
@@ -538,8 +502,7 @@ private:
 
     void finish(EditResult& result) {
         end_steps();
-        const EditSnapshot reached =
-            polished(result) ? set_.snapshot(base_.set, result.iterations) : polish_->before();
+        const EditSnapshot reached = set_.snapshot(base_.set, result.iterations);
         result.set = reached.materialise();
         result.base_to_new = reached.base_to_new();
         result.label = reached.label();
@@ -553,12 +516,13 @@ private:
                 result.kept_chroma = phase_->check_colour(result.set.spans(), settings_);
             seconds_.guidance = phase_->seconds();
         }
-        result.seconds = {{"originals", seconds_.originals},       {"render", seconds_.render},
-                          {"preserve", seconds_.preserve},         {"guidance", seconds_.guidance},
-                          {"backward", seconds_.backward},         {"optimise", seconds_.optimise},
-                          {"densify", seconds_.densify},           {"snapshot", seconds_.snapshot},
-                          {"dynamic_mask", seconds_.dynamic_mask}, {"polish", seconds_.polish},
-                          {"held_out", seconds_.held_out}};
+        result.seconds = {
+            {"originals", seconds_.originals},       {"render", seconds_.render},
+            {"preserve", seconds_.preserve},         {"guidance", seconds_.guidance},
+            {"backward", seconds_.backward},         {"optimise", seconds_.optimise},
+            {"densify", seconds_.densify},           {"snapshot", seconds_.snapshot},
+            {"dynamic_mask", seconds_.dynamic_mask},
+        };
         result.masks_refreshed = masks_.refreshed();
         result.continued_pictures = work_.continued;
     }
@@ -570,9 +534,6 @@ private:
     const EditTools& tools_;
     WorkingSet set_;
     PreservationLoss preservation_, fit_;  // of steps by a gradient, and of those to redrawn views
-    const int polish_steps_;               // behind those of the redrawn views
-    std::optional<Polish> polish_;         // from its first step on
-    bool unjudged_ = false;                // there is nothing to judge it by
     DynamicMasks masks_;
     std::optional<ShapeFinder> shapes_;  // of view guidance that draws a thing anew
     Mask no_mask_;

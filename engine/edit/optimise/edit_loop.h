@@ -15,7 +15,6 @@
 #include "engine/edit/interfaces/interfaces.h"
 #include "engine/edit/interfaces/snapshot.h"
 #include "engine/edit/interfaces/view_targets.h"
-#include "engine/edit/optimise/polish.h"
 #include "engine/edit/placement/voxel_region.h"
 #include "engine/edit/request/request.h"
 #include "engine/raster/rasterizer.h"
@@ -56,15 +55,14 @@ struct EditResult {
     std::vector<std::uint8_t> hidden;       // [rows of set] 1 = not the new thing, but what the old one hid
     std::vector<IterationRecord> history;
     int iterations = 0;
-    bool stopped = false;                 // by the stop token; the result is the last good state
-    std::size_t label_changes = 0;        // labels taken over from `new_label`
-    bool converged = false;               // by the early stop
-    std::size_t masks_refreshed = 0;      // by the dynamic mask
-    std::size_t skipped_steps = 0;        // left out because the guidance was not finite
-    std::size_t skipped_rows = 0;         // rows whose gradient was not finite, summed over the steps
-    std::size_t continued_pictures = 0;   // for which only the labelled rows were prepared
-    std::size_t redrawn_views = 0;        // pictures that view guidance has asked for
-    std::optional<PolishOutcome> polish;  // where redrawn views were followed by one
+    bool stopped = false;                // by the stop token; the result is the last good state
+    std::size_t label_changes = 0;       // labels taken over from `new_label`
+    bool converged = false;              // by the early stop
+    std::size_t masks_refreshed = 0;     // by the dynamic mask
+    std::size_t skipped_steps = 0;       // left out because the guidance was not finite
+    std::size_t skipped_rows = 0;        // rows whose gradient was not finite, summed over the steps
+    std::size_t continued_pictures = 0;  // for which only the labelled rows were prepared
+    std::size_t redrawn_views = 0;       // pictures that view guidance has asked for
     double kept_chroma = -1;  // of the colour that they have, see view_agreement.h; negative = not known
     std::size_t cloned = 0, split = 0, pruned = 0;
     std::size_t changed_outside_label =
@@ -87,7 +85,7 @@ using IterationCallback = std::function<void(const IterationRecord& record)>;
 /// The parts the loop calls.
 struct EditTools {
     raster::Rasterizer& rasterizer;
-    Guidance& guidance;
+    Guidance* guidance;         // pulls at every step; may be null where `views` leads
     SnapshotCallback snapshot;  // may be empty
     JobControl job;
     IterationCallback iteration = {};      // may be empty
@@ -100,8 +98,7 @@ struct EditTools {
     /// Goes on from this state of an earlier run over the same base, at its iteration; what it says of rows
     /// outside the label does not count. Null = from the base.
     const EditSnapshot* start = nullptr;
-    MultiViewEditor* views = nullptr;  // leads the edit in place of `guidance`, which polishes: it redraws
-                                       // views, the rows are fitted to them
+    MultiViewEditor* views = nullptr;  // leads the edit in place of `guidance`: redraws views to fit to
     double snapshot_seconds = 0;  // above 0: a snapshot whenever this much time has passed (more where they
                                   // take long), instead of by iterations
     /// Of view guidance: shows the redrawn views, as soon as a round is redrawn and whenever something about

@@ -17,8 +17,7 @@ constexpr std::array<Names, 22> GradientOnly{
     "look_again_tau", "densify_from",    "densify_until", "t_min",         "t_max_start",
     "t_max_end",      "guidance_scale",  "clamp",         "weight",        "sample_posterior",
     "delta",          "before_prompt"};
-constexpr std::array<Names, 20> ViewsOnly{"quality",
-                                          "polish_steps",
+constexpr std::array<Names, 19> ViewsOnly{"quality",
                                           "edited_views",
                                           "rounds",
                                           "view_steps",
@@ -37,10 +36,6 @@ constexpr std::array<Names, 20> ViewsOnly{"quality",
                                           "restyle_steps",
                                           "restyle",
                                           "restyle_guidance_scale"};
-/// Of the gradient, what a polish goes by too: its noise levels are its own, and nothing is taken off.
-constexpr std::array<Names, 9> Polishing{
-    "guidance_weight", "gate_guidance", "preserve",         "l1",    "ssim",
-    "guidance_scale",  "clamp",         "sample_posterior", "weight"};
 
 template <std::size_t N> bool among(const std::array<Names, N>& names, std::string_view field) {
     return std::find(names.begin(), names.end(), field) != names.end();
@@ -48,13 +43,12 @@ template <std::size_t N> bool among(const std::array<Names, N>& names, std::stri
 
 }  // namespace
 
-bool has_effect(std::string_view field, bool by_views, bool polishes) {
-    if (!by_views) return !among(ViewsOnly, field);
-    return !among(GradientOnly, field) || (polishes && among(Polishing, field));
+bool has_effect(std::string_view field, bool by_views) {
+    return by_views ? !among(GradientOnly, field) : !among(ViewsOnly, field);
 }
 
-std::string_view why_unused(std::string_view field, bool by_views, bool polishes) {
-    if (has_effect(field, by_views, polishes)) return {};
+std::string_view why_unused(std::string_view field, bool by_views) {
+    if (has_effect(field, by_views)) return {};
     return by_views ? "Has no effect now: views are redrawn and fitted to. It counts with method sds."
                     : "Has no effect now: the model pulls at every step. It counts with method views.";
 }

@@ -392,8 +392,7 @@ double mask_growth(const LoopSettings& settings, EditMode mode, const Mask& mask
 
 int loop_steps(const LoopSettings& settings, EditMode mode) {
     const auto plan = round_plan(settings, mode);
-    return edits_by_views(settings) ? plan.rounds * plan.fit_steps + settings.polish_steps
-                                    : settings.iterations;
+    return edits_by_views(settings) ? plan.rounds * plan.fit_steps : settings.iterations;
 }
 
 }  // namespace gse::edit

@@ -161,7 +161,6 @@ struct LoopSettings {
     double view_strength = 0.75;
     // Other numbers of steps, with other guidance: assets/models/starter/TRAINING.md, other looks.
     int restyle_steps = 2;
-    int polish_steps = 0;
     // Shapes by views: a thing that becomes another, or is new
     int shape_views = 12;
     int shape_rounds = 1;
@@ -225,6 +224,8 @@ struct LoopSettings {
     double max_aspect = 20;
     int snapshot_every = 20;
 
+    static constexpr std::array RetiredFields{RetiredField{"polish_steps", 0}};
+
     template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         visit_loop(self, f);
         visit_rates(self, f);
@@ -263,11 +264,6 @@ private:
           "shown the scene beside it (the starter is) "
           "begins from nothing unless another value is set.",
           Range{0.02, 1});
-        f("polish_steps", self.polish_steps,
-          "Steps of score distillation at low noise after the last round; kept only where views that were "
-          "not redrawn come nearer to what the "
-          "model makes of them. 0 = none.",
-          Range{0, 1e5});
         visit_shapes(self, f);
         f("guidance_weight", self.guidance_weight, "How hard the model pulls, against keeping the rest.",
           Range{0, 1e6});
@@ -430,7 +426,7 @@ struct RoundPlan {
 /// With the quality in it; at least one view and one step.
 RoundPlan round_plan(const LoopSettings& settings, EditMode mode);
 
-/// Optimisation steps of an edit, the polish among them.
+/// Optimisation steps of an edit.
 int loop_steps(const LoopSettings& settings, EditMode mode);
 
 /// How far a mask is grown, in its own pixels: what is new needs room.

@@ -48,9 +48,8 @@ DatasetUpdate::DatasetUpdate(const EditPlan& plan, const EditRequest& request, c
 
 /// Whether the edit goes on in the middle of this round, with the same settings from the same cameras.
 bool DatasetUpdate::resumes(const RoundState& start, const std::vector<std::size_t>& visible) const {
-    const int round = std::min(tools_.start->iteration / request_.fit_steps,
-                               request_.rounds - 1);  // a polish comes behind the last one
-    if (start.key != key_ || start.round != round || (request_.polish_steps > 0 && !start.held)) return false;
+    const int round = std::min(tools_.start->iteration / request_.fit_steps, request_.rounds - 1);
+    if (start.key != key_ || start.round != round) return false;
     for (std::size_t i = 0; i < start.views.size(); ++i) {
         const auto view = start.views[i];
         if (view >= plan_.views.size() || index_of(visible, view) < 0) return false;
@@ -74,11 +73,6 @@ void DatasetUpdate::choose(const std::vector<std::size_t>& visible) {
     state_ = tools_.start->round;
     weigh();
     begin_sheet();
-}
-
-std::vector<HeldOutView> DatasetUpdate::draw_held_out() {
-    return state_ && state_->held ? rounds_.draw_held_out(*state_->held, tools_.job)
-                                  : std::vector<HeldOutView>{};
 }
 
 GaussianData DatasetUpdate::hidden(int sh_degree) const {
@@ -141,12 +135,6 @@ std::map<std::string, double> DatasetUpdate::redraw(int iteration, const Gaussia
     state->warnings = rounds_.warnings();
     state->raised = rounds_.raised();
     state->begun = begun;
-    if (request_.polish_steps > 0) {
-        auto held = std::make_shared<std::vector<EditView>>();
-        for (const auto v : rounds_.held_out()) held->push_back(begin_view(v, rows, unlabelled, settings));
-        state->held = std::move(held);
-        state->held_out = rounds_.held_out();
-    }
     for (const auto view : state->views)
         state->edited.push_back(std::make_shared<const Image>(rounds_.edited(view)));
     state->attempts.assign(state->views.size(), 0);

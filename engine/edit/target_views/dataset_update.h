@@ -53,9 +53,6 @@ public:
 
     /// For snapshots; null before the first round.
     const std::shared_ptr<const RoundState>& state() const { return state_; }
-    /// What a polish is judged by; empty where all views that show enough are redrawn. Throws Error
-    /// (Cancelled, Model).
-    std::vector<HeldOutView> draw_held_out();
     std::size_t redrawn() const { return redrawn_ + rounds_.extra_pictures(); }  // pictures so far
     double seconds() const { return seconds_; }                                  // that redrawing took
 

@@ -23,10 +23,9 @@ Mask eroded(Mask mask, double radius_px) {
     return mask;
 }
 
-constexpr double FeatherPx = 3;                 // of a picture of ReferenceSide (views.md 8.6)
-constexpr std::uint64_t ColourStream = 39000;   // of the request's seed
-constexpr double StrengthRaise = 0.1;           // of redrawing that hardly changed anything (views.md 12)
-constexpr std::uint64_t HeldOutStream = 37000;  // the same, + the round
+constexpr double FeatherPx = 3;                // of a picture of ReferenceSide (views.md 8.6)
+constexpr std::uint64_t ColourStream = 39000;  // of the request's seed
+constexpr double StrengthRaise = 0.1;          // of redrawing that hardly changed anything (views.md 12)
 constexpr double LeastCover =
     0.01;  // of the picture: smaller things are not worth a redrawn view (views.md 8)
 
@@ -127,32 +126,6 @@ std::vector<std::size_t> views_to_redraw(const std::vector<View>& views, const s
     return chosen;
 }
 
-std::vector<std::size_t> views_to_hold_out(const std::vector<View>& views, const std::vector<double>& covered,
-                                           const std::vector<std::size_t>& redrawn, std::size_t count) {
-    GSE_CHECK_EQ(views.size(), covered.size());
-    std::vector<std::size_t> taken = redrawn, held;
-    const auto free_distance = [&](std::size_t v) {  // negative: not to be had
-        if (covered[v] < LeastCover) return -1.0;
-        double nearest = std::numeric_limits<double>::infinity();
-        for (const auto other : taken) {
-            if (other == v) return -1.0;
-            nearest = std::min(nearest, length(views[v].camera.centre() - views[other].camera.centre()));
-        }
-        return nearest;
-    };
-    while (held.size() < count) {
-        std::size_t farthest = 0;
-        double most = -1;
-        for (std::size_t v = 0; v < views.size(); ++v)
-            if (const double distance = free_distance(v); distance > most) most = distance, farthest = v;
-        if (most < 0) break;
-        held.push_back(farthest);
-        taken.push_back(farthest);
-    }
-    std::sort(held.begin(), held.end());
-    return held;
-}
-
 Image blend_inside(const Image& edited, const Image& original, const Mask& mask, double feather_px) {
     GSE_CHECK_EQ(edited.data.size(), original.data.size());
     GSE_CHECK_EQ(mask.data.size(), original.pixel_count());
@@ -187,33 +160,12 @@ void ViewRounds::choose(const std::vector<std::size_t>& visible, const std::vect
         covered.push_back(static_cast<double>(masks[v].count()) / static_cast<double>(masks[v].data.size()));
     }
     views_.clear();
-    held_out_.clear();
     const auto redrawn =
         views_to_redraw(views, covered, static_cast<std::size_t>(round_plan(request_, plan_.mode).views));
     for (const auto index : redrawn) views_.push_back(visible[index]);
-    if (request_.polish_steps == 0) return;
-    for (const auto index : views_to_hold_out(views, covered, redrawn, HeldOutViews))
-        held_out_.push_back(visible[index]);
 }
 
 bool ViewRounds::begins(int iteration) const { return round_ < 0 || iteration / request_.fit_steps > round_; }
-
-std::vector<HeldOutView> ViewRounds::draw_held_out(const std::vector<EditView>& begun,
-                                                   const JobControl& job) {
-    if (begun.empty()) return {};
-    const auto stream = HeldOutStream + static_cast<std::uint64_t>(round_);
-    auto drawn = drawn_by(guidance_, begun, input(stream), job);
-    std::vector<HeldOutView> held;
-    for (std::size_t i = 0; i < begun.size(); ++i) {
-        if (shapes_ != nullptr &&
-            !shapes_->take_out(begun[i], drawn, i, Random::stream(request_.seed, stream + 1 + i).next()))
-            continue;
-        held.push_back({begun[i].view.camera, begun[i].mask,
-                        blend_inside(drawn.images[i], begun[i].original, begun[i].mask,
-                                     FeatherPx * begun[i].original.width / ReferenceSide)});
-    }
-    return held;
-}
 
 /// What this round is asked to be; `stream` of the request's seed.
 EditViewsRequest ViewRounds::input(std::uint64_t stream) const {
@@ -320,7 +272,6 @@ void ViewRounds::resume(const RoundState& start) {
     round_ = start.round;
     sentence_ = start.sentence;
     views_ = start.views;
-    held_out_ = start.held_out;
     raised_ = start.raised;
 }
 

@@ -10,7 +10,6 @@
 #include "engine/edit/interfaces/interfaces.h"
 #include "engine/edit/interfaces/view_targets.h"
 #include "engine/edit/optimise/edit_loop.h"
-#include "engine/edit/optimise/polish.h"
 #include "engine/edit/optimise/preservation_loss.h"
 #include "engine/edit/request/request.h"
 #include "engine/edit/target_views/shape_round.h"
@@ -39,13 +38,6 @@ EditRequest restyling(EditRequest request, EditMode mode);
 std::vector<std::size_t> views_to_redraw(const std::vector<View>& views, const std::vector<double>& covered,
                                          std::size_t count);
 
-constexpr std::size_t HeldOutViews = 2;  // that a polish is judged by (views.md 13)
-
-/// Of the other views that show as much, those farthest from the ones that are redrawn (and from each other),
-/// at most `count`.
-std::vector<std::size_t> views_to_hold_out(const std::vector<View>& views, const std::vector<double>& covered,
-                                           const std::vector<std::size_t>& redrawn, std::size_t count);
-
 /// F edited + (1 - F) original, where F is the mask, feathered inwards by `feather_px`: outside the mask the
 /// original stays bit by bit.
 Image blend_inside(const Image& edited, const Image& original, const Mask& mask, double feather_px);
@@ -61,11 +53,6 @@ public:
     /// Picks the views to redraw from those in which the edit is seen.
     void choose(const std::vector<std::size_t>& visible, const std::vector<Mask>& masks);
     const std::vector<std::size_t>& views() const { return views_; }
-    /// Views that are not redrawn but could be; see views_to_hold_out().
-    const std::vector<std::size_t>& held_out() const { return held_out_; }
-    /// What the model would have made of them in this round, as `begun` when it began; without those that do
-    /// not show a new shape.
-    std::vector<HeldOutView> draw_held_out(const std::vector<EditView>& begun, const JobControl& job);
     /// Whether a round begins with this iteration.
     bool begins(int iteration) const;
     int round() const { return round_; }  // -1 = none has begun
@@ -114,7 +101,7 @@ private:
     std::string sentence_;
     CutOut found_;
     std::vector<std::string> warnings_;
-    std::vector<std::size_t> views_, held_out_;
+    std::vector<std::size_t> views_;
     std::vector<Image> targets_, edited_;  // of the plan's views; empty for those that are not redrawn
     double raised_ = 0;
     std::size_t extra_pictures_ = 0;

@@ -73,12 +73,4 @@ struct SdsParameters {
     }
 };
 
-/// Parameters of a polish: low noise levels, at which a model changes details only, and no subtraction.
-inline SdsParameters polishing(SdsParameters parameters) {
-    parameters.t_min = 0.02;
-    parameters.t_max_start = parameters.t_max_end = 0.3;
-    parameters.delta = 0;
-    return parameters;
-}
-
 }  // namespace gse::neural

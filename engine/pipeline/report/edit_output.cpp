@@ -251,11 +251,6 @@ nlohmann::ordered_json make_report(EditJob& job) {
     report["skipped_steps"] = result.skipped_steps;
     report["skipped_rows"] = result.skipped_rows;
     if (result.kept_chroma >= 0) report["kept_chroma"] = result.kept_chroma;
-    if (const auto& polish = result.polish)
-        report["polish"] = {{"steps", polish->steps},
-                            {"kept", polish->kept},
-                            {"held_out_error_before", polish->before},
-                            {"held_out_error_after", polish->after}};
     report["cloned"] = result.cloned;
     report["split"] = result.split;
     report["pruned"] = result.pruned;

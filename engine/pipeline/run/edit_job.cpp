@@ -352,7 +352,6 @@ Edited EditJob::probe(const ProbeSize& size) {
     plain.request.shape_fit_steps = size.steps;
     plain.request.edited_views = plain.request.shape_views = size.edited_views;
     plain.request.view_steps = plain.request.restyle_steps = plain.request.shape_steps = size.view_steps;
-    plain.request.polish_steps = size.polish;
     JobControl quiet;
     std::stop_source redrawn;
     const std::stop_callback stopped(control_.stop, [&] { redrawn.request_stop(); });

@@ -72,7 +72,7 @@ public:
     /// Runs a plain loop of that many steps, for its time; where views lead it, that many are redrawn first.
     /// Of a large scene on a part of the splats, see probe_scene().
     struct ProbeSize {
-        int steps = 1, edited_views = 1, view_steps = 1, polish = 0;
+        int steps = 1, edited_views = 1, view_steps = 1;
         bool early = false;  // only redraws, as in a round that is not the last; no step follows
     };
     Edited probe(const ProbeSize& size);

@@ -315,7 +315,7 @@ Edited run_attempt(RunContext& workplace, const GaussianSet& scene, const Locate
     const auto prompt = editor ? told_to_editor(request) : edit::as_told(request.prompt);
     auto settings = with_sentence_before(recipe.guidance, request);
     settings.restyle = way.restyle;
-    const auto guidance = model.guidance(prompt, by_views ? neural::polishing(settings) : settings);
+    const auto guidance = by_views ? nullptr : model.guidance(prompt, settings);
     const auto drawn =
         by_views ? model.views(dye ? edit::told_with(*dye, prompt) : prompt, settings) : nullptr;
     std::optional<edit::DyedViews> dyed;
@@ -328,7 +328,7 @@ Edited run_attempt(RunContext& workplace, const GaussianSet& scene, const Locate
     std::optional<PatternLayer> pattern;
     if (dye && dye->pattern)
         pattern = PatternLayer{*dye, located.views.orbit.up, located.views.front, request.seed};
-    edit::EditTools tools{workplace.painter().rasterizer(), *guidance,
+    edit::EditTools tools{workplace.painter().rasterizer(), guidance.get(),
                           pattern ? pattern->over(observer.snapshot) : observer.snapshot, control,
                           observer.iteration};
     tools.snapshot_seconds = observer.snapshot_seconds;

@@ -164,7 +164,7 @@ struct ShapeEdit {
     }
 
     edit::EditResult run() {
-        edit::EditTools tools{*rasterizer, never, {}, {}};
+        edit::EditTools tools{*rasterizer, &never, {}, {}};
         tools.views = &views;
         tools.attention = &views;
         tools.word = "cat";

@@ -62,7 +62,7 @@ edit::EditResult run(const Case& c, const std::string& kernels, unsigned threads
     ThreadPool pool(threads);
     const auto rasterizer = raster::make_fast_rasterizer(pool, kernels);
     edit::OracleGuidance guidance(c.target, c.plan.views, c.plan.settings, *rasterizer);
-    edit::EditTools tools{*rasterizer, guidance, {}, {}};
+    edit::EditTools tools{*rasterizer, &guidance, {}, {}};
     tools.view_bytes = budget;
     int asked = 0;
     if (relabels)

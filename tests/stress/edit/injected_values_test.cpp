@@ -230,7 +230,7 @@ DOCTEST_TEST_CASE(
         request.seed = seed;
         request.densify_every = request.densify_from = 20;
         request.densify_percent = 0.1;
-        edit::EditTools tools{rasterizer, guidance, {}, {}};
+        edit::EditTools tools{rasterizer, &guidance, {}, {}};
         tools.attention = &attention;
         tools.segmenter = &segmenter;
         tools.word = "ball";

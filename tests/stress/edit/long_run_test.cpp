@@ -107,7 +107,7 @@ DOCTEST_TEST_CASE(
     request.densify_every = request.densify_from = std::max(20, count / 20);
     request.geometry_share = 1;
     MemoryWatch memory;
-    edit::EditTools tools{*ball.rasterizer, guidance, {}, {}};
+    edit::EditTools tools{*ball.rasterizer, &guidance, {}, {}};
     tools.iteration = [&](const edit::IterationRecord& record) { memory.see(record.iteration, count); };
     const auto result = edit::run_edit(ball.scene.set, ball.plan, request, tools);
     log::set_level(log::Level::Info);

@@ -101,7 +101,7 @@ std::string outcome(test::Redrawing& ball, edit::Guidance& guidance, const edit:
     std::stop_source stop;
     auto plan = ball.plan;
     plan.mode = mode;
-    edit::EditTools tools{*ball.rasterizer, guidance, {}, {{}, stop.get_token()}};
+    edit::EditTools tools{*ball.rasterizer, &guidance, {}, {{}, stop.get_token()}};
     if (edit::edits_by_views(request)) tools.views = &ball.oracle;
     tools.iteration = [&](const edit::IterationRecord& record) {
         if (record.iteration + 1 >= Steps) stop.request_stop();

@@ -158,7 +158,7 @@ DOCTEST_TEST_CASE("the loop refreshes masks and stops when it is at rest") {
     FixedAttention attention;
     attention.where = Mask(24, 24, 1);
     auto still = test::still();
-    edit::EditTools tools{*rasterizer, still, {}, {}};
+    edit::EditTools tools{*rasterizer, &still, {}, {}};
     tools.attention = &attention;
     tools.word = "ball";
     const auto all = edit::run_edit(scene.set, plan, request, tools);
@@ -191,7 +191,7 @@ DOCTEST_TEST_CASE("new splats outside of where the new thing is seen go, unless 
     FixedAttention attention;
     attention.where = Mask(24, 24);
     auto still = test::still();
-    edit::EditTools tools{*rasterizer, still, {}, {}};
+    edit::EditTools tools{*rasterizer, &still, {}, {}};
     tools.attention = &attention;
     tools.word = "hat";
     const auto added = [&] {

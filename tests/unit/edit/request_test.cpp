@@ -64,6 +64,15 @@ DOCTEST_TEST_CASE("every field survives JSON, has a help text and a name of its 
     DOCTEST_CHECK(sizeof(EditRequest) - listed < 8 * names.size());
 }
 
+DOCTEST_TEST_CASE("settings of earlier versions that are no longer there are read and ignored") {
+    EditRequest request;
+    fields_from_json(request, {{"polish_steps", 20}, {"iterations", 7}});
+    DOCTEST_CHECK(request.iterations == 7);
+    request.iterations = EditRequest{}.iterations;
+    DOCTEST_CHECK(fields_to_json(request) == fields_to_json(EditRequest{}));
+    DOCTEST_CHECK_THROWS_AS(fields_from_json(request, {{"polish_steps", 20}, {"no_such_field", 1}}), Error);
+}
+
 DOCTEST_TEST_CASE("JSON with an unknown name, a wrong type or a value out of range is refused") {
     EditRequest request;
     DOCTEST_CHECK_THROWS_AS(fields_from_json(request, {{"no_such_field", 1}}), Error);

@@ -45,7 +45,7 @@ edit::EditResult run(const test::BallScene& scene, const edit::EditRequest& requ
     ThreadPool pool(how.threads);
     const auto rasterizer = raster::make_fast_rasterizer(pool);
     const auto plan = test::ball_plan(scene, *rasterizer);
-    edit::EditTools tools{*rasterizer, guidance, how.snapshot, how.job};
+    edit::EditTools tools{*rasterizer, &guidance, how.snapshot, how.job};
     tools.snapshot_seconds = how.snapshot_seconds;
     return edit::run_edit(scene.set, plan, request, tools);
 }
@@ -326,7 +326,7 @@ DOCTEST_TEST_CASE("a label corrected in the middle of a run is taken over") {
         else if (corrected[row] == 0 && joined < 10) corrected[row] = 1, ++joined;
     }
     int asked = 0;
-    edit::EditTools tools{*rasterizer, guidance, {}, {}};
+    edit::EditTools tools{*rasterizer, &guidance, {}, {}};
     tools.new_label = [&]() -> std::optional<std::vector<std::uint8_t>> {
         return ++asked == request.iterations / 2 ? std::optional(corrected) : std::nullopt;
     };
@@ -394,7 +394,7 @@ DOCTEST_TEST_CASE("a run goes on from a snapshot: its rows, its iteration, and n
     const auto rasterizer = raster::make_fast_rasterizer(pool);
     const auto plan = test::ball_plan(scene, *rasterizer);
     const auto go_on = [&](const edit::EditSnapshot& from, edit::Guidance& pull) {
-        edit::EditTools tools{*rasterizer, pull, {}, {}};
+        edit::EditTools tools{*rasterizer, &pull, {}, {}};
         tools.start = &from;
         return edit::run_edit(scene.set, plan, request, tools);
     };
@@ -422,7 +422,7 @@ DOCTEST_TEST_CASE("a run goes on from a snapshot: its rows, its iteration, and n
     for (std::size_t row = 0; row < half.label.size(); row += 2)
         dropped += half.label[row], half.label[row] = 0;
     DOCTEST_REQUIRE(dropped > 0);
-    edit::EditTools tools{*rasterizer, other, {}, {}};
+    edit::EditTools tools{*rasterizer, &other, {}, {}};
     tools.start = &start;
     const auto smaller = edit::run_edit(scene.set, half, request, tools);
     DOCTEST_CHECK(smaller.changed_outside_label == 0);

@@ -69,7 +69,7 @@ DOCTEST_TEST_CASE("after a corrected label the loop draws the views that see it"
     std::vector<std::uint8_t> green = scene.first;
     for (auto& bit : green) bit = bit == 0 ? 1 : 0;
     auto guidance = test::towards({0.1, 0.1, 0.9});
-    edit::EditTools tools{*rasterizer, guidance, {}, {}};
+    edit::EditTools tools{*rasterizer, &guidance, {}, {}};
     tools.new_label = at_iteration(12, green);
     const auto result = edit::run_edit(scene.set, plan, plain_request(24), tools);
     DOCTEST_CHECK(result.label_changes == 1);
@@ -92,7 +92,7 @@ DOCTEST_TEST_CASE("a corrected label that no view sees is not taken over") {
     std::vector<std::uint8_t> green = scene.first;
     for (auto& bit : green) bit = bit == 0 ? 1 : 0;
     auto guidance = test::towards({0.1, 0.1, 0.9});
-    edit::EditTools tools{*rasterizer, guidance, {}, {}};
+    edit::EditTools tools{*rasterizer, &guidance, {}, {}};
     const auto plain = edit::run_edit(scene.set, plan, plain_request(16), tools);
     tools.new_label = at_iteration(8, green);
     log::set_level(log::Level::Off);
@@ -109,7 +109,7 @@ DOCTEST_TEST_CASE("after a corrected label an edit rests only when every view th
     auto still = test::still();
     auto request = plain_request(60);
     request.early_stop = true;
-    edit::EditTools tools{*rasterizer, still, {}, {}};
+    edit::EditTools tools{*rasterizer, &still, {}, {}};
     constexpr int at = 4;  // before the views of the red ball have been drawn twice
     tools.new_label = at_iteration(at, std::vector<std::uint8_t>(scene.first.size(), 1));
     const auto result = edit::run_edit(scene.set, plan, request, tools);
@@ -138,7 +138,7 @@ DOCTEST_TEST_CASE("looking again for what is new does not delay the rest") {
                                        : test::still().evaluate(input);
     });
     BlindAttention attention;
-    edit::EditTools tools{*rasterizer, guidance, {}, {}};
+    edit::EditTools tools{*rasterizer, &guidance, {}, {}};
     tools.word = "ball";
     tools.attention = &attention;  // finds nothing, so that nothing is dropped
     const auto looked = edit::run_edit(scene.set, plan, request, tools);

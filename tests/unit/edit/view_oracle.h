@@ -87,7 +87,7 @@ struct Redrawing {
     OracleViews oracle{target, *rasterizer};
     FunctionGuidance never{
         [](const edit::GuidanceInput&) -> edit::GuidanceOutput { throw Error(ErrorCode::Model, "asked"); }};
-    edit::EditTools tools{*rasterizer, never, {}, {}};
+    edit::EditTools tools{*rasterizer, &never, {}, {}};
     explicit Redrawing(int picture_side = 32) : side(picture_side) { tools.views = &oracle; }
     edit::EditResult edited(const edit::EditRequest& request) {
         return edit::run_edit(scene.set, plan, request, tools);

@@ -139,26 +139,6 @@ DOCTEST_TEST_CASE("an estimate tells rounds for which a tiny autoencoder does fr
     DOCTEST_CHECK(seconds(known, request, work) == doctest::Approx(8 * (20 + 4) + 15 * 0.01 + 1));
 }
 
-DOCTEST_TEST_CASE("an estimate counts the steps of a polish, and the views that it is judged by") {
-    edit::EditRequest request;
-    request.method = "views";
-    request.edited_views = 4;
-    request.view_steps = 3;
-    request.fit_steps = 10;
-    auto known = redrawing();
-    auto work = located();
-    work.shows_idea = false;
-    const double without = seconds(known, request, work);
-    request.polish_steps = 20;
-    DOCTEST_CHECK(seconds(known, request, work) < 0);  // not measured yet
-    known.polish = 0.1;
-    DOCTEST_CHECK(seconds(known, request, work) ==
-                  doctest::Approx(without + 20 * (0.1 + 0.01) + 2 * (0.05 + 3 * 0.02)));
-    work.first_iteration = 25;  // in its middle
-    DOCTEST_CHECK(seconds(known, request, work) ==
-                  doctest::Approx(5 * (0.1 + 0.01) + 2 * (0.05 + 3 * 0.02) + 1));
-}
-
 DOCTEST_TEST_CASE("an estimate counts the view that is drawn first for the colour of a new thing") {
     edit::EditRequest request;
     request.prompt = "a bear with white wings on the grass";
