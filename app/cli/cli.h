@@ -46,11 +46,18 @@ CLI::Option* add_field_option(CLI::App& command, const std::string& option, Valu
                               const Ranges&... range) {
     if constexpr (std::is_same_v<Value, bool>)
         return command.add_flag(option + ",!--no-" + option.substr(2), value, help);
-    CLI::Option* added = command.add_option(option, value, help)->capture_default_str();
-    if constexpr (std::is_same_v<Value, std::vector<std::string>>)
-        added->allow_extra_args(false);  // one text each time it is given
-    if constexpr (std::is_arithmetic_v<Value>) (added->check(CLI::Range(range.low, range.high)), ...);
-    return added;
+    if constexpr (std::is_same_v<Value, Overridable>) {
+        const auto set = [&value](const double& number) { value = number; };
+        CLI::Option* added = command.add_option_function<double>(option, set, help);
+        (added->check(CLI::Range(range.low, range.high)), ...);
+        return added->default_str(CLI::detail::to_string(static_cast<double>(value)));
+    } else {
+        CLI::Option* added = command.add_option(option, value, help)->capture_default_str();
+        if constexpr (std::is_same_v<Value, std::vector<std::string>>)
+            added->allow_extra_args(false);  // one text each time it is given
+        if constexpr (std::is_arithmetic_v<Value>) (added->check(CLI::Range(range.low, range.high)), ...);
+        return added;
+    }
 }
 
 /// A hidden option for each field that is no longer there: its value is ignored.

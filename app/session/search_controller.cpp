@@ -94,7 +94,7 @@ std::string SearchController::read_target() const {
 void SearchController::from_json(const nlohmann::json& json) {
     if (!json.contains("request")) return;
     edit::EditRequest request = request_;
-    fields_from_json(request, json["request"]);
+    edit::read_request(request, json["request"]);
     set_request(request);
     follow_document();
     // What an applied edit said already is no news, even if it was clicked once.
@@ -386,7 +386,7 @@ template <> void SearchController::on(const command::RepeatEdit& one) {
         if (!json.is_object() || !json.contains("request")) return;
         try {
             edit::EditRequest request;
-            fields_from_json(request, json["request"]);
+            edit::read_request(request, json["request"]);
             request.seed = Random::stream(request.seed, 77).next() % 1000000;
             set_request(request);
             workspace_.notices.toast("The settings are in the prompt, with a new seed.");

@@ -101,6 +101,11 @@ void read_field(const char* name, double& value, const Json& json, const Range* 
     value = number(name, json, range);
 }
 
+void read_field(const char* name, Overridable& value, const Json& json, const Range* range) {
+    if (json.is_null()) value.unset();
+    else value = number(name, json, range);
+}
+
 void read_field(const char* name, std::string& value, const Json& json) {
     if (!json.is_string()) refuse(name, "text", shown(json));
     value = json.get<std::string>();

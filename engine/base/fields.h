@@ -6,8 +6,8 @@
 //       f("name", self.member, "Purpose of the member.", Range{low, high});
 //   }
 //
-// The range may be left out. Members are bool, int, std::uint64_t, float, double, std::string or a list of
-// texts (std::vector<std::string>).
+// The range may be left out. Members are bool, int, std::uint64_t, float, double, Overridable,
+// std::string or a list of texts (std::vector<std::string>).
 #pragma once
 
 #include <cstdint>
@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "engine/base/error.h"
+#include "engine/base/overridable.h"
 
 namespace gse {
 
@@ -46,13 +47,24 @@ template <class P> const RetiredField* retired_field(std::string_view name) {
 /// Logs that the setting is ignored.
 void note_retired_field(std::string_view name);
 
-/// All fields as a JSON object, in the order of the list.
+/// All fields as a JSON object, in the order of the list; an Overridable that nobody has set is null.
 template <class P> nlohmann::ordered_json fields_to_json(const P& parameters) {
     nlohmann::ordered_json json = nlohmann::ordered_json::object();
-    P::visit_fields(parameters,
-                    [&](const char* name, const auto& value, const char*, auto...) { json[name] = value; });
+    P::visit_fields(parameters, [&](const char* name, const auto& value, const char*, auto...) {
+        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, Overridable>) {
+            if (value.is_set()) json[name] = static_cast<double>(value);
+            else json[name] = nullptr;
+        } else {
+            json[name] = value;
+        }
+    });
     return json;
 }
+
+/// Whether fields of the type hold one number, set or not.
+template <class Value>
+constexpr bool is_number_field = std::is_same_v<Value, Overridable> ||
+                                 (std::is_arithmetic_v<Value> && !std::is_same_v<Value, bool>);
 
 /// Sets `value` from JSON. Throws Error that names the setting for a wrong type, a number that is not whole
 /// or not finite, or one out of range.
@@ -65,6 +77,9 @@ void read_field(const char* name, float& value, const nlohmann::ordered_json& js
                 const Range* range = nullptr);
 void read_field(const char* name, double& value, const nlohmann::ordered_json& json,
                 const Range* range = nullptr);
+/// Null unsets the number.
+void read_field(const char* name, Overridable& value, const nlohmann::ordered_json& json,
+                const Range* range = nullptr);
 void read_field(const char* name, std::string& value, const nlohmann::ordered_json& json);
 void read_field(const char* name, std::vector<std::string>& value, const nlohmann::ordered_json& json);
 
@@ -75,7 +90,7 @@ void check_field(const char* name, float value, const Range* range);
 /// Checks every number of the struct, whoever set it.
 template <class P> void check_fields(const P& parameters) {
     P::visit_fields(parameters, [&](const char* name, const auto& value, const char*, const auto&... range) {
-        if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(value)>>) {
+        if constexpr (is_number_field<std::remove_cvref_t<decltype(value)>>) {
             const Range* limits = nullptr;
             ((limits = &range), ...);
             if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, float>)
@@ -97,7 +112,7 @@ template <class P> void fields_from_json(P& parameters, const nlohmann::ordered_
         if (found == json.end()) return;
         ++known;
         using Value = std::remove_cvref_t<decltype(value)>;
-        if constexpr (std::is_arithmetic_v<Value> && !std::is_same_v<Value, bool>) {
+        if constexpr (is_number_field<Value>) {
             const Range* limits = nullptr;
             ((limits = &range), ...);
             read_field(name, value, *found, limits);

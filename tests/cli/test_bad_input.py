@@ -169,7 +169,7 @@ class BadOptions(ProgramTest):
 
     def test_recipe_fields_are_named(self):
         seed = {"version": 1, "request": {"prompt": "a red bear", "source": "bear", "target": "red"}}
-        for part, name, value, word in [("request", "rate_colour", None, "null"), ("request", "rate_colour", 1e300, "0 to 10"),
+        for part, name, value, word in [("request", "rate_sh", None, "null"), ("request", "rate_colour", 1e300, "0 to 10"),
                                         ("request", "iterations", 2.5, "2.5"), ("request", "iterations", "many", "many"),
                                         ("request", "seed", -1, "-1"), ("request", "prompt", 5, "text"),
                                         ("request", "focus", 1, "true or false"), ("job", "threads", 4294967297, "threads"),

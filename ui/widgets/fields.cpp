@@ -24,7 +24,10 @@ template <class T> std::string default_text(const FieldRow& row, const T& standa
     if constexpr (std::is_same_v<T, std::string>)
         return standard.empty() ? std::string(row.help)
                                 : fmt::format("{}\n{}: {}.", row.help, whose, standard);
-    return fmt::format("{}\n{}: {}. Right click: back to it.", row.help, whose, standard);
+    if constexpr (std::is_same_v<T, Overridable>)
+        return fmt::format("{}\n{}: {}, or what suits the edit. Right click: back to it.", row.help, whose,
+                           static_cast<double>(standard));
+    else return fmt::format("{}\n{}: {}. Right click: back to it.", row.help, whose, standard);
 }
 
 template <class T> std::string help_text(const FieldRow& row, const T& standard) {
@@ -52,8 +55,8 @@ const char* number_format(double size) {
     return size < 1 ? "%.4g" : "%.6g";
 }
 
-template <class T> bool real_row(Context& context, const FieldRow& row, T& value, const T& standard) {
-    label_of(context, row, value, standard);
+/// The control alone: a slider or a number to drag.
+template <class T> bool real_control(const FieldRow& row, T& value, const T& standard) {
     const T before = value;
     constexpr ImGuiDataType Type = std::is_same_v<T, float> ? ImGuiDataType_Float : ImGuiDataType_Double;
     const T low = row.range ? static_cast<T>(row.range->low) : static_cast<T>(0);
@@ -75,6 +78,12 @@ template <class T> bool real_row(Context& context, const FieldRow& row, T& value
     }
     if (!std::isfinite(value)) value = before;  // "1e999" was typed
     if (changed && row.range) value = std::clamp(value, low, high);
+    return changed;
+}
+
+template <class T> bool real_row(Context& context, const FieldRow& row, T& value, const T& standard) {
+    label_of(context, row, value, standard);
+    const bool changed = real_control(row, value, standard);
     return finish(context, row, value, standard) || changed;
 }
 
@@ -133,6 +142,14 @@ bool field_row(Context& context, const FieldRow& row, float& value, float standa
 
 bool field_row(Context& context, const FieldRow& row, double& value, double standard) {
     return real_row(context, row, value, standard);
+}
+
+bool field_row(Context& context, const FieldRow& row, Overridable& value, const Overridable& standard) {
+    label_of(context, row, value, standard);
+    double number = value;
+    const bool changed = real_control<double>(row, number, standard);
+    if (changed) value = number;
+    return finish(context, row, value, standard) || changed;
 }
 
 bool field_row(Context& context, const FieldRow& row, std::string& value, const std::string& standard) {

@@ -31,6 +31,7 @@ bool field_row(Context& context, const FieldRow& row, int& value, int standard);
 bool field_row(Context& context, const FieldRow& row, std::uint64_t& value, std::uint64_t standard);
 bool field_row(Context& context, const FieldRow& row, float& value, float standard);
 bool field_row(Context& context, const FieldRow& row, double& value, double standard);
+bool field_row(Context& context, const FieldRow& row, Overridable& value, const Overridable& standard);
 bool field_row(Context& context, const FieldRow& row, std::string& value, const std::string& standard);
 
 /// "attention_threshold" -> "attention threshold"

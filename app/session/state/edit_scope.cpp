@@ -34,7 +34,7 @@ std::vector<edit::EditRequest> applied_requests(const std::vector<EditNode>& sta
         if (!node.enabled || !json.is_object() || !json.contains("request")) continue;
         edit::EditRequest request;
         try {
-            fields_from_json(request, json["request"]);
+            edit::read_request(request, json["request"]);
         } catch (const Error&) {  // of another version: what it said is not known
             continue;
         }

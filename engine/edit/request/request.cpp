@@ -293,6 +293,24 @@ std::string instance_sentence(const EditRequest& request) {
     return "a photo of a " + (identified ? Identifier + " " : std::string()) + request.source;
 }
 
+namespace {
+
+/// Whether a version before numbers could be unset has written the request: all of those had this field.
+bool of_earlier_version(const nlohmann::ordered_json& json) {
+    return json.contains(LoopSettings::RetiredFields.front().name);
+}
+
+}  // namespace
+
+void read_request(EditRequest& request, const nlohmann::ordered_json& json) {
+    fields_from_json(request, json);
+    if (!of_earlier_version(json)) return;
+    EditRequest::visit_fields(request, [](const char*, auto& value, const char*, const auto&...) {
+        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, Overridable>)
+            if (value.is_standard()) value.unset();
+    });
+}
+
 EditRequest validated(EditRequest request) {
     check_fields(request);
     if (words_of(request.prompt).empty())

@@ -158,7 +158,7 @@ struct LoopSettings {
     // steps, 0.593 with 3, 0.592 with 4.
     int view_steps = 3;
     int fit_steps = 40;
-    double view_strength = 0.75;
+    Overridable view_strength{0.75};
     // Other numbers of steps, with other guidance: assets/models/starter/TRAINING.md, other looks.
     int restyle_steps = 2;
     // Shapes by views: a thing that becomes another, or is new
@@ -196,32 +196,32 @@ struct LoopSettings {
     double anchor_start = 0.1;
     double anchor_growth = 1.3;
     double anchor_cap = 10;
-    double anchor_position = 50;
-    double anchor_rotation = 50;
-    double anchor_opacity = 50;
-    double anchor_scale = 50;
+    Overridable anchor_position{50};
+    Overridable anchor_rotation{50};
+    Overridable anchor_opacity{50};
+    Overridable anchor_scale{50};
     double anchor_colour = 0;
     // Learning rates
     double rate_position = 4.8e-4;
     double rate_position_end = 3.2e-5;
-    double rate_colour = 0.0375;
+    Overridable rate_colour{0.0375};
     double rate_sh = 0.001875;
     double rate_opacity = 0.1;
     double rate_scale = 0.01;
     double rate_rotation = 0.002;
-    double geometry_share = 0.03;
-    double colour_coupling = 0.9;
+    Overridable geometry_share{0.03};
+    Overridable colour_coupling{0.9};
     // Densification
     int densify_from = 100;
     int densify_every = 100;
     double densify_until = 0.75;
-    double densify_percent = 0.01;
+    Overridable densify_percent{0.01};
     double densify_min_gradient = 1e-7;
     double percent_dense = 0.01;
     double min_opacity = 0.005;
     double prune_scale = 0.1;
-    double max_growth = 1.5;
-    double max_aspect = 20;
+    Overridable max_growth{1.5};
+    Overridable max_aspect{20};
     int snapshot_every = 20;
 
     static constexpr std::array RetiredFields{RetiredField{"polish_steps", 0}};
@@ -383,6 +383,10 @@ struct EditRequest : EditWords, SearchSettings, LabelThresholds, LoopSettings {
         LoopSettings::visit_fields(self, f);
     }
 };
+
+/// Sets the fields named in `json`, as fields_from_json() does. Earlier versions wrote every field, set or
+/// not: numbers that such a request has at their default are left unset. Throws Error.
+void read_request(EditRequest& request, const nlohmann::ordered_json& json);
 
 /// What an edit does with what is there: changes its colour, material or style; puts something beside it; or
 /// puts something else in its place.

@@ -46,29 +46,23 @@ EditedViews drawn_by(MultiViewEditor& guidance, const std::vector<EditView>& vie
 
 namespace {
 
-/// Gives a field the value that suits, unless it was set.
-template <class T> void suit(T& field, const T& otherwise, const T& value) {
-    if (field == otherwise) field = value;
-}
-
-/// What gets another shape is no longer bound to the old one.
+/// Lets a thing that gets another shape leave the old one.
 void free_geometry(EditRequest& request) {
-    const EditRequest usual;
-    suit(request.geometry_share, usual.geometry_share, 1.0);
-    suit(request.colour_coupling, usual.colour_coupling, 0.0);
+    request.geometry_share.override_if_unset(1);
+    request.colour_coupling.override_if_unset(0);
     for (const auto anchor : {&EditRequest::anchor_position, &EditRequest::anchor_rotation,
                               &EditRequest::anchor_opacity, &EditRequest::anchor_scale})
-        suit(request.*anchor, usual.*anchor, 0.0);
+        (request.*anchor).override_if_unset(0);
 }
 
+/// New rows grow several times in each round, from hulls whose colours are near: fast rates follow single
+/// views.
 void grow_often(EditRequest& request, int fit_steps) {
     constexpr int GrowthsPerRound = 6;
-    const EditRequest usual;
-    suit(request.densify_percent, usual.densify_percent, 0.1);
-    suit(request.max_growth, usual.max_growth, 4.0);
-    suit(request.max_aspect, usual.max_aspect, 6.0);
-    suit(request.rate_colour, usual.rate_colour,
-         0.012);  // the hull's colours are near; faster ones follow single views
+    request.densify_percent.override_if_unset(0.1);
+    request.max_growth.override_if_unset(4);
+    request.max_aspect.override_if_unset(6);
+    request.rate_colour.override_if_unset(0.012);
     if (request.densify_every > 0)
         request.densify_every = request.densify_from = std::max(1, fit_steps / GrowthsPerRound);
 }
@@ -77,7 +71,7 @@ void grow_often(EditRequest& request, int fit_steps) {
 
 EditRequest restyling(EditRequest request, EditMode mode) {
     if (mode != EditMode::Modify) return request;
-    suit(request.view_strength, EditRequest().view_strength, 1.0);
+    request.view_strength.override_if_unset(1);
     request.view_steps = request.restyle_steps;
     return request;
 }

@@ -57,7 +57,7 @@ nlohmann::ordered_json settings_from(const EditRecipe& recipe) {
         if (!fields.is_object()) continue;
         for (const auto& [field, value] : fields.items()) {
             const auto source = recipe.sources.find(part + "." + field);
-            if (source != recipe.sources.end())
+            if (source != recipe.sources.end() && !value.is_null())
                 list.push_back({{"field", source->first}, {"value", value}, {"source", source->second}});
         }
     }

@@ -62,8 +62,11 @@ EditRecipe recipe_from_json(const nlohmann::ordered_json& json, const std::files
         if (!json[part].is_object())
             throw Error(ErrorCode::InvalidArgument,
                         fmt::format("\"{}\" must be an object of settings", part));
-        fields_from_json(parameters, json[part]);
-        for (const auto& field : json[part].items()) recipe.given.insert(part + ("." + field.key()));
+        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(parameters)>, edit::EditRequest>)
+            edit::read_request(parameters, json[part]);
+        else fields_from_json(parameters, json[part]);
+        for (const auto& [field, value] : json[part].items())
+            if (!value.is_null()) recipe.given.insert(part + ("." + field));
         return true;
     };
     read("job", recipe.job);

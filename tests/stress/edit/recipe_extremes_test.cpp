@@ -45,6 +45,8 @@ edit::EditRequest usual_request(const std::string& method) {
 template <class T> bool set_end(T& value, bool upper, const Range* range) {
     if constexpr (std::is_same_v<T, bool>) {
         value = upper;
+    } else if constexpr (std::is_same_v<T, Overridable>) {
+        value = upper ? range->high : range->low;
     } else if constexpr (std::is_arithmetic_v<T>) {
         if (range != nullptr) value = static_cast<T>(upper ? range->high : range->low);
         else value = upper ? std::numeric_limits<T>::max() : std::numeric_limits<T>::lowest();

@@ -37,7 +37,11 @@ edit::EditMode mode_of(const std::string& source, const std::string& prompt, con
 template <class T> T changed(const T& value) {
     if constexpr (std::is_same_v<T, bool>) return !value;
     else if constexpr (std::is_same_v<T, std::string>) return value + "x";
-    else if constexpr (std::is_floating_point_v<T>) return value > 0 ? value * T(0.9) : T(0.25);
+    else if constexpr (std::is_same_v<T, Overridable>) {
+        T other = value;
+        other = changed(static_cast<double>(value));
+        return other;
+    } else if constexpr (std::is_floating_point_v<T>) return value > 0 ? value * T(0.9) : T(0.25);
     else return value + 1;
 }
 
@@ -236,6 +240,63 @@ DOCTEST_TEST_CASE("what gets another shape has rounds of its own; what is set wi
     DOCTEST_CHECK(edit::restyling(usual, EditMode::Replace).view_steps == usual.view_steps);
     request.view_strength = 0.5;
     DOCTEST_CHECK(edit::loop_request(request, EditMode::Modify, true, true).view_strength == 0.5);
+}
+
+namespace {
+
+/// Sets every number that the loop may override to its default.
+EditRequest with_defaults_set() {
+    EditRequest request;
+    EditRequest::visit_fields(request, [](const char*, auto& value, const char*, const auto&...) {
+        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, Overridable>)
+            value = static_cast<double>(value);
+    });
+    return request;
+}
+
+nlohmann::ordered_json overridable_fields(const EditRequest& request) {
+    nlohmann::ordered_json json;
+    EditRequest::visit_fields(request, [&](const char* name, const auto& value, const char*, const auto&...) {
+        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, Overridable>)
+            json[name] = static_cast<double>(value);
+    });
+    return json;
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("a number that is set to its default stays there, whatever suits the edit") {
+    const auto request = with_defaults_set();
+    const auto defaults = overridable_fields(EditRequest{});
+    DOCTEST_CHECK(defaults.size() == 11);
+    DOCTEST_CHECK(overridable_fields(edit::loop_request(request, edit::EditMode::Replace, true)) == defaults);
+    DOCTEST_CHECK(overridable_fields(edit::loop_request(request, edit::EditMode::Modify, true, true)) ==
+                  defaults);
+    DOCTEST_CHECK(overridable_fields(edit::loop_request({}, edit::EditMode::Replace, true)) != defaults);
+    EditRequest one;
+    one.colour_coupling = 0.9;
+    const auto kept = edit::loop_request(one, edit::EditMode::Replace, true);
+    DOCTEST_CHECK(kept.colour_coupling == 0.9);
+    DOCTEST_CHECK(kept.geometry_share == 1);
+}
+
+DOCTEST_TEST_CASE("JSON tells numbers that were set from those that were not") {
+    const auto unset = fields_to_json(EditRequest{}), set = fields_to_json(with_defaults_set());
+    DOCTEST_CHECK(unset["colour_coupling"].is_null());
+    DOCTEST_CHECK(set["colour_coupling"] == 0.9);
+    EditRequest request;
+    edit::read_request(request, set);
+    DOCTEST_CHECK(request.colour_coupling.is_set());
+    edit::read_request(request, unset);
+    DOCTEST_CHECK(!request.colour_coupling.is_set());
+    DOCTEST_CHECK(request.colour_coupling == 0.9);
+    // Versions with "polish_steps" wrote every number.
+    auto earlier = set;
+    earlier["polish_steps"] = 0;
+    earlier["max_growth"] = 3;
+    edit::read_request(request, earlier);
+    DOCTEST_CHECK(!request.colour_coupling.is_set());
+    DOCTEST_CHECK(request.max_growth.is_set());
 }
 
 DOCTEST_TEST_CASE("the sentence before an edit lacks what the edit brings") {

@@ -283,7 +283,8 @@ template <class T> void change(T& value, double low, double high) {
     if constexpr (std::is_same_v<T, bool>) value = !value;
     else if constexpr (std::is_same_v<T, int>)
         value = value * 2 <= high ? value * 2 + 1 : static_cast<int>(low) + 1;
-    else if constexpr (std::is_same_v<T, double>) value = value * 2 <= high ? value * 2 + 0.125 : low + 0.125;
+    else if constexpr (std::is_same_v<T, double> || std::is_same_v<T, Overridable>)
+        value = value * 2 <= high ? value * 2 + 0.125 : low + 0.125;
 }
 
 }  // namespace

@@ -12,6 +12,7 @@ namespace {
 
 using namespace gse;
 using namespace gse::pipeline;
+using Json = nlohmann::ordered_json;
 
 neural::ModelProfile wide_profile() {
     return {neural::ModelKind::Sd1,
@@ -82,6 +83,30 @@ DOCTEST_TEST_CASE("model settings: what a recipe's file names was given, also wh
     DOCTEST_CHECK(recipe.request.iterations == 4000);
     write_file(path, recipe_to_json(recipe).dump());
     DOCTEST_CHECK(read_recipe(path).attention.steps == 7);
+}
+
+DOCTEST_TEST_CASE("model settings: a value that a recipe or a user sets to the program's default counts") {
+    const Json sparse{{"version", 1}, {"request", {{"colour_coupling", 0.9}}}};
+    auto recipe = recipe_from_json(sparse, {});
+    DOCTEST_CHECK(recipe.request.colour_coupling.is_set());
+    apply_profile({}, recipe, recipe.given);
+    DOCTEST_CHECK(listed(recipe, "request.colour_coupling") == "0.9 from user");
+    DOCTEST_CHECK(recipe_from_json(recipe_to_json(recipe), {}).request.colour_coupling.is_set());
+    // What nobody set is not said to be set, and comes back as it was.
+    const auto plain = recipe_from_json(recipe_to_json({}), {});
+    DOCTEST_CHECK(!plain.request.colour_coupling.is_set());
+    DOCTEST_CHECK(!plain.given.contains("request.colour_coupling"));
+    DOCTEST_CHECK(plain.given.contains("request.iterations"));
+    // The window: a user's value at the default is a change of what was not set.
+    EditRecipe chosen;
+    chosen.request.max_aspect = EditRecipe{}.request.max_aspect * 1.0;
+    DOCTEST_CHECK(changed_settings(chosen, {}) == std::set<std::string>{"request.max_aspect"});
+    // A model that states a value gives way to one that states none.
+    EditRecipe stating;
+    stating.request.geometry_share = 1;
+    auto request = stating.request;
+    move_defaults(request, stating.request, edit::EditRequest{});
+    DOCTEST_CHECK(!request.geometry_share.is_set());
 }
 
 DOCTEST_TEST_CASE("model settings: with another model, only what nobody changed moves on") {
