@@ -18,8 +18,11 @@
 #include "engine/base/random.h"
 #include "engine/edit/interfaces/stage_timer.h"
 #include "engine/edit/optimise/dynamic_mask.h"
+#include "engine/edit/optimise/edit_base.h"
 #include "engine/edit/optimise/edit_checks.h"
+#include "engine/edit/optimise/guided_gradient.h"
 #include "engine/edit/optimise/preservation_loss.h"
+#include "engine/edit/optimise/view_cycle.h"
 #include "engine/edit/optimise/working_set.h"
 #include "engine/edit/placement/placement_volume.h"
 #include "engine/edit/request/edit_strength.h"
@@ -32,8 +35,7 @@
 namespace gse::edit {
 namespace {
 
-constexpr float SeenLabel = 0.5f;             // share of a pixel that the label must cover to be in a mask
-constexpr std::size_t CalibrationSteps = 20;  // method 2.5
+constexpr float SeenLabel = 0.5f;            // share of a pixel that the label must cover to be in a mask
 constexpr std::array LooksAgain{0.5, 0.75};  // shares of the iterations after which new splats are looked for
 constexpr double LeastLeft = 0.15;  // of the new splats; fewer: the model does not see the new thing yet
 constexpr double FadedLogit =
@@ -48,120 +50,119 @@ constexpr double SnapshotShare =
 /// driven to black must be able to come back. WorkingSet keeps them from going further.
 constexpr float TrainingColourSlope = 1.0f;
 
-double norm(const Image& image) {
-    double sum = 0;
-    for (const float value : image.data) sum += static_cast<double>(value) * value;
-    return std::sqrt(sum);
-}
-
 /// True when a render of 0-or-1 values shows any row that has a 1.
 bool shows_any(const Image& seen) {
     return std::any_of(seen.data.begin(), seen.data.end(), [](float value) { return value > 0; });
 }
 
-bool finite(const Image& image) {
-    return std::all_of(image.data.begin(), image.data.end(),
-                       [](float value) { return std::isfinite(value); });
+/// The label without rows that cannot be drawn. Throws Error where nothing is left to edit.
+std::vector<std::uint8_t> labelled(const EditBase& base, const EditPlan& plan) {
+    GSE_CHECK_EQ(plan.label.size(), base.set.size());
+    auto label = base.editable(plan.label);
+    if (plan.seeds.size() == 0 &&
+        std::none_of(label.begin(), label.end(), [](std::uint8_t bit) { return bit != 0; }))
+        throw Error(ErrorCode::InvalidArgument, "nothing is labelled, so there is nothing to edit",
+                    "name something the scene shows, or lower tau");
+    return label;
 }
 
-/// Draws views without replacement, cycle after cycle.
-class ViewCycle {
-public:
-    explicit ViewCycle(std::uint64_t seed) : random_(seed) {}
-    /// From here on these views, none of them drawn yet.
-    void begin(std::vector<std::size_t> views) {
-        views_ = std::move(views);
-        position_ = 0;
-    }
-    std::size_t next() {
-        if (position_ == 0)
-            for (std::size_t i = views_.size(); i > 1; --i)
-                std::swap(views_[i - 1], views_[random_.below(i)]);
-        const std::size_t view = views_[position_];
-        position_ = (position_ + 1) % views_.size();
-        return view;
-    }
-
-private:
-    std::vector<std::size_t> views_;
-    Random random_;
-    std::size_t position_ = 0;
-};
-
-/// Seconds per stage of the loop.
-struct StageSeconds {
-    double originals = 0, render = 0, preserve = 0, guidance = 0, backward = 0, optimise = 0, densify = 0,
-           snapshot = 0, dynamic_mask = 0;
-};
-
-/// What is edited: the rows as they came in and as they are drawn, and which of them may be worked with.
-struct EditBase {
-    const GaussianSet& set;
-    GaussianSet drawn;
-    std::vector<std::uint8_t> usable;
-
-    explicit EditBase(const GaussianSet& base)
-        : set(base), drawn(drawable(base)), usable(usable_rows(base)) {}
-
-    /// The label without rows that cannot be drawn.
-    std::vector<std::uint8_t> editable(std::vector<std::uint8_t> label) const {
-        for (std::size_t row = 0; row < label.size(); ++row)
-            label[row] = label[row] != 0 && usable[row] != 0 ? 1 : 0;
-        return label;
-    }
-};
+}  // namespace
 
 /// Everything one run keeps between iterations.
-class Loop {
+class Optimiser::Run {
 public:
-    Loop(const EditBase& base, const EditPlan& plan, const EditRequest& request, const EditTools& tools)
-        : base_(base), plan_(plan), label_(base.editable(plan.label)),
+    Run(const GaussianSet& base, const EditPlan& plan, const EditRequest& request, const EditTools& tools)
+        : base_(base), plan_(plan), label_(labelled(base_, plan)),
           request_(loop_request(request, plan.mode, tools.views != nullptr,
                                 tools.views != nullptr && tools.views->supports_appearance_editing())),
-          tools_(tools), set_(base.drawn, label_, plan.seeds, request_, camera_extent(plan.views)),
+          tools_(tools), set_(base_.drawn, label_, plan.seeds, request_, camera_extent(plan.views)),
           preservation_({request.l1, request.ssim, request.preserve}), fit_(FitWeights),
+          gradient_of_guidance_(tools.guidance, request_),
           masks_(plan, request_, tools.word, tools.attention, tools.segmenter), cycle_(request.seed),
           rest_(plan.views.size(), request.early_stop_change),
           pictures_(tools.rasterizer.view_session(plan.views.size(), tools.view_bytes)),
           random_(Random::stream(request.seed, 17)) {
         GSE_CHECK_EQ(plan.masks.size(), plan.views.size());
-        if (tools.start != nullptr) set_.resume(base.drawn, *tools.start);
+        if (tools.start != nullptr) result_.iterations = tools.start->iteration;
+        if (tools.start != nullptr) set_.resume(base_.drawn, *tools.start);
         render_originals();
         settings_.negative_colour_slope = TrainingColourSlope;
         if (tools.views == nullptr) return;
         if (round_plan(request_, plan.mode).anew && tools.attention != nullptr)
             shapes_.emplace(plan_, request_, tools.word, *tools.attention);
-        phase_.emplace(plan_, request_, tools, originals_, masks_, shapes_ ? &*shapes_ : nullptr);
+        phase_.emplace(plan_, request_, tools_, originals_, masks_, shapes_ ? &*shapes_ : nullptr);
     }
 
-    const std::vector<std::uint8_t>& label() const { return label_; }
+    std::optional<ViewTargets> draw_views() {
+        GSE_CHECK(phase_);
+        guarded([this] {
+            prepare();
+            ended_ = !phase_->has_views() && !begin_step();
+        });
+        return ended_ ? std::nullopt : std::optional(phase_->sheet());
+    }
 
-    EditResult run() {
-        EditResult result;
-        if (tools_.start != nullptr) result.iterations = tools_.start->iteration;
-        try {
-            const auto views = visible_views();
-            if (views.empty())
-                throw Error(ErrorCode::InvalidArgument, "no labelled splat is visible in any view",
-                            "correct the label, or choose views that show it");
-            begin_with(views);
-            while (result.iterations < request_.iterations && advance(result)) {}
-        } catch (const std::bad_alloc&) {
-            keep_reached(result, out_of_memory());
-        } catch (const OutOfMemory& shortage) { keep_reached(result, shortage); }
-        finish(result);
-        return result;
+    EditResult fit() {
+        guarded([this] {
+            prepare();
+            if (phase_) phase_->show_new_sheet();
+            while (!ended_ && result_.iterations < request_.iterations && advance()) {}
+        });
+        finish();
+        apply_strength(base_.set, request_.strength, result_);
+        check_result();
+        return std::move(result_);
     }
 
 private:
-    /// One iteration and what belongs to it; false when it was the last.
-    bool advance(EditResult& result) {
-        const int iteration = result.iterations;
-        if (tools_.new_label) take_label(result);
-        if (tools_.job.stop_requested() || !iterate(iteration, result)) {
-            result.stopped = !result.failure;
+    /// Runs a part of the edit. Where the memory runs out, what was reached is kept and the edit ends; throws
+    /// OutOfMemory where nothing was reached.
+    template <class Part> void guarded(Part&& part) {
+        try {
+            part();
+        } catch (const std::bad_alloc&) {
+            keep_reached(out_of_memory());
+        } catch (const OutOfMemory& shortage) { keep_reached(shortage); }
+    }
+
+    /// Picks the views that the edit is seen in, once.
+    void prepare() {
+        if (prepared_) return;
+        const auto views = visible_views();
+        if (views.empty())
+            throw Error(ErrorCode::InvalidArgument, "no labelled splat is visible in any view",
+                        "correct the label, or choose views that show it");
+        begin_with(views);
+        prepared_ = true;
+    }
+
+    /// What comes before a step: a corrected label, the stop request, redrawn views. False ends the edit.
+    bool begin_step() {
+        if (begun_) return true;
+        if (tools_.new_label) take_label(result_);
+        result_.stopped = tools_.job.stop_requested();
+        return !result_.stopped && survives([this] { redraw(result_.iterations); });
+    }
+
+    /// Whether the part went through. An error that ends it is noted, or thrown where nothing was reached.
+    template <class Part> bool survives(Part&& part) {
+        try {
+            part();
+            return true;
+        } catch (const Error& error) {
+            result_.stopped = error.code() == ErrorCode::Cancelled;
+            if (result_.stopped) return false;
+            if (result_.history.empty()) throw;
+            result_.failure = error;
             return false;
         }
+    }
+
+    /// One iteration and what belongs to it; false when it was the last.
+    bool advance() {
+        EditResult& result = result_;
+        const int iteration = result.iterations;
+        if (!begin_step() || !iterate(iteration, result)) return false;
         result.iterations = iteration + 1;
         if (looks_again(iteration)) look_again(iteration, result);
         const IterationRecord& record = result.history.back();
@@ -189,9 +190,10 @@ private:
     }
 
     /// The memory ran out: what the loop alone needs goes, so that what was reached can be put together.
-    void keep_reached(EditResult& result, const OutOfMemory& shortage) {
-        if (result.iterations == 0) throw shortage;
-        result.shortage = shortage;
+    void keep_reached(const OutOfMemory& shortage) {
+        if (result_.iterations == 0) throw shortage;
+        ended_ = true;
+        result_.shortage = shortage;
         originals_ = {};
         for (Image* image : {&shown_, &gradient_, &label_seen_}) *image = {};
     }
@@ -250,13 +252,32 @@ private:
         draw_only(phase_ ? phase_->fitted() : visible);
     }
 
-    /// Has views redrawn where a round begins, and does what the artist says of them; a new shape grows anew
-    /// from each round: what was fitted to pictures that contradict each other is of their mixed colours.
-    void begin_round(int iteration, IterationRecord& record) {
-        const int before = phase_->round();
-        if (phase_->ready(iteration, spans(set_.rows()), set_.unlabelled(), settings_, record.guidance))
-            draw_only(phase_->fitted());
-        if (!shapes_ || phase_->round() == before) return;
+    /// The views that were fitted to and the round before the views of an iteration were redrawn, and what
+    /// the model told of them.
+    struct Redrawn {
+        std::vector<std::size_t> fitted_before;
+        int round_before;
+        std::map<std::string, double> scalars;
+    };
+
+    /// Has views redrawn where a round begins.
+    void redraw(int iteration) {
+        if (!phase_) return;
+        Redrawn redrawn{phase_->fitted(), phase_->round(), {}};
+        if (phase_->begins(iteration))
+            redrawn.scalars = phase_->redraw(iteration, spans(set_.rows()), set_.unlabelled(), settings_);
+        begun_ = std::move(redrawn);
+    }
+
+    /// Does what the artist says of redrawn views; a new shape grows anew from each round: what was fitted to
+    /// pictures that contradict each other is of their mixed colours.
+    void begin_round(IterationRecord& record) {
+        const Redrawn redrawn = std::move(*begun_);
+        record.guidance = redrawn.scalars;
+        phase_->show_new_sheet();
+        phase_->take_orders();
+        if (phase_->fitted() != redrawn.fitted_before) draw_only(phase_->fitted());
+        if (!shapes_ || phase_->round() == redrawn.round_before) return;
         const auto seeds =
             shapes_->seeds(phase_->found(), bounds_of(plan_.room, plan_.seeds), set_.rows().sh_degree);
         if (seeds.size() > 0) return set_.plant(seeds, phase_->hidden(set_.rows().sh_degree), FadedLogit);
@@ -287,15 +308,9 @@ private:
     bool iterate(int iteration, EditResult& result) {
         IterationRecord record;
         record.iteration = iteration;
-        try {
-            if (phase_) begin_round(iteration, record);
-        } catch (const Error& error) {
-            if (error.code() != ErrorCode::Cancelled) {
-                if (result.history.empty()) throw;  // nothing was reached yet
-                result.failure = error;
-            }
-            return false;
-        }
+        const bool begins = !phase_ || survives([&] { begin_round(record); });
+        begun_.reset();
+        if (!begins) return false;
         const std::size_t view = record.view = cycle_.next();
         {
             const StageTimer timer(seconds_.render);
@@ -315,13 +330,7 @@ private:
                                                                  masks_.mask(view), gradient_);
             record.preservation_norm = norm(gradient_);
         }
-        try {
-            const StageTimer timer(seconds_.guidance);
-            record.skipped = !phase_ && !add_guidance(iteration, view, record);
-        } catch (const Error& error) {
-            if (error.code() != ErrorCode::Cancelled) throw;
-            return false;
-        }
+        if (!phase_ && !follow_guidance(iteration, view, record)) return false;
         skipped_in_a_row_ = record.skipped ? skipped_in_a_row_ + 1 : 0;
         if (record.skipped) ++result.skipped_steps;
         else record.anchor = step(iteration);
@@ -436,8 +445,9 @@ private:
         render(view);  // for backward()
     }
 
-    /// Adds the gated and calibrated guidance gradient; false when it is not finite, and then adds nothing.
-    bool add_guidance(int iteration, std::size_t view, IterationRecord& record) {
+    /// Adds the guidance's gradient; false when the guidance was stopped.
+    bool follow_guidance(int iteration, std::size_t view, IterationRecord& record) {
+        const StageTimer timer(seconds_.guidance);
         const GuidanceInput input{
             shown_,
             plan_.views[view],
@@ -447,45 +457,15 @@ private:
             request_.iterations,
             Random::stream(request_.seed, 1000 + static_cast<std::uint64_t>(iteration)).next(),
             &originals_[view]};
-        GuidanceOutput guidance = tools_.guidance->evaluate(input);
-        std::erase_if(guidance.scalars, [](const auto& scalar) { return !std::isfinite(scalar.second); });
-        record.guidance = std::move(guidance.scalars);
-        GSE_CHECK_EQ(guidance.gradient.data.size(), gradient_.data.size());
-        if (!finite(guidance.gradient)) return false;
-        gate(view, guidance.gradient);
-        record.guidance_norm = norm(guidance.gradient);
-        const auto factor = static_cast<float>(calibrated_weight(record.guidance_norm));
-        for (std::size_t i = 0; i < gradient_.data.size(); ++i)
-            gradient_.data[i] += factor * guidance.gradient.data[i];
+        try {
+            record.skipped =
+                !gradient_of_guidance_.add(input, output_.colour, masks_.mask(view), gradient_, record);
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::Cancelled) throw;
+            result_.stopped = true;
+            return false;
+        }
         return true;
-    }
-
-    /// Takes away what would act outside the mask, and what would push a colour further beyond [0,1].
-    void gate(std::size_t view, Image& gradient) const {
-        for (std::size_t i = 0; i < gradient.data.size(); ++i) {
-            const bool outside = request_.gate_guidance && masks_.mask(view).data[i / 3] == 0;
-            const bool beyond = (output_.colour.data[i] > 1 && gradient.data[i] < 0) ||
-                                (output_.colour.data[i] < 0 && gradient.data[i] > 0);
-            if (outside || beyond) gradient.data[i] = 0;
-        }
-    }
-
-    /// Brings the guidance gradient to the norm that the preservation loss has when every pixel differs, so
-    /// that neither drowns the other whatever the model's scale is (method 2.5). The median of the first
-    /// steps, then fixed: one outlier must not decide.
-    double calibrated_weight(double guidance_norm) {
-        if (calibration_.size() < CalibrationSteps && guidance_norm > 0) {
-            calibration_.push_back(guidance_norm);
-            std::vector<double> sorted = calibration_;
-            std::sort(sorted.begin(), sorted.end());
-            // Without preservation the default one is the measure, so that the anchors keep their relative
-            // strength.
-            const double weight = request_.preserve * request_.l1;
-            const double full = (weight > 0 ? weight : EditRequest{}.preserve * EditRequest{}.l1) /
-                                std::sqrt(static_cast<double>(gradient_.data.size()));
-            guidance_scale_ = request_.guidance_weight * std::max(full, 1e-6) / sorted[sorted.size() / 2];
-        }
-        return guidance_scale_;
     }
 
     void densify(int iteration, EditResult& result) {
@@ -500,7 +480,8 @@ private:
         result.pruned += count.pruned;
     }
 
-    void finish(EditResult& result) {
+    void finish() {
+        EditResult& result = result_;
         end_steps();
         const EditSnapshot reached = set_.snapshot(base_.set, result.iterations);
         result.set = reached.materialise();
@@ -509,7 +490,7 @@ private:
         result.generation = reached.generation();
         result.hidden = reached.hidden();
         result.skipped_rows = set_.skipped_rows();
-        result.guidance_scale = guidance_scale_;
+        result.guidance_scale = gradient_of_guidance_.scale();
         if (phase_) {
             result.redrawn_views = phase_->redrawn();
             if (!result.shortage && !result.stopped)
@@ -527,13 +508,33 @@ private:
         result.continued_pictures = work_.continued;
     }
 
-    const EditBase& base_;
+    /// Counts what must not be, and what cannot be drawn.
+    void check_result() {
+        result_.changed_outside_label = count_changed_outside(base_.set, label_, result_);
+        GSE_CHECK_EQ(result_.changed_outside_label, std::size_t{0});
+        result_.nonfinite = count_nonfinite(result_);
+        const auto unusable = [](const std::vector<std::uint8_t>& usable) {
+            return static_cast<std::size_t>(std::count(usable.begin(), usable.end(), std::uint8_t{0}));
+        };
+        result_.unusable_before = unusable(base_.usable);
+        result_.unusable = unusable(usable_rows(result_.set));
+        if (result_.skipped_steps > 0)
+            log::warning("{} guidance steps were not finite and left out", result_.skipped_steps);
+    }
+
+    struct StageSeconds {
+        double originals = 0, render = 0, preserve = 0, guidance = 0, backward = 0, optimise = 0, densify = 0,
+               snapshot = 0, dynamic_mask = 0;
+    };
+
+    const EditBase base_;
     const EditPlan& plan_;
     std::vector<std::uint8_t> label_;  // what may change now
     const EditRequest request_;
-    const EditTools& tools_;
+    const EditTools tools_;
     WorkingSet set_;
     PreservationLoss preservation_, fit_;  // of steps by a gradient, and of those to redrawn views
+    GuidedGradient gradient_of_guidance_;
     DynamicMasks masks_;
     std::optional<ShapeFinder> shapes_;  // of view guidance that draws a thing anew
     Mask no_mask_;
@@ -549,14 +550,13 @@ private:
     Image gradient_;
     Image shown_, label_seen_;
     std::size_t skipped_in_a_row_ = 0;
-    std::vector<double> calibration_;  // norms of the first guidance gradients
-    double guidance_scale_ = 0;
     StageSeconds seconds_;
     raster::ViewSessionWork work_;
     double last_snapshot_ = wall_seconds(), snapshot_cost_ = 0;
+    EditResult result_;
+    std::optional<Redrawn> begun_;  // views of the next iteration, which were redrawn already
+    bool prepared_ = false, ended_ = false;
 };
-
-}  // namespace
 
 double camera_extent(const std::vector<View>& views) {
     if (views.empty()) return 1;
@@ -567,30 +567,19 @@ double camera_extent(const std::vector<View>& views) {
     return largest > 0 ? 1.1 * largest : 1;
 }
 
+Optimiser::Optimiser(const GaussianSet& base, const EditPlan& plan, const EditRequest& request,
+                     const EditTools& tools)
+    : run_(std::make_unique<Run>(base, plan, request, tools)) {}
+
+Optimiser::~Optimiser() = default;
+
+std::optional<ViewTargets> Optimiser::draw_views() { return run_->draw_views(); }
+
+EditResult Optimiser::fit() { return run_->fit(); }
+
 EditResult run_edit(const GaussianSet& base, const EditPlan& plan, const EditRequest& request,
                     const EditTools& tools) {
-    GSE_CHECK_EQ(plan.label.size(), base.size());
-    const EditBase drawn_base(base);
-    const auto label = drawn_base.editable(plan.label);
-    const bool nothing = plan.seeds.size() == 0 &&
-                         std::none_of(label.begin(), label.end(), [](std::uint8_t bit) { return bit != 0; });
-    if (nothing)
-        throw Error(ErrorCode::InvalidArgument, "nothing is labelled, so there is nothing to edit",
-                    "name something the scene shows, or lower tau");
-    Loop loop(drawn_base, plan, request, tools);
-    EditResult result = loop.run();
-    apply_strength(base, request.strength, result);
-    result.changed_outside_label = count_changed_outside(base, loop.label(), result);
-    GSE_CHECK_EQ(result.changed_outside_label, std::size_t{0});
-    result.nonfinite = count_nonfinite(result);
-    const auto unusable = [](const std::vector<std::uint8_t>& usable) {
-        return static_cast<std::size_t>(std::count(usable.begin(), usable.end(), std::uint8_t{0}));
-    };
-    result.unusable_before = unusable(drawn_base.usable);
-    result.unusable = unusable(usable_rows(result.set));
-    if (result.skipped_steps > 0)
-        log::warning("{} guidance steps were not finite and left out", result.skipped_steps);
-    return result;
+    return Optimiser(base, plan, request, tools).fit();
 }
 
 }  // namespace gse::edit

@@ -114,12 +114,32 @@ struct EditTools {
     std::string redraw_key = {};  // of what `views` is made from: a round begun with another key is redrawn
 };
 
-/// Runs the edit. Rows outside the label come back bit-identical (checked at the end), and so do rows that
-/// cannot be drawn, labelled or not: they are in no picture and no loss. A step whose guidance is not finite
-/// is left out. When that goes on, or the memory runs out in the middle, the result is what was reached, with
-/// `failure` or `shortage`. The same plan, request and seed give the same bytes for any number of threads of
-/// one instruction set (tests/agree/edit, tests/stress/edit). Throws Error when no labelled row is visible in
-/// any view, and when the guidance was finite in no step.
+/// One edit, in steps that a caller can take apart. Rows outside the label come back bit-identical (checked
+/// at the end), and so do rows that cannot be drawn, labelled or not: they are in no picture and no loss. A
+/// step whose guidance is not finite is left out. When that goes on, or the memory runs out in the middle,
+/// the result is what was reached, with `failure` or `shortage`. The same plan, request and seed give the
+/// same bytes for any number of threads of one instruction set (tests/agree/edit, tests/stress/edit).
+class Optimiser {
+public:
+    /// Refers to base and plan, and to what the tools refer to. Throws Error (InvalidArgument) where nothing
+    /// is labelled.
+    Optimiser(const GaussianSet& base, const EditPlan& plan, const EditRequest& request,
+              const EditTools& tools);
+    ~Optimiser();
+    /// Where views lead: has those of the first round redrawn, or takes them from EditTools::start, and
+    /// returns them before anything is fitted. None where the edit was stopped; fit() then returns at once.
+    /// Throws Error when no labelled row is visible in any view, and as the view editor does.
+    std::optional<ViewTargets> draw_views();
+    /// Runs the edit, from the drawn views on where they are; once. Throws Error as draw_views() does, and
+    /// when the guidance was finite in no step.
+    EditResult fit();
+
+private:
+    class Run;
+    std::unique_ptr<Run> run_;
+};
+
+/// Runs a whole edit: Optimiser::fit().
 EditResult run_edit(const GaussianSet& base, const EditPlan& plan, const EditRequest& request,
                     const EditTools& tools);
 

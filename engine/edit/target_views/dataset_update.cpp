@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/base/error.h"
 #include "engine/base/log.h"
@@ -148,18 +149,9 @@ std::map<std::string, double> DatasetUpdate::redraw(int iteration, const Gaussia
     return scalars;
 }
 
-bool DatasetUpdate::ready(int iteration, const GaussianSpans& rows, const GaussianSpans& unlabelled,
-                          const raster::Settings& settings, std::map<std::string, double>& scalars) {
-    const auto before = state_;
-    if (rounds_.begins(iteration)) scalars = redraw(iteration, rows, unlabelled, settings);
-    if (tools_.target_orders) take_orders();
-    if (state_ == before) return false;
-    const std::vector<bool> none(state_->views.size(), false);
-    return (before ? before->dropped : none) != state_->dropped;
-}
-
-/// As long as there are orders: an artist may think about what came of the last ones.
+/// An artist may think about what came of the last orders before giving others.
 void DatasetUpdate::take_orders() {
+    if (!tools_.target_orders) return;
     for (auto orders = tools_.target_orders(); !orders.empty(); orders = tools_.target_orders()) {
         auto next = std::make_shared<RoundState>(*state_);
         bool changed = false;
@@ -264,13 +256,17 @@ void DatasetUpdate::begin_sheet() {
                                 state_->dropped[i]});
         refresh_sheet(i);
     }
-    show_sheet();
+    new_sheet_ = true;
 }
 
 void DatasetUpdate::refresh_sheet(std::size_t index) {
     Image target = rounds_.target(state_->views[index]);
     for (auto& value : target.data) value = std::clamp(value, 0.0f, 1.0f);
     sheet_.views[index].after = shown_copy(target);
+}
+
+void DatasetUpdate::show_new_sheet() {
+    if (std::exchange(new_sheet_, false)) show_sheet();
 }
 
 void DatasetUpdate::show_sheet() const {

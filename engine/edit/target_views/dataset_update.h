@@ -28,12 +28,21 @@ public:
     void choose(const std::vector<std::size_t>& visible);
     /// Views of the plan that the fit uses, ascending; at least one.
     std::vector<std::size_t> fitted() const;
-    /// Before an iteration: has the views redrawn where a round begins, as the rows show them now (`scalars`
-    /// gets what the model tells; a new thing is laid over what the rows of `unlabelled` show), and does what
-    /// the artist says. The last view that is used is not dropped, and one that cannot be redrawn once more
-    /// stays as it is. True when the fit uses other views than before. Throws Error (Cancelled, Model).
-    bool ready(int iteration, const GaussianSpans& rows, const GaussianSpans& unlabelled,
-               const raster::Settings& settings, std::map<std::string, double>& scalars);
+    /// Whether a round begins with this iteration.
+    bool begins(int iteration) const { return rounds_.begins(iteration); }
+    /// Has the views redrawn as the rows show them now; a new thing is laid over what the rows of
+    /// `unlabelled` show. Returns what the model tells. Throws Error (Cancelled, Model).
+    std::map<std::string, double> redraw(int iteration, const GaussianSpans& rows,
+                                         const GaussianSpans& unlabelled, const raster::Settings& settings);
+    /// Does what the artist says, as long as there are orders. The last view that is used is not dropped, and
+    /// one that cannot be redrawn once more stays as it is. Throws Error (Cancelled).
+    void take_orders();
+    /// Whether a round was redrawn, or taken over from an earlier run.
+    bool has_views() const { return state_ != nullptr; }
+    /// The round's views before and after.
+    const ViewTargets& sheet() const { return sheet_; }
+    /// Hands the sheet of a round out, once.
+    void show_new_sheet();
     int round() const { return rounds_.round(); }  // -1 = none has begun
     /// Rows for the holes that a thing leaves when another takes its place, as the round's views show them
     /// (ground_hole_fill()).
@@ -57,13 +66,10 @@ public:
     double seconds() const { return seconds_; }                                  // that redrawing took
 
 private:
-    std::map<std::string, double> redraw(int iteration, const GaussianSpans& rows,
-                                         const GaussianSpans& unlabelled, const raster::Settings& settings);
     EditView begin_view(std::size_t view, const GaussianSpans& rows, const GaussianSpans& unlabelled,
                         const raster::Settings& settings);
     void draw(const GaussianSpans& rows, const Camera& camera, const raster::Settings& settings,
               Image& colour, Image& depth);
-    void take_orders();
     bool resumes(const RoundState& start, const std::vector<std::size_t>& visible) const;
     bool follow(const TargetOrder& order, RoundState& next);
     void redo(std::size_t index, RoundState& next);
@@ -83,6 +89,7 @@ private:
     std::shared_ptr<const RoundState> state_;
     std::vector<Image> trust_;  // of the plan's views; empty for what is not fitted
     ViewTargets sheet_;
+    bool new_sheet_ = false;  // it was not handed out yet
     raster::ForwardOutput output_;
     std::size_t redrawn_ = 0;
     double seconds_ = 0;
