@@ -7,6 +7,7 @@
 #include <cctype>
 
 #include "engine/base/error.h"
+#include "engine/edit/request/edit_method.h"
 #include "engine/edit/request/vocabulary.h"
 
 namespace gse::ui {
@@ -64,7 +65,7 @@ std::string problem_of(const edit::EditRequest& request, const SentenceGround& g
     facts.guessed_target = request.target.empty() ? valid.target : std::string();
     if (!facts.source_known && !ground.labelled_by_hand)  // the words to use stand beside the source already
         return unknown_source(valid.source, ground);
-    const auto drawn = request.method == "sds" ? std::vector<std::string>{} : ground.drawn;
+    const auto drawn = edit::method_of(request).draws_views() ? ground.drawn : std::vector<std::string>{};
     try {
         edit::require_known_words(valid, ground.known, drawn, ground.labelled_by_hand);
     } catch (const Error& error) {

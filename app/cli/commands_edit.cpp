@@ -14,6 +14,7 @@
 #include "engine/base/path_text.h"
 #include "engine/base/print.h"
 #include "engine/base/staged_folder.h"
+#include "engine/edit/request/edit_method.h"
 #include "engine/pipeline/models/model_settings.h"
 #include "engine/pipeline/models/tuning_json.h"
 #include "engine/pipeline/report/edit_output.h"
@@ -198,7 +199,7 @@ nlohmann::ordered_json edit_into(const std::filesystem::path& output, const Edit
     job.locate();
     require_search(job, output);
     std::optional<PreviewCheck> gate;
-    if (options.gate && !edit::edits_by_views(job.recipe().request))
+    if (options.gate && !edit::method_of(job.recipe().request).draws_views())
         gate = look_through_gate(job);  // redrawn views are judged anyway
     job.run();
     job.times().begin("export");

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/base/error.h"
+#include "engine/edit/request/edit_method.h"
 #include "engine/pipeline/models/neural_loader.h"
 #include "engine/scene/stack_edits.h"
 
@@ -44,7 +45,7 @@ void EditController::start(std::optional<edit::EditSnapshot> from) {
     recipe_ = recipe;
     EditStart start;
     if (search_.label_drives_edit()) start.label = *workspace_.active_label()->bits;
-    start.shows_preview = models_.settings().gate && !from && !edit::edits_by_views(recipe.request);
+    start.shows_preview = models_.settings().gate && !from && !edit::method_of(recipe.request).draws_views();
     start.reviews = models_.settings().review;
     LiveEdit live;
     live.describe(recipe);

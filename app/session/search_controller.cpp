@@ -14,6 +14,7 @@
 #include "engine/base/error.h"
 #include "engine/base/json.h"
 #include "engine/base/random.h"
+#include "engine/edit/request/edit_method.h"
 #include "engine/edit/request/excluded_views.h"
 #include "engine/edit/request/vocabulary.h"
 #include "engine/pipeline/models/model_settings.h"
@@ -348,7 +349,7 @@ void SearchController::refresh_estimate() {
     PlannedWork work;
     work.loaded = models_.loaded_fits();
     work.located = fitting_job() != nullptr;
-    work.shows_idea = settings.gate && !edit::edits_by_views(request_);
+    work.shows_idea = settings.gate && !edit::method_of(request_).draws_views();
     const bool learned = last_.of(current) && last_.tuning(wanted);
     work.tune_steps = settings.learn_scene && !work.located && !learned ? settings.learning.steps : 0;
     work.rows = current.size();

@@ -6,8 +6,8 @@
 //       f("name", self.member, "Purpose of the member.", Range{low, high});
 //   }
 //
-// The range may be left out. Members are bool, int, std::uint64_t, float, double, Overridable,
-// std::string or a list of texts (std::vector<std::string>).
+// A FieldHelp in place of the text also tags the member's use. The range may be left out. Members are bool,
+// int, std::uint64_t, float, double, Overridable, std::string or a list of texts (std::vector<std::string>).
 #pragma once
 
 #include <cstdint>
@@ -27,6 +27,16 @@ namespace gse {
 struct Range {
     double low = 0;
     double high = 0;
+};
+
+/// Help text of a field, with bits that say what the field is used for, in the struct's own meaning; 0 = for
+/// everything. Visitors that need no tag take it as `const char*`.
+struct FieldHelp {
+    const char* text;
+    unsigned uses = 0;
+
+    constexpr FieldHelp(const char* help, unsigned used_for = 0) : text(help), uses(used_for) {}
+    constexpr operator const char*() const { return text; }
 };
 
 /// A setting that a struct once had: whoever names it is told that it is ignored. A struct P lists them in
@@ -100,8 +110,8 @@ template <class P> void check_fields(const P& parameters) {
     });
 }
 
-/// Sets the fields named in `json`; absent ones keep their value, retired ones are ignored. Throws Error for an
-/// unknown name, a wrong type, or a number that is not finite or out of range. Nothing is set then.
+/// Sets the fields named in `json`; absent ones keep their value, retired ones are ignored. Throws Error for
+/// an unknown name, a wrong type, or a number that is not finite or out of range. Nothing is set then.
 template <class P> void fields_from_json(P& parameters, const nlohmann::ordered_json& json) {
     if (!json.is_object())
         throw Error(ErrorCode::InvalidArgument, "the settings are not an object of names and values");

@@ -7,8 +7,8 @@
 #include <cctype>
 #include <cmath>
 
+#include "engine/edit/request/edit_method.h"
 #include "engine/edit/request/instruction.h"
-#include "engine/edit/request/method_fields.h"
 #include "engine/edit/request/vocabulary.h"
 #include "engine/scene/strength.h"
 #include "ui/commands/guarded.h"
@@ -39,7 +39,6 @@ constexpr std::array<Group, 8> Groups{{{"views", "Views"},
 
 constexpr double LeastStrength = 0;
 constexpr std::array<const char*, 4> Modes{"auto", "modify", "replace", "add"};
-constexpr std::array<const char*, 3> Methods{"auto", "views", "sds"};
 constexpr std::array<const char*, 4> ModeHelp{
     "As the sentence says: what describes the source modifies it, what stands in its place replaces it.",
     "Change what is there: colours and material of the source.",
@@ -157,15 +156,13 @@ void draw_mode(Context& context) {
 }
 
 void draw_method(Context& context) {
-    constexpr const char* help =
-        "auto: views, which come closer in less time.\nviews: the model redraws some views, the scene is "
-        "fitted to "
-        "them.\nsds: the model pulls at every step, the paper's way.";
+    const auto& help = edit::methods_explained();
+    const auto names = edit::method_names();
     int method =
-        static_cast<int>(std::find(Methods.begin(), Methods.end(), context.request.method) - Methods.begin());
+        static_cast<int>(std::find(names.begin(), names.end(), context.request.method) - names.begin());
     row_label(context, "Method", help);
-    if (segmented(context, "prompt.method", Methods, method)) {
-        context.request.method = Methods[static_cast<std::size_t>(method)];
+    if (segmented(context, "prompt.method", names, method)) {
+        context.request.method = names[static_cast<std::size_t>(method)];
         context.request_changed = true;
     }
     tooltip(help);
@@ -186,7 +183,7 @@ std::string quality_help(const Estimate& estimate) {
 }
 
 void draw_quality(Context& context) {
-    if (!edit::edits_by_views(context.request)) return;
+    if (!edit::method_of(context.request).draws_views()) return;
     const auto& names = edit::Qualities;
     const std::string help = quality_help(context.model.estimate);
     int quality =
@@ -203,22 +200,15 @@ void draw_quality(Context& context) {
 void draw_iterations(Context& context) {
     auto& request = context.request;
     const auto mode = edit::planned_mode(as_planned(context));
-    const bool by_views = edit::edits_by_views(request);
-    const auto plan = edit::round_plan(request, mode);
-    const std::string help = by_views ? fmt::format(
-                                            "Steps of fitting to the redrawn views: {} round{} of {}. Rounds "
-                                            "and views are under \"All settings\".",
-                                            plan.rounds, plan.rounds == 1 ? "" : "s", plan.fit_steps)
-                                      : "Optimisation steps. More = closer to the sentence, and longer.";
+    const auto& method = edit::method_of(context.request);
+    const std::string help = method.steps_help(request, mode);
     row_label(context, "Iterations", help);
     const int least = 1;
-    int steps = edit::loop_steps(request, mode);
-    if (ImGui::DragInt("##prompt.iterations", &steps, by_views ? 1.0f : 5.0f, least, 100000, "%d",
+    int steps = method.steps(request, mode);
+    const float speed = method.draws_views() ? 1.0f : 5.0f;
+    if (ImGui::DragInt("##prompt.iterations", &steps, speed, least, 100000, "%d",
                        ImGuiSliderFlags_AlwaysClamp)) {
-        if (by_views)
-            (plan.anew ? request.shape_fit_steps : request.fit_steps) =
-                std::max(1, (steps + plan.rounds - 1) / plan.rounds);
-        else request.iterations = steps;
+        method.set_steps(request, mode, steps);
         context.request_changed = true;
     }
     note(context, "prompt.iterations");
@@ -414,8 +404,8 @@ void nothing_before(const char*, bool&) {}
 
 /// Which settings count for nothing with the method that the edit is led by.
 UnusedField unused_by_method(const Context& context) {
-    return [by_views = edit::edits_by_views(context.request)](const char* name) {
-        return edit::why_unused(name, by_views);
+    return [&method = edit::method_of(context.request)](unsigned uses) {
+        return edit::why_unused(method, uses);
     };
 }
 
@@ -495,9 +485,8 @@ void draw_advanced(Context& context) {
                          .text = "Back to the defaults",
                          .tooltip = "All settings below; words and seed stay"}))
         back_to_defaults(context);
-    dim_text(fmt::format(
-        "In brackets: no effect while the edit is led by {}.",
-        edit::edits_by_views(context.request) ? "redrawn views" : "the model's pull (method sds)"));
+    dim_text(fmt::format("In brackets: no effect while the edit is led by {}.",
+                         edit::method_of(context.request).leader()));
     if (!wanted.empty()) return draw_found_settings(context, wanted);
     draw_request_groups(context);
     draw_model_groups(context, true, [](const char*, const char*) { return true; });

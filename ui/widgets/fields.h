@@ -18,12 +18,12 @@ struct FieldRow {
     const char* name;
     const char* help;
     std::optional<Range> range;
-    bool stated = false;           // the default is what the model states, another than the program's
-    std::string_view unused = {};  // why it has no effect now; empty = it has
+    bool stated = false;      // the default is what the model states, another than the program's
+    std::string unused = {};  // why it has no effect now; empty = it has
 };
 
-/// Reason why the field of that name has no effect now; empty = it has one.
-using UnusedField = std::function<std::string_view(const char* name)>;
+/// Reason why fields with these bits of FieldHelp::uses have no effect now; empty = they have one.
+using UnusedField = std::function<std::string(unsigned uses)>;
 
 /// One row each: label with help, control, right click = back to `standard`. True when the value changed.
 bool field_row(Context& context, const FieldRow& row, bool& value, bool standard);
@@ -59,14 +59,14 @@ template <class P, class Wanted, class Before>
 bool field_rows(Context& context, const char* prefix, P& parameters, Wanted&& wanted, Before&& before,
                 const P& standard = program_defaults<P>(), const UnusedField& unused = {}) {
     bool changed = false, shown = true;
-    P::visit_fields(parameters, [&](const char* name, auto& value, const char* help, auto... range) {
+    P::visit_fields(parameters, [&](const char* name, auto& value, const FieldHelp& help, auto... range) {
         using Value = std::remove_reference_t<decltype(value)>;
         before(name, shown);
         if (!shown || !wanted(name, help)) return;
         const auto fallback = value_named<Value>(standard, name);
         FieldRow row{prefix, name, help, std::nullopt};
         row.stated = fallback != value_named<Value>(program_defaults<P>(), name);
-        if (unused) row.unused = unused(name);
+        if (unused) row.unused = unused(help.uses);
         if constexpr (sizeof...(range) == 1) row.range = (range, ...);
         changed |= field_row(context, row, value, fallback);
     });

@@ -6,6 +6,7 @@
 
 #include "engine/base/error.h"
 #include "engine/edit/request/colour_word.h"
+#include "engine/edit/request/edit_method.h"
 #include "engine/edit/search/place_drawing.h"
 #include "engine/edit/target_views/view_round.h"
 #include "engine/pipeline/run/preview_check.h"
@@ -13,7 +14,6 @@
 namespace gse::app {
 namespace {
 
-constexpr double LookAgainRounds = 2;  // over all views, when something is added
 constexpr double UsualFollow = 0.6;
 constexpr int ProbeSteps = 5;
 constexpr double LibrariesMb = 300;  // of torch, until the first load was measured
@@ -23,50 +23,11 @@ double words_of_search(edit::EditMode mode, bool drawn) {
     return mode == edit::EditMode::Add && !drawn ? 2 : 1;
 }
 
-/// Masks that could follow the edit while the loop runs.
-double refreshes(const edit::EditRequest& request, int first_iteration) {
-    if (!request.dynamic_mask || request.iterations <= 0) return 0;
-    const double span = std::max(0.0, 1 - request.dynamic_from) * request.iterations;
-    const double visits = std::min(span, static_cast<double>(request.iterations - first_iteration));
-    const double every = std::max(1.0, request.dynamic_every * request.iterations);
-    return std::min(visits, request.views * std::ceil(span / every));
+/// Work of the model in a whole edit by the job's method.
+edit::MethodWork whole_work(const EditJob& job) {
+    const auto& request = job.recipe().request;
+    return edit::method_of(request).work(request, job.located().mode, 0, job.place_cost().views > 0);
 }
-
-/// Pictures searched to see where something added is.
-double looks_again(const edit::EditRequest& request, edit::EditMode mode) {
-    return mode == edit::EditMode::Add && request.look_again ? LookAgainRounds * request.views : 0;
-}
-
-/// Whether one view is drawn before all others, for the colour of a new thing that the sentence leaves open;
-/// not where the search has drawn it.
-bool draws_key_view(const edit::EditRequest& request, edit::EditMode mode, bool drawn) {
-    if (drawn || !edit::round_plan(request, mode).anew) return false;
-    const auto thing = new_thing(request, mode);
-    return !thing.empty() && !edit::is_described(edit::as_told(request.prompt), thing);
-}
-
-/// Requests to the model by the rounds that begin after an iteration. One that was begun is not begun again.
-struct Redrawing {
-    double views = 0, early = 0;  // pictures of the last round, and of those before it
-    double steps = 0;             // denoising steps of single pictures; those that are not guided count half
-    double pictures() const { return views + early; }
-};
-
-Redrawing redrawing_from(const edit::EditRequest& request, edit::EditMode mode, int first_iteration,
-                         bool drawn) {
-    const auto plan = edit::round_plan(request, mode);
-    Redrawing left;
-    const auto draw = [&](int round, double views) {
-        (round + 1 < plan.rounds ? left.early : left.views) += views;
-        left.steps += views * plan.guided_steps_of(round);
-    };
-    if (first_iteration == 0 && draws_key_view(request, mode, drawn)) draw(0, 1);
-    for (int round = (first_iteration + plan.fit_steps - 1) / plan.fit_steps; round < plan.rounds; ++round)
-        draw(round, plan.views);
-    return left;
-}
-
-bool led_by_views(const EditJob& job) { return edit::edits_by_views(job.recipe().request); }
 
 double tflop_of(const neural::NetworkUse& use) { return use.flop * 1e-12; }
 
@@ -112,13 +73,27 @@ void add_place(Sum& sum, const CostProfile& measured, const edit::EditRequest& r
     sum.add(steps, measured.redraw, measured.redraw_tflop);
 }
 
+/// The work of a method. Rounds before the last count as the last one where they were not measured apart.
+void add_method(Sum& sum, const CostProfile& measured, const edit::MethodWork& left) {
+    sum.add(left.views, std::max(0.0, measured.redraw_view), std::max(0.0, measured.redraw_view_tflop));
+    const bool apart = measured.redraw_early >= 0;
+    sum.add(left.early_views, std::max(0.0, apart ? measured.redraw_early : measured.redraw_view),
+            std::max(0.0, apart ? measured.redraw_early_tflop : measured.redraw_view_tflop));
+    sum.add(left.denoising_steps, measured.redraw, measured.redraw_tflop);
+    sum.add(left.pulls, measured.guidance, measured.guidance_tflop);
+    const double follow = measured.follow >= 0 ? measured.follow : UsualFollow;
+    sum.add(follow * left.refreshed_masks + left.searched_views,
+            measured.refresh >= 0 ? measured.refresh : measured.question, measured.question_tflop);
+}
+
 }  // namespace
 
 Cost estimated_cost(const CostProfile& measured, const edit::EditRequest& asked, const PlannedWork& work) {
-    const bool by_views = edit::edits_by_views(asked);
-    auto request =
-        measured.supports_appearance_editing > 0 && by_views ? edit::restyling(asked, work.mode) : asked;
-    if (by_views && work.mode != edit::EditMode::Modify)
+    const auto& method = edit::method_of(asked);
+    auto request = measured.supports_appearance_editing > 0 && method.draws_views()
+                       ? edit::restyling(asked, work.mode)
+                       : asked;
+    if (method.draws_views() && work.mode != edit::EditMode::Modify)
         request.prompt =
             edit::with_usual_colour(edit::as_told(request.prompt), new_thing(request, work.mode), work.words);
     Sum sum;
@@ -130,22 +105,10 @@ Cost estimated_cost(const CostProfile& measured, const edit::EditRequest& asked,
     sum.add(work.located ? 0 : search, measured.question, measured.question_tflop);
     if (drawn && !work.located) add_place(sum, measured, request);
     if (work.shows_idea) add_idea(sum, measured);
-    const int steps = std::max(0, edit::loop_steps(request, work.mode) - work.first_iteration);
+    const int steps = std::max(0, method.steps(request, work.mode) - work.first_iteration);
     const double size = static_cast<double>(work.rows) / measured.rows;
     sum.add(size, std::max(0.0, measured.begin));
-    if (by_views) {
-        const auto left = redrawing_from(request, work.mode, work.first_iteration, drawn);
-        sum.add(left.views, std::max(0.0, measured.redraw_view), std::max(0.0, measured.redraw_view_tflop));
-        const bool apart = measured.redraw_early >= 0;  // else as in the last round
-        sum.add(left.early, std::max(0.0, apart ? measured.redraw_early : measured.redraw_view),
-                std::max(0.0, apart ? measured.redraw_early_tflop : measured.redraw_view_tflop));
-        sum.add(left.steps, measured.redraw, measured.redraw_tflop);
-    } else {
-        sum.add(steps, measured.guidance, measured.guidance_tflop);
-        const double follow = measured.follow >= 0 ? measured.follow : UsualFollow;
-        sum.add(follow * refreshes(request, work.first_iteration) + looks_again(request, work.mode),
-                measured.refresh >= 0 ? measured.refresh : measured.question, measured.question_tflop);
-    }
+    add_method(sum, measured, method.work(request, work.mode, work.first_iteration, drawn));
     sum.add(steps * size, measured.raster);
     // Before it was seen: every view drawn before and after, which is about a step of the loop.
     sum.add(1,
@@ -218,10 +181,10 @@ double raster_seconds(const edit::EditResult& result) {
 void measure_redrawing(CostProfile& measured, const EditJob& job) {
     const auto& result = job.result();
     const double views = static_cast<double>(result.redrawn_views);
-    const auto all = redrawing_from(job.recipe().request, job.located().mode, 0, job.place_cost().views > 0);
+    const auto all = whole_work(job);
     if (views <= 0 || all.pictures() <= 0) return;
     const double seconds = stage_seconds(result, "guidance") / views;  // of a picture, over all rounds
-    const double steps = all.steps / all.pictures();
+    const double steps = all.denoising_steps / all.pictures();
     if (measured.redraw < 0 || measured.redraw_view < 0) {
         measured.redraw = seconds / steps;
         measured.redraw_view = 0;
@@ -230,8 +193,8 @@ void measure_redrawing(CostProfile& measured, const EditJob& job) {
         return;
     }
     const double early = measured.redraw_early >= 0 ? measured.redraw_early : measured.redraw_view;
-    const double expected =
-        (all.views * measured.redraw_view + all.early * early) / all.pictures() + steps * measured.redraw;
+    const double expected = (all.views * measured.redraw_view + all.early_views * early) / all.pictures() +
+                            steps * measured.redraw;
     if (expected <= 0) return;
     for (auto* part : {&measured.redraw, &measured.redraw_view, &measured.redraw_early})
         if (*part > 0) *part *= seconds / expected;
@@ -242,16 +205,17 @@ void measure_pulling(CostProfile& measured, const EditJob& job, const Edited& ed
     const auto& request = job.recipe().request;
     measured.guidance = stage_seconds(result, "guidance") / steps;
     const auto refreshed = static_cast<double>(result.masks_refreshed);
-    const auto mode = job.located().mode;
-    const double looks =
-        stage_seconds(result, "dynamic_mask") > 0 ? refreshed + looks_again(request, mode) : 0;
+    const double searched = whole_work(job).searched_views;
+    const double looks = stage_seconds(result, "dynamic_mask") > 0 ? refreshed + searched : 0;
     const double masks = looks * std::max(0.0, measured.question_tflop);
     if (looks <= 0 || measured.question_tflop >= 0)
         measured.guidance_tflop = std::max(0.0, tflop_of(edited.use) - masks) / steps;
-    const double could = refreshes(request, request.iterations - steps);
+    const double could = edit::method_of(request)
+                             .work(request, job.located().mode, request.iterations - steps, false)
+                             .refreshed_masks;
     if (refreshed <= 0 || could <= 0 || result.stopped) return;
     measured.follow = refreshed / could;
-    measured.refresh = stage_seconds(result, "dynamic_mask") / (refreshed + looks_again(request, mode));
+    measured.refresh = stage_seconds(result, "dynamic_mask") / (refreshed + searched);
 }
 
 }  // namespace
@@ -260,15 +224,15 @@ void measure_loop(CostProfile& measured, const EditJob& job, int least_steps) {
     const auto& result = job.result();
     const int steps = static_cast<int>(result.history.size());
     if (steps < least_steps || steps == 0) return;
-    if (led_by_views(job)) measure_redrawing(measured, job);
+    if (whole_work(job).pictures() > 0) measure_redrawing(measured, job);
     else measure_pulling(measured, job, job.edited(), steps);
     measured.raster = raster_seconds(result) / steps;
     measured.rows = static_cast<double>(std::max<std::size_t>(1, job.scene().gaussians.size()));
 }
 
 bool steps_measured(const CostProfile& measured, const EditJob& job) {
-    if (!led_by_views(job)) return measured.guidance >= 0;
-    return measured.redraw >= 0 && measured.redraw_view >= 0;
+    if (whole_work(job).pictures() > 0) return measured.redraw >= 0 && measured.redraw_view >= 0;
+    return measured.guidance >= 0;
 }
 
 namespace {
@@ -323,7 +287,8 @@ Edited probe_steps(CostProfile& measured, EditJob& job) {
 
 void measure_steps(CostProfile& measured, EditJob& job) {
     try {
-        const Edited edited = led_by_views(job) ? probe_views(measured, job) : probe_steps(measured, job);
+        const Edited edited =
+            whole_work(job).pictures() > 0 ? probe_views(measured, job) : probe_steps(measured, job);
         const auto& result = edited.result;
         const double raster = raster_seconds(result);
         measured.raster = raster / std::max<std::size_t>(1, result.history.size());

@@ -14,7 +14,7 @@ namespace gse::edit {
 namespace {
 
 constexpr double GroundHeight = 0.25;  // of a figure's height, up from the foot: a ground is not quite level
-constexpr double Above = 20;           // radii: from so far the picture is all but a parallel projection
+constexpr double ViewDistance = 20;    // radii: from so far the picture is all but a parallel projection
 constexpr int Side = 64;               // pixels
 constexpr std::size_t StandingRows = 200000;  // that tell where a scene stands
 
@@ -43,8 +43,8 @@ double ground_cover(const GaussianSet& set, std::span<const std::uint8_t> bits, 
     buffers.opacity_logit = std::make_shared<const std::vector<float>>(std::move(opacity));
     const GaussianSet rows(std::move(buffers));  // a copy of its rows would be most of the scene
     const auto across = make_frame(above, {}).front;
-    const auto camera =
-        Camera::look_at(foot + above * (Above * outer), foot, across, 2 * std::atan(1 / Above), Side, Side);
+    const auto camera = Camera::look_at(foot + above * (ViewDistance * outer), foot, across,
+                                        2 * std::atan(1 / ViewDistance), Side, Side);
     raster::ForwardOutput output;
     rasterizer.forward(rows.spans(), camera, {}, output);
     double covered = 0;

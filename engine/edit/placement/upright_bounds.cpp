@@ -20,9 +20,9 @@ constexpr double GroundReach =
     0.25;  // of its height, up and down from its lowest rows: there is the ground that it stands on
 constexpr double StemReach =
     0.8;  // of the larger of height and width, down, where there is none so near: a label may lack the stem
-constexpr double GroundWidth = 1.5;      // of a foot's radius: so far out its ground is looked for at least
+constexpr double GroundWidth = 1.5;  // of a foot's radius: so far out its ground is looked for at least
 constexpr std::size_t LeastGroundRows = 20;  // rows that make a ground
-constexpr double FigureWidth = 0.75;     // of its width, the least that a figure is high
+constexpr double FigureWidth = 0.75;         // of its width, the least that a figure is high
 
 std::vector<Vec3> shown_rows(const GaussianSet& set, std::span<const std::uint8_t> bits, const Frame& frame,
                              bool labelled) {

@@ -121,6 +121,4 @@ std::pair<EditMode, std::string> decide_mode(const EditRequest& request,
 
 EditMode planned_mode(const EditRequest& request) { return decide_mode(request, std::nullopt).first; }
 
-int planned_steps(const EditRequest& request) { return loop_steps(request, planned_mode(request)); }
-
 }  // namespace gse::edit

@@ -6,6 +6,7 @@
 
 #include "engine/base/error.h"
 #include "engine/edit/placement/voxel_region.h"
+#include "engine/edit/request/edit_method.h"
 #include "engine/edit/request/excluded_views.h"
 #include "engine/edit/request/relation.h"
 #include "engine/edit/request/scales.h"
@@ -322,9 +323,7 @@ EditRequest validated(EditRequest request) {
     if (std::find(Qualities.begin(), Qualities.end(), request.quality) == Qualities.end())
         throw Error(ErrorCode::InvalidArgument, "\"" + request.quality + "\" is not a quality",
                     "use draft, normal or fine");
-    if (request.method != "auto" && request.method != "views" && request.method != "sds")
-        throw Error(ErrorCode::InvalidArgument, "\"" + request.method + "\" is not a method",
-                    "use auto, views or sds");
+    require_method(request.method);
     views_left_out(request.left_out);
     if (!request.source.empty()) request.source = phrase_of(request.source, "source");
     if (request.target.empty()) {
@@ -343,7 +342,10 @@ EditRequest validated(EditRequest request) {
     return request;
 }
 
-bool edits_by_views(const LoopSettings& settings) { return settings.method != "sds"; }
+std::string new_thing(const EditRequest& request, EditMode mode) {
+    const auto thing = mode == EditMode::Replace ? thing_in_place(request) : std::string();
+    return thing.empty() ? request.target : thing;
+}
 
 int RoundPlan::steps_of(int round) const {
     return std::max(1, static_cast<int>(std::ceil(view_steps * strength_of(round) / strength - 1e-9)));
@@ -406,11 +408,6 @@ double mask_growth(const LoopSettings& settings, EditMode mode, const Mask& mask
     if (mode != EditMode::Add) return px;
     const auto box = localize::bounds_of(mask);
     return std::max(2 * px, settings.add_margin * std::max(box.width, box.height));
-}
-
-int loop_steps(const LoopSettings& settings, EditMode mode) {
-    const auto plan = round_plan(settings, mode);
-    return edits_by_views(settings) ? plan.rounds * plan.fit_steps : settings.iterations;
 }
 
 }  // namespace gse::edit

@@ -9,6 +9,7 @@
 
 #include "engine/base/fields.h"
 #include "engine/base/image.h"
+#include "engine/edit/request/field_use.h"
 #include "engine/edit/request/words.h"
 
 namespace gse::edit {
@@ -143,6 +144,9 @@ struct LabelThresholds {
     }
 };
 
+/// Help text of LoopSettings::method; edit_methods.cpp.
+const char* method_help();
+
 /// How the labelled rows are changed: nothing of it has to be looked for again.
 struct LoopSettings {
     std::uint64_t seed = 0;
@@ -237,58 +241,63 @@ private:
         f("seed", self.seed, "Seed of everything random.");
         f("localize", self.localize,
           "Let only the splats that were found change; off = every splat may (an ablation of the paper).");
-        f("method", self.method,
-          "How the model leads the edit: views (it redraws some views, the scene is fitted to them), sds (it "
-          "pulls at every step, the "
-          "paper's way) or auto (views, which come closer in less time).");
+        f("method", self.method, method_help());
         f("quality", self.quality,
-          "How much work redrawing takes: draft (half of the views below, three quarters of their steps), "
-          "normal, or fine (twice the "
-          "views, half again as many steps).");
-        f("iterations", self.iterations, "Optimisation steps of method sds.", Range{0, 1e6});
+          of_views("How much work redrawing takes: draft (half of the views below, three quarters of their "
+                   "steps), "
+                   "normal, or fine (twice the "
+                   "views, half again as many steps)."));
+        f("iterations", self.iterations, of_gradient("Optimisation steps of method sds."), Range{0, 1e6});
         f("instruction", self.instruction,
           "What a model that edits pictures by instructions (InstructPix2Pix) is told to do (\"make the bear "
           "golden\"); empty = to turn "
           "the source into what the sentence says.");
-        f("edited_views", self.edited_views, "Views that the model redraws in a round.", Range{1, 64});
-        f("rounds", self.rounds, "How often they are redrawn, each time from what the scene has become.",
-          Range{1, 20});
-        f("view_steps", self.view_steps, "Denoising steps of a redrawn view.", Range{1, 100});
-        f("fit_steps", self.fit_steps, "Optimisation steps after each round.", Range{1, 1e5});
+        f("edited_views", self.edited_views, of_views("Views that the model redraws in a round."),
+          Range{1, 64});
+        f("rounds", self.rounds,
+          of_views("How often they are redrawn, each time from what the scene has become."), Range{1, 20});
+        f("view_steps", self.view_steps, of_views("Denoising steps of a redrawn view."), Range{1, 100});
+        f("fit_steps", self.fit_steps, of_views("Optimisation steps after each round."), Range{1, 1e5});
         f("restyle_steps", self.restyle_steps,
-          "The same where a model that is shown the scene (the starter is) gives a thing another colour or "
-          "material, or another ground.",
+          of_views("The same where a model that is shown the scene (the starter is) gives a thing another "
+                   "colour or "
+                   "material, or another ground."),
           Range{1, 100});
         f("view_strength", self.view_strength,
-          "How far from the render a view is redrawn: 0 = not at all, 1 = from nothing. A model that is "
-          "shown the scene beside it (the starter is) "
-          "begins from nothing unless another value is set.",
+          of_views(
+              "How far from the render a view is redrawn: 0 = not at all, 1 = from nothing. A model that is "
+              "shown the scene beside it (the starter is) "
+              "begins from nothing unless another value is set."),
           Range{0.02, 1});
         visit_shapes(self, f);
-        f("guidance_weight", self.guidance_weight, "How hard the model pulls, against keeping the rest.",
-          Range{0, 1e6});
+        f("guidance_weight", self.guidance_weight,
+          of_gradient("How hard the model pulls, against keeping the rest."), Range{0, 1e6});
         f("strength", self.strength,
           "How much of the result is kept: 0 = none, below 1 = between before and after, above 1 = colours "
           "go beyond it.",
           Range{0, 2});
-        f("gate_guidance", self.gate_guidance, "Let the model pull inside the dilated mask only.");
+        f("gate_guidance", self.gate_guidance,
+          of_gradient("Let the model pull inside the dilated mask only."));
         f("dilate_px", self.dilate_px,
           "Growth of the mask, in pixels of a 512-pixel picture (doubled when adding).", Range{0, 256});
         f("preserve", self.preserve,
-          "Weight of keeping pictures outside the mask as they were (pseudo ground truth; method sds).",
+          of_gradient(
+              "Weight of keeping pictures outside the mask as they were (pseudo ground truth; method sds)."),
           Range{0, 1e6});
-        f("l1", self.l1, "Share of the absolute difference in it (method sds).", Range{0, 10});
-        f("ssim", self.ssim, "Share of the structural difference in it (method sds).", Range{0, 10});
+        f("l1", self.l1, of_gradient("Share of the absolute difference in it (method sds)."), Range{0, 10});
+        f("ssim", self.ssim, of_gradient("Share of the structural difference in it (method sds)."),
+          Range{0, 10});
         f("dynamic_mask", self.dynamic_mask,
-          "From some iteration on, let the masks follow what the edit has become.");
-        f("dynamic_from", self.dynamic_from, "Share of the iterations after which masks are refreshed.",
-          Range{0, 1});
+          of_gradient("From some iteration on, let the masks follow what the edit has become."));
+        f("dynamic_from", self.dynamic_from,
+          of_gradient("Share of the iterations after which masks are refreshed."), Range{0, 1});
         f("dynamic_every", self.dynamic_every,
-          "Share of the iterations between two refreshes of a view's mask.", Range{0, 1});
+          of_gradient("Share of the iterations between two refreshes of a view's mask."), Range{0, 1});
         f("look_again", self.look_again,
-          "When adding: from time to time look where the new thing is seen, and drop new splats outside it.");
+          of_gradient("When adding: from time to time look where the new thing is seen, and drop new splats "
+                      "outside it."));
         f("look_again_tau", self.look_again_tau,
-          "New splats seen inside it for less than this share are dropped.", Range{0, 1});
+          of_gradient("New splats seen inside it for less than this share are dropped."), Range{0, 1});
         f("early_stop", self.early_stop, "Stop when no view changes any more.");
         f("early_stop_change", self.early_stop_change,
           "Mean change of a view between two visits that counts as none.", Range{0, 1});
@@ -307,22 +316,26 @@ private:
     }
     template <class Self, class F> static void visit_shapes(Self& self, F&& f) {
         f("shape_views", self.shape_views,
-          "Views that the model redraws in a round, where a thing becomes another or is new.", Range{1, 64});
-        f("shape_rounds", self.shape_rounds, "The same as rounds, where a thing becomes another.",
+          of_views("Views that the model redraws in a round, where a thing becomes another or is new."),
+          Range{1, 64});
+        f("shape_rounds", self.shape_rounds, of_views("The same as rounds, where a thing becomes another."),
           Range{1, 20});
-        f("add_rounds", self.add_rounds, "The same where something is added.", Range{1, 20});
+        f("add_rounds", self.add_rounds, of_views("The same where something is added."), Range{1, 20});
         f("shape_steps", self.shape_steps,
-          "Denoising steps of a view in its first round there; later rounds take fewer, by their strength.",
+          of_views("Denoising steps of a view in its first round there; later rounds take fewer, by their "
+                   "strength."),
           Range{1, 100});
-        f("shape_fit_steps", self.shape_fit_steps, "Optimisation steps after each round there.",
+        f("shape_fit_steps", self.shape_fit_steps, of_views("Optimisation steps after each round there."),
           Range{1, 1e5});
-        f("shape_strength", self.shape_strength, "How far from the render the first round redraws there.",
+        f("shape_strength", self.shape_strength,
+          of_views("How far from the render the first round redraws there."), Range{0.02, 1});
+        f("shape_again_strength", self.shape_again_strength, of_views("How far the later rounds do."),
           Range{0.02, 1});
-        f("shape_again_strength", self.shape_again_strength, "How far the later rounds do.", Range{0.02, 1});
         f("shape_guided_until", self.shape_guided_until,
-          "There the steps above this noise level (share of the schedule) are guided against the negative "
-          "prompt; below it the sentence alone "
-          "leads, at half the cost.",
+          of_views("There the steps above this noise level (share of the schedule) are guided against the "
+                   "negative "
+                   "prompt; below it the sentence alone "
+                   "leads, at half the cost."),
           Range{0, 1});
         f("shape_room", self.shape_room,
           "Room around the old thing for one that takes its place, as a share of its size.", Range{0, 2});
@@ -350,11 +363,12 @@ private:
           Range{0, 1});
     }
     template <class Self, class F> static void visit_growth(Self& self, F&& f) {
-        f("densify_from", self.densify_from, "First iteration that may add splats.", Range{0, 1e6});
+        f("densify_from", self.densify_from, of_gradient("First iteration that may add splats."),
+          Range{0, 1e6});
         f("densify_every", self.densify_every, "Iterations between densifications; 0 = never.",
           Range{0, 1e6});
-        f("densify_until", self.densify_until, "Share of the iterations after which none are added.",
-          Range{0, 1});
+        f("densify_until", self.densify_until,
+          of_gradient("Share of the iterations after which none are added."), Range{0, 1});
         f("densify_percent", self.densify_percent,
           "Share of the labelled splats that may be cloned or split at once.", Range{0, 1});
         f("densify_min_gradient", self.densify_min_gradient, "Screen gradient below which nothing is added.",
@@ -402,8 +416,9 @@ std::optional<EditMode> mode_named(const std::string& name);
 /// validated request.
 std::string thing_in_place(const EditRequest& request);
 
-/// Whether the views method is what `method` means: it is, unless score distillation is asked for.
-bool edits_by_views(const LoopSettings& settings);
+/// What has a shape of its own after an edit of that mode: what takes the source's place, or is added. The
+/// words of a validated request.
+std::string new_thing(const EditRequest& request, EditMode mode);
 
 /// The values of LoopSettings::quality, from quick to thorough.
 inline constexpr std::array<const char*, 3> Qualities{"draft", "normal", "fine"};
@@ -430,14 +445,10 @@ struct RoundPlan {
 /// With the quality in it; at least one view and one step.
 RoundPlan round_plan(const LoopSettings& settings, EditMode mode);
 
-/// Optimisation steps of an edit.
-int loop_steps(const LoopSettings& settings, EditMode mode);
-
 /// How far a mask is grown, in its own pixels: what is new needs room.
 double mask_growth(const LoopSettings& settings, EditMode mode, const Mask& mask);
-/// All as the words and the mode of the request say, before anything was looked for.
+/// Mode as the words of the request say, before anything was looked for.
 EditMode planned_mode(const EditRequest& request);
-int planned_steps(const EditRequest& request);
 
 /// The sentence's terms, with compound prepositions ("next to") as one: what a reader of noun phrases goes
 /// through.

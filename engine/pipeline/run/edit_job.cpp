@@ -1,5 +1,6 @@
 // Loads, locates, edits.
 #include "engine/pipeline/run/edit_job.h"
+#include "engine/edit/request/edit_method.h"
 
 #include <fmt/format.h>
 
@@ -144,9 +145,9 @@ void EditJob::check_recipe(const neural::TextToImage* model) {
     check_fields(recipe_.attention);
     check_fields(recipe_.dreambooth);
     const auto known = model != nullptr ? model->known_words() : model_words(model_path(recipe_.job));
-    const auto drawn = !edit::edits_by_views(recipe_.request) ? std::vector<std::string>{}
-                       : model != nullptr                     ? edit::with_dyes(model->drawn_words(), known)
-                                                              : drawn_words(model_path(recipe_.job));
+    const auto drawn = !edit::method_of(recipe_.request).draws_views() ? std::vector<std::string>{}
+                       : model != nullptr ? edit::with_dyes(model->drawn_words(), known)
+                                          : drawn_words(model_path(recipe_.job));
     edit::require_known_words(recipe_.request, known, drawn,
                               recipe_.job.brings_label() || !hints_.label.empty());
     check_length();
@@ -183,7 +184,7 @@ void EditJob::begin(Scene scene, std::shared_ptr<neural::TextToImage> model, Seg
     std::sort(words.begin(), words.end());
     words.erase(std::unique(words.begin(), words.end()), words.end());
     const auto known = workplace_->model().known_words();
-    warn_unknown_words(words, edit::edits_by_views(recipe_.request)
+    warn_unknown_words(words, edit::method_of(recipe_.request).draws_views()
                                   ? edit::promptable_vocabulary(
                                         known, edit::with_dyes(workplace_->model().drawn_words(), known))
                                   : known);

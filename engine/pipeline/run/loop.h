@@ -42,10 +42,6 @@ struct Edited {
 /// given.
 neural::SdsParameters with_sentence_before(neural::SdsParameters guidance, const edit::EditRequest& request);
 
-/// What has a shape of its own after an edit of that mode: what takes the source's place, or is added. The
-/// words of a validated request.
-std::string new_thing(const edit::EditRequest& request, edit::EditMode mode);
-
 /// What a model that edits pictures by instructions is told.
 std::string told_to_editor(const edit::EditRequest& request);
 

@@ -8,6 +8,7 @@
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/edit/optimise/oracle_guidance.h"
+#include "engine/edit/request/edit_method.h"
 #include "tests/unit/edit/view_oracle.h"
 
 namespace recipe_extremes_test {
@@ -104,7 +105,7 @@ std::string outcome(test::Redrawing& ball, edit::Guidance& guidance, const edit:
     auto plan = ball.plan;
     plan.mode = mode;
     edit::EditTools tools{*ball.rasterizer, &guidance, {}, {{}, stop.get_token()}};
-    if (edit::edits_by_views(request)) tools.views = &ball.oracle;
+    if (edit::method_of(request).draws_views()) tools.views = &ball.oracle;
     tools.iteration = [&](const edit::IterationRecord& record) {
         if (record.iteration + 1 >= Steps) stop.request_stop();
     };

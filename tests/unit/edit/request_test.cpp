@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "engine/edit/request/edit_method.h"
 #include "engine/edit/request/request.h"
 #include "engine/edit/request/vocabulary.h"
 #include "engine/edit/search/locate.h"
@@ -196,7 +197,7 @@ DOCTEST_TEST_CASE("what gets another shape has rounds of its own; what is set wi
     request.shape_rounds = 2;
     const auto recolour = edit::round_plan(request, EditMode::Modify),
                shape = edit::round_plan(request, EditMode::Replace);
-    DOCTEST_CHECK(edit::edits_by_views(request));
+    DOCTEST_CHECK(edit::method_of(request).draws_views());
     DOCTEST_CHECK(!recolour.anew);
     DOCTEST_CHECK(shape.anew);
     DOCTEST_CHECK(edit::loop_steps(request, EditMode::Modify) == request.rounds * request.fit_steps);

@@ -7,7 +7,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/log.h"
-#include "engine/edit/request/method_fields.h"
+#include "engine/edit/request/edit_method.h"
 #include "engine/edit/target_views/view_round.h"
 #include "tests/unit/edit/edit_scenes.h"
 #include "tests/unit/edit/view_oracle.h"
@@ -302,11 +302,12 @@ DOCTEST_TEST_CASE("settings that are said to have no effect have none") {
         request.densify_every = 6;
         request.densify_from = 6;
         const auto plain = run(request);
+        const auto& method = *edit::method_named(by_views ? "views" : "sds");
         std::size_t unused = 0;
         edit::EditRequest::visit_fields(
-            request, [&](const char* name, auto& value, const char*, auto... range) {
-                DOCTEST_CHECK(edit::has_effect(name, by_views) == edit::why_unused(name, by_views).empty());
-                if (edit::has_effect(name, by_views)) return;
+            request, [&](const char* name, auto& value, const FieldHelp& help, auto... range) {
+                DOCTEST_CHECK(method.counts(help.uses) == edit::why_unused(method, help.uses).empty());
+                if (method.counts(help.uses)) return;
                 ++unused;
                 DOCTEST_CAPTURE(name);
                 const auto kept = value;
@@ -320,9 +321,11 @@ DOCTEST_TEST_CASE("settings that are said to have no effect have none") {
             });
         DOCTEST_CHECK(unused == (by_views ? 13 : 15));
     }
-    for (const bool by_views : {true, false})
-        for (const char* name : {"seed", "strength", "rate_colour", "snapshot_every", "tau"})
-            DOCTEST_CHECK(edit::has_effect(name, by_views));
+    const std::set<std::string> always{"seed", "strength", "rate_colour", "snapshot_every", "tau"};
+    edit::EditRequest::visit_fields(edit::EditRequest{},
+                                    [&](const char* name, const auto&, const FieldHelp& help, auto...) {
+                                        if (always.contains(name)) DOCTEST_CHECK(help.uses == 0);
+                                    });
 }
 
 DOCTEST_TEST_CASE("large pictures are shown smaller") {

@@ -2,7 +2,7 @@
 // networks.
 #include <cmath>
 
-#include "engine/edit/request/method_fields.h"
+#include "engine/edit/request/edit_method.h"
 #include "engine/neural/api/network_use.h"
 #include "engine/neural/diffusion/scene_views.h"
 #include "engine/neural/guidance/dreambooth.h"
@@ -116,22 +116,23 @@ DOCTEST_TEST_CASE(
     const auto drawn = [&] {
         return DiffusionViewEditor(bundle, "a red bear", parameters).edit(views, input, {}).images[0].data;
     };
-    SdsParameters::visit_fields(parameters, [&](const char* name, auto& value, const char*, auto...) {
-        using Value = std::remove_reference_t<decltype(value)>;
-        if (std::string_view(name) == "image_guidance_scale")
-            return;  // counts with models that are told what to do
-        if (std::string_view(name).starts_with("restyle")) return;  // with those that restyle
-        if (std::string_view(name) == "plain_ground") return;       // with what the views are shown
-        input.anew = std::string_view(name) == "shape_guidance_scale";
-        const auto plain = drawn();
-        const Value kept = value;
-        if constexpr (std::is_same_v<Value, bool>) value = !value;
-        else if constexpr (std::is_same_v<Value, double>) value = value / 2 + 0.1;
-        else value = value.empty() ? "a red hat" : "";
-        DOCTEST_INFO(std::string(name));
-        DOCTEST_CHECK((drawn() == plain) == !edit::has_effect(name, true));
-        value = kept;
-    });
+    SdsParameters::visit_fields(
+        parameters, [&](const char* name, auto& value, const FieldHelp& help, auto...) {
+            using Value = std::remove_reference_t<decltype(value)>;
+            if (std::string_view(name) == "image_guidance_scale")
+                return;  // counts with models that are told what to do
+            if (std::string_view(name).starts_with("restyle")) return;  // with those that restyle
+            if (std::string_view(name) == "plain_ground") return;       // with what the views are shown
+            input.anew = std::string_view(name) == "shape_guidance_scale";
+            const auto plain = drawn();
+            const Value kept = value;
+            if constexpr (std::is_same_v<Value, bool>) value = !value;
+            else if constexpr (std::is_same_v<Value, double>) value = value / 2 + 0.1;
+            else value = value.empty() ? "a red hat" : "";
+            DOCTEST_INFO(std::string(name));
+            DOCTEST_CHECK((drawn() == plain) == !edit::method_named("views")->counts(help.uses));
+            value = kept;
+        });
 }
 
 DOCTEST_TEST_CASE(

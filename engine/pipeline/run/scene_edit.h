@@ -1,0 +1,30 @@
+// The parts of one edit of a located scene.
+#pragma once
+
+#include <string>
+
+#include "engine/edit/optimise/edit_loop.h"
+#include "engine/neural/api/sds_parameters.h"
+#include "engine/pipeline/run/loop.h"
+
+namespace gse::pipeline {
+
+/// One edit. Refers to all it names; `scene` is the one of the plan, in place of the workplace's.
+struct SceneEdit {
+    RunContext& workplace;
+    const GaussianSet& scene;
+    const Located& located;
+    const edit::EditPlan& plan;
+    const EditRecipe& recipe;
+    const EditObserver& observer;
+    const JobControl& control;
+};
+
+/// Tools without a lead, for an edit that is told `request`; `attention` and `segmenter` stay alive.
+edit::EditTools tools_of(const SceneEdit& scene_edit, const edit::EditRequest& request,
+                         edit::AttentionSource& attention, edit::Segmenter& segmenter);
+
+/// Takes over a result that was told `request`.
+Edited finished(const SceneEdit& scene_edit, const edit::EditRequest& request, edit::EditResult result);
+
+}  // namespace gse::pipeline

@@ -1,0 +1,180 @@
+// The editors of a strategy, one upon the other.
+#include "engine/pipeline/run/view_candidate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/base/log.h"
+#include "engine/edit/placement/head.h"
+#include "engine/edit/request/colour_word.h"
+#include "engine/edit/request/vocabulary.h"
+#include "engine/edit/target_views/strategies/default_ground_colour.h"
+#include "engine/pipeline/models/recipe_model.h"
+#include "engine/pipeline/models/segmenters.h"
+
+namespace gse::pipeline {
+namespace {
+
+/// A sheet takes the place of the one of its round.
+void keep(std::vector<edit::ViewTargets>& rounds, const edit::ViewTargets& sheet) {
+    const auto found = std::find_if(rounds.begin(), rounds.end(),
+                                    [&](const auto& round) { return round.round == sheet.round; });
+    if (found == rounds.end()) rounds.push_back(sheet);
+    else *found = sheet;
+}
+
+edit::BeforePlain shown_before(const edit::EditPlan& plan, const EditRecipe& recipe) {
+    return plan.mode == edit::EditMode::Add || edit::replaces_accessory(recipe.request, plan.mode)
+               ? edit::BeforePlain::Scene
+               : edit::BeforePlain::Nothing;
+}
+
+/// Judges remapped views in the colour that the model was told, which its encoder knows. There is nothing to
+/// say of a thing that only gets another colour.
+EditQuality judge_undyed(const neural::TextToImage& model, const edit::EditRequest& request,
+                         edit::EditMode mode, const edit::ColourRemap& remap, const edit::DyedViews* views) {
+    if (mode == edit::EditMode::Modify || views == nullptr) return {};
+    std::vector<PicturePair> pictures;
+    for (const auto& view : views->drawn()) pictures.emplace_back(&view.original, &view.undyed);
+    auto told = request;
+    for (auto* words : {&told.prompt, &told.target}) *words = edit::told_with(remap, *words);
+    return judge(model, told, edit::as_told(told.prompt), pictures);
+}
+
+/// Share of the way to a ground's colour from which on pictures show that ground, by judgement.
+constexpr double InItsColour = 0.6;
+
+/// Judges by the encoder; a ground that it has no word for, by the colour that such a ground has.
+EditQuality judge_drawn(const neural::TextToImage& model, const edit::EditRequest& request,
+                        edit::EditMode mode, const edit::ViewTargets& round) {
+    auto verdict = judge_targets(model, request, edit::as_told(request.prompt), round);
+    const auto look = edit::usual_look(request, mode);
+    if (!look) return verdict;
+    const double gone = edit::gone_towards(*look, round);
+    if (!verdict.score) verdict.likeness = gone;
+    if (verdict.warns && gone >= InItsColour) {
+        verdict.warns = false;
+        verdict.verdict = fmt::format(
+            "The pictures show the colour of {}, which the model's encoder hardly sees (score {:.2f}).",
+            request.target, *verdict.score);
+    }
+    return verdict;
+}
+
+/// Gives what comes in a thing's place or is added its usual colour where the sentence tells none.
+edit::EditRequest in_usual_colour(const neural::TextToImage& model, edit::EditRequest request,
+                                  edit::EditMode mode) {
+    if (mode == edit::EditMode::Modify) return request;
+    const auto known = model.known_words();
+    const auto thing = new_thing(request, mode), told = edit::as_told(request.prompt);
+    const auto usual = edit::with_usual_colour(
+        told, thing, edit::promptable_vocabulary(known, edit::with_dyes(model.drawn_words(), known)));
+    if (usual == told) return request;
+    log::info("the sentence names no colour for \"{}\": it is drawn as \"{}\"", thing, usual);
+    request.prompt = usual;
+    return request;
+}
+
+}  // namespace
+
+GaussianSet PatternLayer::over(const GaussianSet& set, std::vector<std::uint8_t> rows,
+                               const std::vector<std::uint8_t>& hidden) const {
+    for (std::size_t row = 0; row < rows.size(); ++row) rows[row] &= hidden[row] == 0 ? 1 : 0;
+    return edit::dye_rows(remap, {edit::standing_alone(set, rows, up, front), up, front}, rows, set, seed);
+}
+
+edit::SnapshotCallback PatternLayer::over(edit::SnapshotCallback snapshots) const {
+    if (!snapshots) return snapshots;
+    const auto finish = [layer = *this](const edit::EditSnapshot& snapshot, const GaussianSet& set) {
+        return layer.over(set, snapshot.label(), snapshot.hidden());
+    };
+    return [finish, next = std::move(snapshots)](edit::EditSnapshot snapshot) {
+        snapshot.finish = finish;
+        next(std::move(snapshot));
+    };
+}
+
+ViewCandidate::ViewCandidate(const SceneEdit& scene_edit, const DrawStrategy& strategy,
+                             const std::optional<edit::GroundUnder>& ground, std::vector<DrawnViews>* drawn)
+    : scene_edit_(scene_edit), request_(scene_edit.recipe.request) {
+    const auto& [workplace, scene, located, plan, recipe, observer, control] = scene_edit;
+    const auto& model = workplace.model();
+    if (model.kind() != neural::BundleKind::InstructPix2Pix) {
+        request_ = in_usual_colour(model, std::move(request_), plan.mode);
+        remap_ = edit::dye_of(request_, plan.mode,
+                              edit::promptable_vocabulary(model.known_words(), model.drawn_words()));
+    }
+    if (remap_ && remap_->pattern)
+        pattern_ = PatternLayer{*remap_, located.views.orbit.up, located.views.front, request_.seed};
+    settings_ = with_sentence_before(recipe.guidance, request_);
+    settings_.restyle = strategy.restyle;
+    add_editors(strategy, ground, drawn);
+    attention_ = uncached(model).attention(recipe.attention);  // every render is another question
+    auto tools = tools_of(scene_edit, request_, *attention_, workplace.segmenter());
+    if (pattern_) tools.snapshot = pattern_->over(tools.snapshot);
+    tools.views = editors_.back().get();
+    tools.known = model.known_words();
+    tools.redraw_key = model.name() + tuning_key(recipe) + fields_to_json(settings_).dump() +
+                       strategy.name() + (remap_ ? edit::joined(remap_->words) : "");
+    tools.targets = [this](const edit::ViewTargets& sheet) { show(sheet); };
+    tools.target_orders = observer.target_orders;
+    optimiser_ = std::make_unique<edit::Optimiser>(scene, plan, request_, tools);
+}
+
+template <class Editor, class... Parts> Editor& ViewCandidate::add(Parts&&... parts) {
+    auto editor = std::make_unique<Editor>(std::forward<Parts>(parts)...);
+    auto& added = *editor;
+    editors_.push_back(std::move(editor));
+    return added;
+}
+
+void ViewCandidate::add_editors(const DrawStrategy& strategy, const std::optional<edit::GroundUnder>& ground,
+                                std::vector<DrawnViews>* drawn) {
+    const auto& recipe = scene_edit_.recipe;
+    const auto& plan = scene_edit_.plan;
+    const auto& model = scene_edit_.workplace.model();
+    if (strategy.ground == DrawStrategy::Ground::DefaultColour) {
+        add<edit::DefaultGroundColour>(*edit::usual_look(recipe.request, plan.mode));
+    } else {
+        const bool instructed = model.kind() == neural::BundleKind::InstructPix2Pix;
+        const auto prompt = instructed ? told_to_editor(request_) : edit::as_told(request_.prompt);
+        editors_.push_back(model.views(remap_ ? edit::told_with(*remap_, prompt) : prompt, settings_));
+        if (remap_) remapped_ = &add<edit::DyedViews>(*editors_.back(), *remap_);
+    }
+    if (strategy.ground == DrawStrategy::Ground::Plain && ground)
+        add<edit::OnPlainGround>(*editors_.back(), ground->plain, shown_before(plan, recipe));
+    if (drawn != nullptr) add<CachedViews>(*editors_.back(), *drawn);
+}
+
+void ViewCandidate::draw() {
+    try {
+        sheet_ = optimiser_->draw_views();
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::Model) throw;
+        failure_ = error;
+    }
+}
+
+EditQuality ViewCandidate::judge() const {
+    const auto& model = scene_edit_.workplace.model();
+    const auto mode = scene_edit_.plan.mode;
+    return remap_ ? judge_undyed(model, request_, mode, *remap_, remapped_)
+                  : judge_drawn(model, request_, mode, *sheet_);
+}
+
+void ViewCandidate::show(const edit::ViewTargets& sheet) {
+    keep(sheets_, sheet);
+    if (scene_edit_.observer.targets) scene_edit_.observer.targets(sheet);
+}
+
+Edited ViewCandidate::fit() {
+    auto result = optimiser_->fit();
+    if (pattern_) result.set = pattern_->over(result.set, result.label, result.hidden);
+    auto edited = finished(scene_edit_, request_, std::move(result));
+    edited.targets = std::move(sheets_);
+    return edited;
+}
+
+}  // namespace gse::pipeline
