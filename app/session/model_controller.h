@@ -46,6 +46,7 @@ public:
     }
     std::string in_use() const;  // a path in any case
     const ModelList& list() const { return list_; }
+    const edit::ModelTraits& traits() const { return profile_.traits; }
     /// The recipe of a request with the model and its settings, the profile's values filled in.
     EditRecipe recipe(const edit::EditRequest& request, const std::string& looked_from) const;
 

@@ -353,6 +353,7 @@ void SearchController::refresh_estimate() {
     const bool learned = last_.of(current) && last_.tuning(wanted);
     work.tune_steps = settings.learn_scene && !work.located && !learned ? settings.learning.steps : 0;
     work.rows = current.size();
+    work.traits = models_.traits();
     work.words = edit::promptable_vocabulary(models_.list().known_words(), models_.list().drawn_words());
     try {
         work.mode = edit::planned_mode(edit::validated(request_));

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/base/image.h"
+#include "engine/base/overridable.h"
 
 namespace gse {
 
@@ -43,7 +44,10 @@ public:
     template <class P> void fields(const P& parameters) {
         P::visit_fields(parameters, [&](const char* name, const auto& value, const char*, const auto&...) {
             text(name);
-            if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(value)>>) numbers(value);
+            using Value = std::remove_cvref_t<decltype(value)>;
+            if constexpr (std::is_same_v<Value, Overridable>)
+                numbers(static_cast<double>(value), value.is_set());
+            else if constexpr (std::is_arithmetic_v<Value>) numbers(value);
             else if constexpr (std::is_convertible_v<decltype(value), std::string_view>) text(value);
             else texts(value);
         });

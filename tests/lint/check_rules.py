@@ -92,6 +92,8 @@ GLM_DOOR = "engine/math/vec.h"   # the one place that includes glm: its settings
 SKIP_DOORS = {"tests/test_paths.h", "tests/main.cpp"}   # skip() and skip_missing() count what was left out
 TORCH_OWNERS = {"neural", "laboratory/starter"}
 FOREIGN_OWNERS = {"torch/": TORCH_OWNERS, "ATen/": TORCH_OWNERS, "c10/": TORCH_OWNERS, "vulkan/": {"vulkan", "preview", "window"}}
+MODEL_NAME = re.compile(r"starter", re.IGNORECASE)
+MODEL_FREE = {"edit", "localize", "language"}   # rooms that know no model by its name: what suits one is data of its bundle
 
 
 def folder_of(path):
@@ -240,6 +242,8 @@ def check_file(root, path):
         if LOCK.search(line.split("//")[0]) and relative.parts[0] != "tests" and not str(relative).startswith("engine/base/") and \
                 str(relative.with_suffix("")) not in LOCK_OWNERS:
             yield f"{relative}:{number}: threads meet in a queue or a mailbox (engine/base), not under a lock"
+        if relative.parts[0] == "engine" and relative.parts[1] in MODEL_FREE and MODEL_NAME.search(line):
+            yield f"{relative}:{number}: what suits one model only is data of its bundle (ModelTraits)"
         if JSON_PARSE.search(line) and relative.parts[0] != "tests" and str(relative) != JSON_PARSER:
             yield f"{relative}:{number}: JSON is parsed with parse_json() or try_parse_json()"
     if relative.parts[0] in {"app", "ui"}:
@@ -289,6 +293,7 @@ def self_test():
         "engine/base/g.cpp": ("// x\nvoid f(int a) {\n" + "    a += 1;\n" * 70 + "}\n", "a function of 72 lines"),
         "app/j.cpp": ("// x\nauto a = nlohmann::json::parse(text);\n", "parsed with parse_json()"),
         "ui/k.cpp": ("// x\n#include <glm/vec3.hpp>\n", "glm is included by"),
+        "engine/edit/p.cpp": ("// x\nint views = 8;  // suits the starter\n", "data of its bundle"),
         "engine/raster/h.cpp": ("// x\n#include \"app/main.h\"\n", "must not include app"),
         "engine/io/bytes/m.cpp": ("// x\n#include \"engine/io/image/png.h\"\n", "engine/io/bytes must not include engine/io/image"),
         "engine/neural/layers/p.cpp": ("// x\n#include \"engine/neural/diffusion/unet.h\"\n",

@@ -94,8 +94,8 @@ Cost estimated_cost(const CostProfile& measured, const edit::EditRequest& asked,
                        ? edit::restyling(asked, work.mode)
                        : asked;
     if (method.draws_views() && work.mode != edit::EditMode::Modify)
-        request.prompt =
-            edit::with_usual_colour(edit::as_told(request.prompt), new_thing(request, work.mode), work.words);
+        request.prompt = edit::with_usual_colour(edit::as_told(request.prompt), new_thing(request, work.mode),
+                                                 work.words, work.traits.usual_colours);
     Sum sum;
     sum.add(work.loaded ? 0 : 1, measured.load);
     sum.add(work.tune_steps, measured.tune_step, measured.tune_step_tflop);

@@ -90,6 +90,7 @@ struct PlannedWork {
     edit::EditMode mode = edit::EditMode::Modify;
     std::vector<std::string> words = {};  // that the model draws; a thing that comes has its usual colour
                                           // where they name it. Empty: any word
+    edit::ModelTraits traits = {};
     bool shows_idea = true;
     int tune_steps = 0;
     std::size_t rows = 1;

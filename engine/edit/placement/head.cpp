@@ -17,10 +17,6 @@ constexpr double Steps = 50;          // slices of a thing
 constexpr double LeastHead = 0.08;    // of its height: a tip is no head
 constexpr double HeadTrim = 0.03;     // of a slice's rows, at either end: a strand, a ray of a crown
 constexpr double HeadProportion = 1;  // height over width
-// Of the head's height: with the head alone a scarf went over the mouth of a man and of a statue, with twice
-// and a half of it over the shoulders.
-constexpr double HeadAndNeck = 1.7;
-
 struct Row {
     std::size_t row;
     Vec3 at;  // in the frame
@@ -67,12 +63,13 @@ HeadRegion bust_of(const GaussianSet& set, std::span<const std::uint8_t> bits, c
 }
 
 AttachmentTarget wearer_of(const EditRequest& request, const GaussianSet& set,
-                           std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front,
-                           bool drawn) {
+                           std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front, bool drawn,
+                           const ModelTraits& traits) {
     const bool at_head = has_usual_place(request.target) && usual_place(request.target) != "around";
     if (drawn && at_head && draws_place(request, EditMode::Add)) {
-        auto bust = bust_of(set, bits, up, front, usual_place(request.target) == "neck" ? HeadAndNeck : 1);
-        if (bust.has_small_head()) {
+        auto bust =
+            bust_of(set, bits, up, front, usual_place(request.target) == "neck" ? traits.head_and_neck : 1);
+        if (bust.head < traits.small_head) {
             const auto standing = standing_alone(set, bust.bits, up, front);
             return {std::move(bust.bits), standing, bust.head};
         }

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/edit/interfaces/model_traits.h"
 #include "engine/edit/placement/upright_bounds.h"
 #include "engine/edit/request/request.h"
 #include "engine/math/vec.h"
@@ -17,11 +18,6 @@ struct HeadRegion {
     std::vector<std::uint8_t> bits;  // [N]
     double head =
         1;  // its height, as a share of the whole thing's: the topmost part that is as high as it is wide
-    /// Smaller than that of any figure that the model has learned from, for which it would draw a hat that
-    /// suits the whole of it.
-    bool has_small_head() const { return head < SmallHead; }
-    static constexpr double SmallHead =
-        0.26;  // of the learned figures a chair's back has the least, 0.3, and a statue 0.4
 };
 
 /// Of what `bits` [N] label, as high as so many `heads`. All of it where no part is as high as wide, or
@@ -36,12 +32,12 @@ struct AttachmentTarget {
     double head = 1;  // where it is the head: its height, as a share of the whole thing's
 };
 
-/// Of what `bits` [N] label: the head, where it is small and the target has its place there (add_region.h,
-/// usual_place) and is `drawn` into the views; the whole otherwise. What the bundled model draws suits the
-/// figure it is shown: the hat of a statue of a man was twice as wide as the shoulders, and suits his head
-/// where the figure is that.
+/// The head of what `bits` [N] label, where it is small for the model (ModelTraits::small_head), the target
+/// has its place there (usual_place()) and is `drawn` into the views; the whole otherwise. A model draws what
+/// suits the figure that it is shown.
 AttachmentTarget wearer_of(const EditRequest& request, const GaussianSet& set,
-                           std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front, bool drawn);
+                           std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front, bool drawn,
+                           const ModelTraits& traits);
 
 /// Whether something that is worn takes the place of something else that is ("crown" of "hat"): whoever wears
 /// it stays, and is shown.

@@ -58,20 +58,6 @@ double distance(const Colour& a, const Colour& b) {
     return l * l + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]);
 }
 
-struct Usual {
-    const char *thing, *colour;
-};
-
-/// Of things that models of few words may draw besides those that they look for, and of what is worn. A hat
-/// may be any.
-constexpr Usual UsualColours[] = {
-    {"rabbit", "white"},   {"horse", "brown"},     {"elephant", "gray"},   {"pig", "pink"},
-    {"lion", "ochre"},     {"penguin", "black"},   {"owl", "brown"},       {"frog", "green"},
-    {"turtle", "green"},   {"dinosaur", "green"},  {"snowman", "white"},   {"robot", "gray"},
-    {"pumpkin", "orange"}, {"cactus", "green"},    {"teapot", "white"},    {"rocket", "white"},
-    {"castle", "stone"},   {"lamp", "yellow"},     {"wings", "white"},     {"crown", "golden"},
-    {"halo", "golden"},    {"necklace", "golden"}, {"sunglasses", "black"}};
-
 bool is_vowel(char letter) { return std::string("aeiou").find(letter) != std::string::npos; }
 
 }  // namespace
@@ -141,15 +127,15 @@ std::string described_as(const std::string& sentence, const std::string& thing, 
 }
 
 std::string with_usual_colour(const std::string& sentence, const std::string& thing,
-                              const std::vector<std::string>& sayable) {
-    const auto usual = std::find_if(std::begin(UsualColours), std::end(UsualColours),
-                                    [&](const auto& entry) { return thing == entry.thing; });
-    if (sayable.empty() || usual == std::end(UsualColours) || !knows(sayable, usual->colour)) return sentence;
+                              const std::vector<std::string>& sayable,
+                              const std::map<std::string, std::string>& usual_colours) {
+    const auto usual = usual_colours.find(thing);
+    if (sayable.empty() || usual == usual_colours.end() || !knows(sayable, usual->second)) return sentence;
     auto told = words_of(sentence);  // less what says nothing to the model ("big")
     for (auto at = first_word(sentence, thing);
          at > 0 && at < told.size() && says_something(told[at - 1]) && !knows(sayable, told[at - 1]); --at)
         told.erase(told.begin() + static_cast<std::ptrdiff_t>(at - 1));
-    return is_described(joined(told), thing) ? sentence : described_as(sentence, thing, usual->colour);
+    return is_described(joined(told), thing) ? sentence : described_as(sentence, thing, usual->second);
 }
 
 }  // namespace gse::edit

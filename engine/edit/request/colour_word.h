@@ -3,6 +3,7 @@
 // sentence for all.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -39,8 +40,9 @@ std::string described_as(const std::string& sentence, const std::string& thing, 
 
 /// The sentence of a thing that comes or is added, in the colour that such a thing mostly has where it tells
 /// none ("a frog": "a green frog"): what learned it in all colours draws it in any. Words as as_told() has
-/// them; as it was where no such colour is among `sayable`.
+/// them; as it was where no such colour is among `sayable`. `usual_colours`: of things, ModelTraits.
 std::string with_usual_colour(const std::string& sentence, const std::string& thing,
-                              const std::vector<std::string>& sayable);
+                              const std::vector<std::string>& sayable,
+                              const std::map<std::string, std::string>& usual_colours);
 
 }  // namespace gse::edit

@@ -108,7 +108,7 @@ struct SearchSettings {
           Range{0, 1});
         f("place_views", self.place_views,
           "Views into which something that is added is drawn to see where it goes, by a model that is shown "
-          "the scene (the starter is); 0, or with "
+          "the scene (the bundled one is); 0, or with "
           "another model: the attention of its word says where.",
           Range{0, 64});
         f("place_steps", self.place_steps, "Denoising steps of such a view.", Range{1, 100});
@@ -144,6 +144,10 @@ struct LabelThresholds {
     }
 };
 
+/// Noise level above which the steps of a new shape are guided unless a setting says otherwise. A search
+/// draws with it whatever is set: its answer does not depend on the loop.
+inline constexpr double UsualGuidedUntil = 0.5;
+
 /// Help text of LoopSettings::method; edit_methods.cpp.
 const char* method_help();
 
@@ -163,7 +167,6 @@ struct LoopSettings {
     int view_steps = 3;
     int fit_steps = 40;
     Overridable view_strength{0.75};
-    // Other numbers of steps, with other guidance: assets/models/starter/TRAINING.md, other looks.
     int restyle_steps = 2;
     // Shapes by views: a thing that becomes another, or is new
     int shape_views = 12;
@@ -176,9 +179,8 @@ struct LoopSettings {
     // guidance 0.39, but cars become blobs and hats are not drawn.
     double shape_strength = 1;
     double shape_again_strength = 0.6;
-    double shape_guided_until = 0.5;
+    double shape_guided_until = UsualGuidedUntil;
     double shape_room = 0.2;
-    // What other margins come to: assets/models/starter/TRAINING.md, the LoRA for new things.
     double add_margin = 0.4;
     double guidance_weight = 1;
     double strength = 1;
@@ -232,6 +234,9 @@ struct LoopSettings {
 
     template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         visit_loop(self, f);
+        visit_shapes(self, f);
+        visit_masks(self, f);
+        visit_anchors(self, f);
         visit_rates(self, f);
         visit_growth(self, f);
     }
@@ -259,17 +264,19 @@ private:
         f("view_steps", self.view_steps, of_views("Denoising steps of a redrawn view."), Range{1, 100});
         f("fit_steps", self.fit_steps, of_views("Optimisation steps after each round."), Range{1, 1e5});
         f("restyle_steps", self.restyle_steps,
-          of_views("The same where a model that is shown the scene (the starter is) gives a thing another "
-                   "colour or "
-                   "material, or another ground."),
+          of_views(
+              "The same where a model that is shown the scene (the bundled model is) gives a thing another "
+              "colour or "
+              "material, or another ground."),
           Range{1, 100});
         f("view_strength", self.view_strength,
           of_views(
               "How far from the render a view is redrawn: 0 = not at all, 1 = from nothing. A model that is "
-              "shown the scene beside it (the starter is) "
+              "shown the scene beside it (the bundled model is) "
               "begins from nothing unless another value is set."),
           Range{0.02, 1});
-        visit_shapes(self, f);
+    }
+    template <class Self, class F> static void visit_masks(Self& self, F&& f) {
         f("guidance_weight", self.guidance_weight,
           of_gradient("How hard the model pulls, against keeping the rest."), Range{0, 1e6});
         f("strength", self.strength,
@@ -301,6 +308,8 @@ private:
         f("early_stop", self.early_stop, "Stop when no view changes any more.");
         f("early_stop_change", self.early_stop_change,
           "Mean change of a view between two visits that counts as none.", Range{0, 1});
+    }
+    template <class Self, class F> static void visit_anchors(Self& self, F&& f) {
         f("anchor_first", self.anchor_first, "Anchor weight of the original splats at the start.",
           Range{0, 100});
         f("anchor_start", self.anchor_start, "Anchor weight a generation gets when the next one is born.",
@@ -386,7 +395,7 @@ private:
     }
 };
 
-/// The request of an artist. Defaults suit the starter model on two processor cores; method.md section 7 has
+/// The request of an artist. Defaults suit the bundled model on two processor cores; method.md section 7 has
 /// the values of the full-size method, all of which can be set here. What a stage depends on is the structs
 /// it is given.
 struct EditRequest : EditWords, SearchSettings, LabelThresholds, LoopSettings {

@@ -575,7 +575,7 @@ private:
         std::optional<GroundUnder> ground;
         if (tools_.plain_ground)
             ground = ground_under(request().prompt, input_.gaussians, source_bits, input_.up, input_.front,
-                                  tools_.rasterizer);
+                                  tools_.rasterizer, input_.traits);
         if (!ground || !ground->in_nothing) return draw_thing(drawing, *tools_.drawing, tools_.job);
         OnPlainGround on_ground(*tools_.drawing, ground->plain, BeforePlain::Scene);
         return draw_thing(drawing, on_ground, tools_.job);
@@ -591,7 +591,7 @@ private:
         const auto relation =
             of_source ? relation_of(request().prompt, request().source, request().target) : Relation::None;
         const auto wearer = wearer_of(request(), input_.gaussians, *result.source_label.bits, input_.up,
-                                      input_.front, tools_.drawing != nullptr);
+                                      input_.front, tools_.drawing != nullptr, input_.traits);
         if (wearer.head < 1)
             log::info("the head is {:.0f} % of its height: \"{}\" goes there", 100 * wearer.head,
                       search.word);

@@ -42,6 +42,7 @@ struct LocateInput {
     std::vector<double> azimuths = {}, elevations = {};  // per view, as in EditView, or empty
     std::optional<StudioBackground> ground =
         {};  // what the networks are shown where the scene has nothing; none = its background
+    ModelTraits traits = {};
 };
 
 /// Renders of the views, kept from one search to the next over one scene and one set of views; empty = to be

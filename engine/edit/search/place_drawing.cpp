@@ -36,7 +36,6 @@ constexpr float LeastDifference =
 // the attention often leaves out one of two wings.
 constexpr float LeastChange = 0.1f, CertainChange = 0.03f, AttentionFloor = 0.5f;
 constexpr double RimPx = 3;  // of a told outline: beyond it what is covered in part belongs to something else
-constexpr double GuidedUntil = 0.5;  // as edits have it (EditRequest::shape_guided_until)
 constexpr double LeastPart = 0.2;  // attention of a part beside that of the largest: a pair of wings has two
 constexpr double LeastArea = 0.002;          // of the picture
 constexpr std::uint64_t QuestionStream = 1;  // of the seed, + the view
@@ -115,7 +114,7 @@ double guided_steps_of_place(const EditRequest& request) {
     RoundPlan plan;
     plan.view_steps = request.place_steps;
     plan.strength = 1;
-    plan.guided_until = GuidedUntil;
+    plan.guided_until = UsualGuidedUntil;
     return plan.guided_steps_of(0);
 }
 
@@ -157,7 +156,7 @@ DrawnViews draw_thing(const PlaceDrawing& drawing, MultiViewEditor& guidance, co
     input.strength = 1;  // nothing of what is there says where
     input.seed = drawing.seed;
     input.anew = true;
-    input.guided_until = GuidedUntil;
+    input.guided_until = UsualGuidedUntil;
     input.noise = drawing.request.add_noise;
     input.keep = input.tells_changes = true;
     auto targets = guidance.edit(views, input, job);

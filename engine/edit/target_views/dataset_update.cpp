@@ -91,15 +91,17 @@ std::vector<std::size_t> DatasetUpdate::fitted() const {
     return views;
 }
 
-/// Picture and depth of the surface; 0 where hardly anything is.
-void DatasetUpdate::draw(const GaussianSpans& rows, const Camera& camera, const raster::Settings& settings,
-                         Image& colour, Image& depth) {
+DatasetUpdate::Surface DatasetUpdate::draw(const GaussianSpans& rows, const Camera& camera,
+                                           const raster::Settings& settings) {
+    constexpr float LeastAlpha = 0.5f;
     tools_.rasterizer.forward(rows, camera, settings, output_);
-    colour = output_.colour;
-    for (auto& value : colour.data) value = std::clamp(value, 0.0f, 1.0f);
-    depth = output_.depth;
-    for (std::size_t i = 0; i < depth.data.size(); ++i)
-        depth.data[i] = output_.alpha.data[i] > 0.5f ? depth.data[i] / output_.alpha.data[i] : 0.0f;
+    Surface surface{output_.colour, output_.depth, output_.alpha};
+    for (auto& value : surface.colour.data) value = std::clamp(value, 0.0f, 1.0f);
+    for (std::size_t i = 0; i < surface.depth.data.size(); ++i) {
+        const float alpha = surface.alpha.data[i];
+        surface.depth.data[i] = alpha > LeastAlpha ? surface.depth.data[i] / alpha : 0.0f;
+    }
+    return surface;
 }
 
 EditView DatasetUpdate::begin_view(std::size_t v, const GaussianSpans& rows, const GaussianSpans& unlabelled,
@@ -111,11 +113,13 @@ EditView DatasetUpdate::begin_view(std::size_t v, const GaussianSpans& rows, con
                   plan_.views[v],
                   plan_.view_words.empty() ? std::string() : plan_.view_words[v]};
     if (!plan_.azimuths.empty()) view.azimuth = plan_.azimuths[v], view.elevation = plan_.elevations[v];
-    draw(rows, view.view.camera, settings, view.rendered, view.depth);
+    auto shown = draw(rows, view.view.camera, settings);
+    view.rendered = std::move(shown.colour), view.depth = std::move(shown.depth);
     for (auto& value : view.original.data) value = std::clamp(value, 0.0f, 1.0f);
     if (anew_) {
-        draw(unlabelled, view.view.camera, settings, view.backdrop.picture, view.backdrop.depth);
-        fill_holes(view.backdrop, view.mask, output_.alpha);  // as it was drawn last
+        auto behind = draw(unlabelled, view.view.camera, settings);
+        view.backdrop.picture = std::move(behind.colour), view.backdrop.depth = std::move(behind.depth);
+        fill_holes(view.backdrop, view.mask, behind.alpha);
     }
     return view;
 }

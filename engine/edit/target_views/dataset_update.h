@@ -68,8 +68,12 @@ public:
 private:
     EditView begin_view(std::size_t view, const GaussianSpans& rows, const GaussianSpans& unlabelled,
                         const raster::Settings& settings);
-    void draw(const GaussianSpans& rows, const Camera& camera, const raster::Settings& settings,
-              Image& colour, Image& depth);
+    /// What rows show from a camera: [H,W,3] in [0,1], [H,W,1] depth of the surface, 0 where hardly anything
+    /// is, and [H,W,1] how much of each pixel is covered.
+    struct Surface {
+        Image colour, depth, alpha;
+    };
+    Surface draw(const GaussianSpans& rows, const Camera& camera, const raster::Settings& settings);
     bool resumes(const RoundState& start, const std::vector<std::size_t>& visible) const;
     bool follow(const TargetOrder& order, RoundState& next);
     void redo(std::size_t index, RoundState& next);

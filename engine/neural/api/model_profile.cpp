@@ -12,6 +12,7 @@
 #include "engine/neural/api/attention_parameters.h"
 #include "engine/neural/api/config.h"
 #include "engine/neural/api/dreambooth_parameters.h"
+#include "engine/neural/api/model_traits.h"
 #include "engine/neural/api/sds_parameters.h"
 
 namespace gse::neural {
@@ -249,6 +250,7 @@ ModelProfile model_profile(const fs::path& model, const std::vector<LoraSpec>& l
     add(profile, stated, "model");
     const auto file = (fs::is_directory(model) ? model : model.parent_path()) / "gseditpro.json";
     if (fs::exists(file)) add(profile, read_stated(file), "file gseditpro.json");
+    profile.traits = model_traits(model);
     return profile;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/edit/interfaces/model_traits.h"
 #include "engine/neural/api/bundle_kind.h"
 #include "engine/neural/api/lora_spec.h"
 
@@ -39,6 +40,7 @@ struct ModelProfile {
     BundleKind bundle = BundleKind::Plain;
     std::vector<ProfileEntry>
         entries;  // one per field; those of a small model are the settings' own defaults
+    edit::ModelTraits traits;
 };
 
 /// Size of a model folder or checkpoint. A broken model counts as small; loading it says what is wrong.

@@ -1,17 +1,29 @@
 // A model's profile in a recipe.
 #include "engine/pipeline/models/model_settings.h"
 
+#include "engine/neural/api/model_traits.h"
 #include "engine/pipeline/models/installed.h"
 
 namespace gse::pipeline {
 
 #ifdef GSE_NEURAL
-neural::ModelProfile profile_of(const JobParameters& job) {
-    return neural::model_profile(job.model.empty() ? starter_model_path() : std::filesystem::path(job.model),
-                                 neural::find_loras(job.lora));
+namespace {
+
+std::filesystem::path path_of(const JobParameters& job) {
+    return job.model.empty() ? starter_model_path() : std::filesystem::path(job.model);
 }
+
+}  // namespace
+
+neural::ModelProfile profile_of(const JobParameters& job) {
+    return neural::model_profile(path_of(job), neural::find_loras(job.lora));
+}
+
+edit::ModelTraits traits_of(const JobParameters& job) { return neural::model_traits(path_of(job)); }
 #else
 neural::ModelProfile profile_of(const JobParameters&) { return {}; }
+
+edit::ModelTraits traits_of(const JobParameters&) { return {}; }
 #endif
 
 void apply_profile(const neural::ModelProfile& profile, EditRecipe& recipe,

@@ -14,6 +14,9 @@ namespace gse::pipeline {
 /// a wrong gseditpro.json.
 neural::ModelProfile profile_of(const JobParameters& job);
 
+/// The traits of the recipe's model. Throws Error (Malformed) for wrong ones.
+edit::ModelTraits traits_of(const JobParameters& job);
+
 /// Gives the settings that the profile states, and that are not among `set_by_user` ("request.image_size"),
 /// the model's values; recipe.sources says where they and the user's come from.
 void apply_profile(const neural::ModelProfile& profile, EditRecipe& recipe,

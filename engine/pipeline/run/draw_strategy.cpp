@@ -29,14 +29,15 @@ std::optional<edit::GroundUnder> plain_ground_under(const SceneEdit& scene_edit)
     const auto& [workplace, scene, located, plan, recipe, observer, control] = scene_edit;
     if (!recipe.guidance.plain_ground) return std::nullopt;
     if (edit::replaces_accessory(recipe.request, plan.mode)) {
-        const auto below = workplace.ground(recipe.request.prompt, located.views.views);
+        workplace.look_for_ground(located.views.views);
+        const auto below = workplace.ground(recipe.request.prompt);
         return below ? std::optional<edit::GroundUnder>({*below, true}) : std::nullopt;
     }
     const bool adds = plan.mode == edit::EditMode::Add;
     if (adds && recipe.request.source == recipe.request.target) return std::nullopt;  // to all of the scene
     const auto& bits = adds ? *located.result.source_label.bits : plan.label;
     return edit::ground_under(recipe.request.prompt, scene, bits, located.views.orbit.up, located.views.front,
-                              workplace.painter().rasterizer());
+                              workplace.painter().rasterizer(), workplace.traits());
 }
 
 /// A network that is shown the scene draws well where the scene looks as in the pictures that it was trained
@@ -59,14 +60,15 @@ std::vector<DrawStrategy> draw_strategies(const SceneEdit& scene_edit,
         strategies.insert(in_nothing ? strategies.begin() : strategies.end(), {restyle, Ground::Plain});
     if (draws_anew && in_nothing) strategies.resize(1);
     if (!keeps_shapes) return strategies;
-    if (edit::usual_look(recipe.request, mode)) strategies.push_back({restyle, Ground::DefaultColour});
+    if (edit::usual_look(recipe.request, mode, scene_edit.workplace.traits()))
+        strategies.push_back({restyle, Ground::DefaultColour});
     else strategies.push_back({false, Ground::Scene});  // the model itself
     return strategies;
 }
 
 edit::EditedViews CachedViews::edit(const std::vector<edit::EditView>& views,
                                     const edit::EditViewsRequest& request, const JobControl& job) {
-    const auto answers = [&](const DrawnViews& drawn) {
+    const auto answers = [&](const CachedPictures& drawn) {
         return drawn.views == views.size() && drawn.request.round == request.round &&
                drawn.request.seed == request.seed && drawn.request.strength == request.strength &&
                drawn.request.sentence == request.sentence;

@@ -31,7 +31,7 @@ std::vector<DrawStrategy> draw_strategies(const SceneEdit& scene_edit,
                                           const std::optional<edit::GroundUnder>& ground);
 
 /// Pictures of one request.
-struct DrawnViews {
+struct CachedPictures {
     edit::EditViewsRequest request;
     std::size_t views = 0;
     edit::EditedViews pictures;
@@ -41,7 +41,7 @@ struct DrawnViews {
 class CachedViews final : public edit::MultiViewEditor {
 public:
     /// Both stay alive.
-    CachedViews(edit::MultiViewEditor& editor, std::vector<DrawnViews>& drawn)
+    CachedViews(edit::MultiViewEditor& editor, std::vector<CachedPictures>& drawn)
         : editor_(editor), drawn_(drawn) {}
     edit::EditedViews edit(const std::vector<edit::EditView>& views, const edit::EditViewsRequest& request,
                            const JobControl& job) override;
@@ -49,7 +49,7 @@ public:
 
 private:
     edit::MultiViewEditor& editor_;
-    std::vector<DrawnViews>& drawn_;
+    std::vector<CachedPictures>& drawn_;
 };
 
 /// Chooses a strategy by the pictures that it has drawn: each in turn, until one is good, then the best.
@@ -58,7 +58,7 @@ public:
     explicit StrategyChooser(std::vector<DrawStrategy> strategies);
     /// The strategy to draw with now, and pictures that it has drawn already.
     const DrawStrategy& strategy() const { return tried_[at_].strategy; }
-    std::vector<DrawnViews>& drawn() { return tried_[at_].drawn; }
+    std::vector<CachedPictures>& drawn() { return tried_[at_].drawn; }
     bool several() const { return tried_.size() > 1; }
     /// The quality of pictures that were judged before; none of a strategy that was not tried.
     const std::optional<EditQuality>& quality() const { return tried_[at_].quality; }
@@ -71,7 +71,7 @@ public:
 private:
     struct Tried {
         DrawStrategy strategy;
-        std::vector<DrawnViews> drawn = {};
+        std::vector<CachedPictures> drawn = {};
         std::optional<EditQuality> quality = {};
     };
     bool is_last() const { return at_ + 1 == tried_.size(); }

@@ -1,5 +1,6 @@
 // Remembers renders and answers.
 #include "engine/pipeline/run/run_context.h"
+#include "engine/pipeline/models/model_settings.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -41,8 +42,8 @@ private:
 
 RunContext::RunContext(Scene scene, std::shared_ptr<neural::TextToImage> model, const JobParameters& job,
                        Segmenters segmenters)
-    : scene_(std::move(scene)), model_(std::move(model)), painter_(0, job.rasterizer),
-      segmenters_(std::move(segmenters)) {
+    : scene_(std::move(scene)), traits_(traits_of(job)), model_(std::move(model)),
+      painter_(0, job.rasterizer), segmenters_(std::move(segmenters)) {
     if (!segmenters_.clicks) segmenters_.clicks = edit::make_default_segmenter();
     const auto statistics = compute_statistics(scene_.gaussians);
     if (statistics.visible_rows == 0)
@@ -84,14 +85,16 @@ void RunContext::ask(const neural::AttentionParameters& attention) {
     if (attention_ == nullptr) ask_anew(attention);
 }
 
-std::optional<edit::StudioBackground> RunContext::ground(const std::string& sentence,
-                                                         const std::vector<View>& views) {
-    if (!model_->supports_scene_conditioning()) return std::nullopt;
-    if (!ground_) {
-        ground_ = edit::ground_below(sentence, drawn_, views, scene_.info.up, painter_.rasterizer());
-        if (*ground_) log::info("the scene has hardly any ground: the model is shown it on a plain one");
-    }
-    return *ground_ ? edit::plain_ground(sentence, (*ground_)->standing, scene_.info.up) : std::nullopt;
+void RunContext::look_for_ground(const std::vector<View>& views) {
+    if (looked_for_ground_ || !model_->supports_scene_conditioning()) return;
+    looked_for_ground_ = true;
+    ground_ = edit::ground_below({}, drawn_, views, scene_.info.up, painter_.rasterizer(), traits_);
+    if (ground_) log::info("the scene has hardly any ground: the model is shown it on a plain one");
+}
+
+std::optional<edit::StudioBackground> RunContext::ground(const std::string& sentence) const {
+    if (!ground_ || !model_->supports_scene_conditioning()) return std::nullopt;
+    return edit::plain_ground(sentence, ground_->standing, scene_.info.up, traits_);
 }
 
 edit::LocateTools RunContext::tools(const Views& views, const std::optional<edit::StudioBackground>& ground,

@@ -58,10 +58,13 @@ public:
     void ask(const neural::AttentionParameters& attention);
     /// Who is told of the views of searches from here on; empty = nobody.
     void watch_views(ViewWatch watch) { watch_ = std::move(watch); }
-    /// What the model is shown below and behind a scene that was cut out of its surroundings, for a sentence
-    /// that says what the scene shows (edit::ground_below(), by the views of the first call); none for models
-    /// that are not shown scenes.
-    std::optional<edit::StudioBackground> ground(const std::string& sentence, const std::vector<View>& views);
+    const edit::ModelTraits& traits() const { return traits_; }
+    /// Looks whether the scene was cut out of its surroundings (edit::ground_below()). Only the first call
+    /// looks; models that are not shown scenes need none.
+    void look_for_ground(const std::vector<View>& views);
+    /// The ground that the model is shown below and behind such a scene, for a sentence that says what the
+    /// scene shows; none before look_for_ground().
+    std::optional<edit::StudioBackground> ground(const std::string& sentence) const;
     /// What locate() calls, for these views before this ground; the views must stay while it is used; needs
     /// ask() or ask_anew().
     edit::LocateTools tools(const Views& views, const std::optional<edit::StudioBackground>& ground,
@@ -86,7 +89,9 @@ private:
     Scene scene_;
     GaussianSet drawn_;
     std::size_t unusable_ = 0;
-    std::optional<std::optional<edit::StudioBackground>> ground_;  // of any sentence, once it was asked for
+    edit::ModelTraits traits_;
+    std::optional<edit::StudioBackground> ground_;  // of any sentence
+    bool looked_for_ground_ = false;
     std::shared_ptr<neural::TextToImage> model_;
     Painter painter_;
     ThreadPool threads_;

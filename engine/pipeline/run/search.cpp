@@ -32,15 +32,6 @@ namespace {
 
 constexpr std::array<double, 5> ScanDistances{1.0, 0.7, 0.45, 0.3, 0.22};  // of the fitted orbit's radius
 constexpr int ScanViews = 6;                                               // per distance
-/// Pictures of things have more room above than below, and so have those that the starter was trained on (a
-/// figure's middle at 0.5, the picture's at 0.59). Error removed of what is added, 16 edits of seeds 55 and
-/// 56: 0.12 at 0.09, 0.13 at 0.15; 0.05 with the label framed by its box's middle, as grounds are.
-constexpr double HeadRoom = 0.15;
-/// What takes the place of another, or is worn by it, is drawn as the pictures show it that the starter
-/// learned to draw from (synth::scene_camera()): there a figure's height tells where in the picture its foot
-/// is, and half of the picture is so many heights. With the label framed by its box, as above, the foot was
-/// elsewhere, and new things floated or sank by up to a tenth of their height.
-constexpr double FigureAim = 0.59, FigureHalfPicture = 0.87;
 constexpr double StepBack = 1.2;  // of the distance, where what was drawn does not fit into the pictures
 constexpr double CutShares[] = {
     0.6, 1};  // of the views, from which that is so, a step each: a wing may reach out of some views; every
@@ -105,12 +96,14 @@ bool holds_some(const Label& found, const std::vector<std::uint8_t>& by_hand) {
     return common(*found.bits, by_hand) >= SameThing * common(by_hand, by_hand);
 }
 
-/// From where a thing is seen as large, and as high in the picture, as figures that the starter learned from.
-OrbitParameters framed_figure(const edit::UprightBounds& standing, const OrbitParameters& orbit) {
+/// The orbit from which a thing is seen as large, and as high in the picture, as figures are in the pictures
+/// that the model has learned from: there a figure's height tells where in the picture its foot is.
+OrbitParameters framed_figure(const edit::UprightBounds& standing, const OrbitParameters& orbit,
+                              const edit::ModelTraits& traits) {
     const double height = edit::figure_height(standing);
     OrbitParameters framed = orbit;
-    framed.centre = standing.foot + normalized(orbit.up) * (FigureAim * height);
-    framed.radius = FigureHalfPicture * height / std::tan(orbit.fov_x / 2);
+    framed.centre = standing.foot + normalized(orbit.up) * (traits.figure_aim * height);
+    framed.radius = traits.half_picture * height / std::tan(orbit.fov_x / 2);
     return framed;
 }
 
@@ -142,10 +135,16 @@ Located finished(Located located) {
     return located;
 }
 
-/// Words are looked for on it; a label is what it is.
+/// Looks for a ground, where it is wanted; the first views that are looked at decide.
+void look_for_ground(RunContext& workplace, const EditRecipe& recipe, const Views& views) {
+    if (recipe.guidance.plain_ground) workplace.look_for_ground(views.views);
+}
+
+/// The ground on which words are looked for; a label is what it is.
 std::optional<edit::StudioBackground> ground_shown(RunContext& workplace, const EditRecipe& recipe,
                                                    const Views& views) {
-    return recipe.guidance.plain_ground ? workplace.ground(edit::sentence_before(recipe.request), views.views)
+    look_for_ground(workplace, recipe, views);
+    return recipe.guidance.plain_ground ? workplace.ground(edit::sentence_before(recipe.request))
                                         : std::nullopt;
 }
 
@@ -179,7 +178,7 @@ private:
         const bool by_label =
             !hints_.label.empty() && (recipe_.job.brings_label() ||
                                       !edit::knows(workplace_.model().known_words(), recipe_.request.source));
-        ground();  // as these views show it
+        if (hints_.label.empty()) look_for_ground(workplace_, recipe_, views_);
         read_scene(moves() && !by_label);
         if (by_label) return from_label();
         Located located = moves() ? from_all_distances() : moved_in(views_, {});
@@ -329,7 +328,9 @@ private:
         auto bits = *wearer_;
         for (std::size_t row = 0; row < bits.size(); ++row) bits[row] &= (*label.bits)[row] == 0 ? 1 : 0;
         if (std::find(bits.begin(), bits.end(), std::uint8_t{1}) == bits.end()) return {};
-        return edit::wearer_of(recipe_.request, workplace_.drawn(), bits, orbit.up, front, true).standing;
+        return edit::wearer_of(recipe_.request, workplace_.drawn(), bits, orbit.up, front, true,
+                               workplace_.traits())
+            .standing;
     }
 
     /// All of a scene that was cut out of its surroundings; else what a few views around what is worn find
@@ -372,15 +373,16 @@ private:
                                const Vec3& front) {
         if (framed_as_figure(mode)) {
             const auto standing = edit::wearer_of(recipe_.request, workplace_.drawn(), *label.bits, orbit.up,
-                                                  front, mode == edit::EditMode::Add)
+                                                  front, mode == edit::EditMode::Add, workplace_.traits())
                                       .standing;
             const auto wearer = edit::replaces_accessory(recipe_.request, mode)
                                     ? standing_of_wearer(label, orbit, front)
                                     : edit::UprightBounds{};
-            if (standing.found()) return framed_figure(wearer.found() ? wearer : standing, orbit);
+            if (standing.found())
+                return framed_figure(wearer.found() ? wearer : standing, orbit, workplace_.traits());
         }
         localize::FocusParameters framing;
-        framing.head_room = HeadRoom;
+        framing.head_room = workplace_.traits().head_room;
         auto focused = localize::focus_orbit(workplace_.drawn(), *label.bits, orbit, framing);
         if (mode == edit::EditMode::Add) focused.radius *= room_around(recipe_.request);
         return focused;
@@ -498,7 +500,9 @@ edit::LocateInput question(const RunContext& workplace, const EditRecipe& recipe
             label,
             workplace.model().known_words(),
             views.azimuths,
-            elevations};
+            elevations,
+            {},
+            workplace.traits()};
 }
 
 Located locate(RunContext& workplace, const EditRecipe& recipe, const Views& views, const Hints& hints,

@@ -48,9 +48,10 @@ constexpr double InItsColour = 0.6;
 
 /// Judges by the encoder; a ground that it has no word for, by the colour that such a ground has.
 EditQuality judge_drawn(const neural::TextToImage& model, const edit::EditRequest& request,
-                        edit::EditMode mode, const edit::ViewTargets& round) {
+                        edit::EditMode mode, const edit::ViewTargets& round,
+                        const edit::ModelTraits& traits) {
     auto verdict = judge_targets(model, request, edit::as_told(request.prompt), round);
-    const auto look = edit::usual_look(request, mode);
+    const auto look = edit::usual_look(request, mode, traits);
     if (!look) return verdict;
     const double gone = edit::gone_towards(*look, round);
     if (!verdict.score) verdict.likeness = gone;
@@ -65,12 +66,13 @@ EditQuality judge_drawn(const neural::TextToImage& model, const edit::EditReques
 
 /// Gives what comes in a thing's place or is added its usual colour where the sentence tells none.
 edit::EditRequest in_usual_colour(const neural::TextToImage& model, edit::EditRequest request,
-                                  edit::EditMode mode) {
+                                  edit::EditMode mode, const edit::ModelTraits& traits) {
     if (mode == edit::EditMode::Modify) return request;
     const auto known = model.known_words();
     const auto thing = new_thing(request, mode), told = edit::as_told(request.prompt);
     const auto usual = edit::with_usual_colour(
-        told, thing, edit::promptable_vocabulary(known, edit::with_dyes(model.drawn_words(), known)));
+        told, thing, edit::promptable_vocabulary(known, edit::with_dyes(model.drawn_words(), known)),
+        traits.usual_colours);
     if (usual == told) return request;
     log::info("the sentence names no colour for \"{}\": it is drawn as \"{}\"", thing, usual);
     request.prompt = usual;
@@ -97,12 +99,13 @@ edit::SnapshotCallback PatternLayer::over(edit::SnapshotCallback snapshots) cons
 }
 
 ViewCandidate::ViewCandidate(const SceneEdit& scene_edit, const DrawStrategy& strategy,
-                             const std::optional<edit::GroundUnder>& ground, std::vector<DrawnViews>* drawn)
+                             const std::optional<edit::GroundUnder>& ground,
+                             std::vector<CachedPictures>* drawn)
     : scene_edit_(scene_edit), request_(scene_edit.recipe.request) {
     const auto& [workplace, scene, located, plan, recipe, observer, control] = scene_edit;
     const auto& model = workplace.model();
     if (model.kind() != neural::BundleKind::InstructPix2Pix) {
-        request_ = in_usual_colour(model, std::move(request_), plan.mode);
+        request_ = in_usual_colour(model, std::move(request_), plan.mode, workplace.traits());
         remap_ = edit::dye_of(request_, plan.mode,
                               edit::promptable_vocabulary(model.known_words(), model.drawn_words()));
     }
@@ -131,12 +134,13 @@ template <class Editor, class... Parts> Editor& ViewCandidate::add(Parts&&... pa
 }
 
 void ViewCandidate::add_editors(const DrawStrategy& strategy, const std::optional<edit::GroundUnder>& ground,
-                                std::vector<DrawnViews>* drawn) {
+                                std::vector<CachedPictures>* drawn) {
     const auto& recipe = scene_edit_.recipe;
     const auto& plan = scene_edit_.plan;
     const auto& model = scene_edit_.workplace.model();
     if (strategy.ground == DrawStrategy::Ground::DefaultColour) {
-        add<edit::DefaultGroundColour>(*edit::usual_look(recipe.request, plan.mode));
+        add<edit::DefaultGroundColour>(
+            *edit::usual_look(recipe.request, plan.mode, scene_edit_.workplace.traits()));
     } else {
         const bool instructed = model.kind() == neural::BundleKind::InstructPix2Pix;
         const auto prompt = instructed ? told_to_editor(request_) : edit::as_told(request_.prompt);
@@ -161,7 +165,7 @@ EditQuality ViewCandidate::judge() const {
     const auto& model = scene_edit_.workplace.model();
     const auto mode = scene_edit_.plan.mode;
     return remap_ ? judge_undyed(model, request_, mode, *remap_, remapped_)
-                  : judge_drawn(model, request_, mode, *sheet_);
+                  : judge_drawn(model, request_, mode, *sheet_, scene_edit_.workplace.traits());
 }
 
 void ViewCandidate::show(const edit::ViewTargets& sheet) {

@@ -27,7 +27,7 @@ class ViewCandidate {
 public:
     /// `drawn`: keeps pictures for later, may be null; `ground`: plain_ground_under().
     ViewCandidate(const SceneEdit& scene_edit, const DrawStrategy& strategy,
-                  const std::optional<edit::GroundUnder>& ground, std::vector<DrawnViews>* drawn);
+                  const std::optional<edit::GroundUnder>& ground, std::vector<CachedPictures>* drawn);
     ViewCandidate(const ViewCandidate&) = delete;
 
     /// Has the first views drawn: sheet(), or failure() where the model could draw nothing of use; neither
@@ -43,7 +43,7 @@ public:
 private:
     template <class Editor, class... Parts> Editor& add(Parts&&... parts);
     void add_editors(const DrawStrategy& strategy, const std::optional<edit::GroundUnder>& ground,
-                     std::vector<DrawnViews>* drawn);
+                     std::vector<CachedPictures>* drawn);
     void show(const edit::ViewTargets& sheet);
 
     const SceneEdit& scene_edit_;

@@ -19,9 +19,10 @@ DOCTEST_TEST_CASE("drawn scenes stand on their own ground, and without it in not
         const auto& set = scene.scene.gaussians;
         const auto views = orbit_views(fit_orbit(compute_statistics(set), scene.scene.info.up), 6, 48, 48);
         DOCTEST_CHECK_FALSE(
-            edit::ground_below("a cat", set, views, scene.scene.info.up, *rasterizer).has_value());
+            edit::ground_below("a cat", set, views, scene.scene.info.up, *rasterizer, edit::ModelTraits{})
+                .has_value());
         DOCTEST_CHECK(edit::ground_below("a cat", synth::without_ground(scene).scene.gaussians, views,
-                                         scene.scene.info.up, *rasterizer)
+                                         scene.scene.info.up, *rasterizer, edit::ModelTraits{})
                           .has_value());
     }
 }

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/edit/interfaces/model_traits.h"
 #include "engine/edit/request/colour_word.h"
 
 namespace colour_word_test {
@@ -103,19 +104,22 @@ DOCTEST_TEST_CASE("the colour stands before the thing, and the article follows i
 }
 
 DOCTEST_TEST_CASE("a thing that comes has its usual colour where the sentence tells none") {
+    const auto usual = edit::ModelTraits{}.usual_colours;
     const std::vector<std::string> sayable{"white", "green", "red", "frog", "owl"};
-    DOCTEST_CHECK(edit::with_usual_colour("a frog on the grass", "frog", sayable) ==
+    DOCTEST_CHECK(edit::with_usual_colour("a frog on the grass", "frog", sayable, usual) ==
                   "a green frog on the grass");
-    DOCTEST_CHECK(edit::with_usual_colour("a red frog", "frog", sayable) == "a red frog");
-    DOCTEST_CHECK(edit::with_usual_colour("a big frog", "frog", sayable) ==
+    DOCTEST_CHECK(edit::with_usual_colour("a red frog", "frog", sayable, usual) == "a red frog");
+    DOCTEST_CHECK(edit::with_usual_colour("a big frog", "frog", sayable, usual) ==
                   "a big green frog");  // which says nothing to the model
-    DOCTEST_CHECK(edit::with_usual_colour("a frog made of wood", "frog", sayable) == "a frog made of wood");
-    DOCTEST_CHECK(edit::with_usual_colour("a cat", "cat", sayable) == "a cat");
-    DOCTEST_CHECK(
-        edit::with_usual_colour("a bear with wings", "wings", {"a", "bear", "with", "wings", "white"}) ==
-        "a bear with white wings");
-    DOCTEST_CHECK(edit::with_usual_colour("an owl", "owl", sayable) == "an owl");  // brown cannot be said
-    DOCTEST_CHECK(edit::with_usual_colour("a frog", "frog", {}) == "a frog");      // a model of all words
+    DOCTEST_CHECK(edit::with_usual_colour("a frog made of wood", "frog", sayable, usual) ==
+                  "a frog made of wood");
+    DOCTEST_CHECK(edit::with_usual_colour("a cat", "cat", sayable, usual) == "a cat");
+    DOCTEST_CHECK(edit::with_usual_colour("a bear with wings", "wings",
+                                          {"a", "bear", "with", "wings", "white"},
+                                          usual) == "a bear with white wings");
+    DOCTEST_CHECK(edit::with_usual_colour("an owl", "owl", sayable, usual) ==
+                  "an owl");                                                          // brown cannot be said
+    DOCTEST_CHECK(edit::with_usual_colour("a frog", "frog", {}, usual) == "a frog");  // a model of all words
 }
 
 }  // namespace colour_word_test

@@ -20,7 +20,9 @@ const Vec3 Up{0, -1, 0};
 
 UprightBounds figure() { return {{0.5, 1, 2}, 1.0, 0.5, 0.4}; }
 
-StudioBackground ground_of(const std::string& sentence) { return *plain_ground(sentence, figure(), Up); }
+StudioBackground ground_of(const std::string& sentence) {
+    return *plain_ground(sentence, figure(), Up, ModelTraits{});
+}
 
 /// Where the camera sees a point of the world.
 std::pair<int, int> pixel_of(const Camera& camera, const Vec3& point) {
@@ -93,8 +95,8 @@ DOCTEST_TEST_CASE(
 DOCTEST_TEST_CASE("what is as flat as a ground, or is not there, stands on none") {
     auto flat = figure();
     flat.height = 0.02;
-    DOCTEST_CHECK_FALSE(plain_ground("snow", flat, Up).has_value());
-    DOCTEST_CHECK_FALSE(plain_ground("a cat", UprightBounds{}, Up).has_value());
+    DOCTEST_CHECK_FALSE(plain_ground("snow", flat, Up, ModelTraits{}).has_value());
+    DOCTEST_CHECK_FALSE(plain_ground("a cat", UprightBounds{}, Up, ModelTraits{}).has_value());
 }
 
 DOCTEST_TEST_CASE("only rounds that begin a new thing, and restyles, are shown the plain ground") {
@@ -203,7 +205,8 @@ DOCTEST_TEST_CASE("how much ground there is around a thing is seen from above: a
         return ground_cover(column.set, column.bits, standing, Up, *rasterizer);
     };
     const auto in_nothing = [&](const Column& column) {
-        return ground_under("a cat", column.set, column.bits, Up, {0, 0, -1}, *rasterizer)->in_nothing;
+        return ground_under("a cat", column.set, column.bits, Up, {0, 0, -1}, *rasterizer, ModelTraits{})
+            ->in_nothing;
     };
     const auto field = column_on(1.6, 0), plinth = column_on(0.3, 0), bare = column_on(-1, 0),
                roof = column_on(1.6, 0.8), below = column_on(1.6, -1.5);
@@ -216,7 +219,8 @@ DOCTEST_TEST_CASE("how much ground there is around a thing is seen from above: a
     DOCTEST_CHECK(cover(roof) == 0);     // over its head is no ground
     DOCTEST_CHECK(cover(below) > 0.95);  // it is worn, or held
     const std::vector<std::uint8_t> other(3, 1);
-    DOCTEST_CHECK_FALSE(ground_under("a cat", field.set, other, Up, {0, 0, -1}, *rasterizer).has_value());
+    DOCTEST_CHECK_FALSE(
+        ground_under("a cat", field.set, other, Up, {0, 0, -1}, *rasterizer, ModelTraits{}).has_value());
 }
 
 DOCTEST_TEST_CASE("a scene has a ground where that reaches out from under what rises out of it") {
@@ -226,18 +230,19 @@ DOCTEST_TEST_CASE("a scene has a ground where that reaches out from under what r
     orbit.radius = 4;
     const auto views = orbit_views(orbit, 6, 32, 32);
     const auto below = [&](const Column& column) {
-        return ground_below("a cat", column.set, views, Up, *rasterizer);
+        return ground_below("a cat", column.set, views, Up, *rasterizer, ModelTraits{});
     };
     DOCTEST_CHECK_FALSE(below(column_on(1.6, 0)).has_value());
     const auto bare = below(column_on(-1, 0)), plinth = below(column_on(0.3, 0));
     DOCTEST_REQUIRE(bare.has_value());
     DOCTEST_CHECK(plinth.has_value());
     DOCTEST_CHECK(std::abs(dot(bare->standing.foot, Up)) < 0.1);  // the lowest of it
-    DOCTEST_CHECK_FALSE(ground_below("a cat", GaussianSet(), views, Up, *rasterizer).has_value());
-    orbit.radius = 0.3;  // so near that hardly anything else is seen
     DOCTEST_CHECK_FALSE(
-        ground_below("a cat", column_on(-1, 0).set, orbit_views(orbit, 6, 32, 32), Up, *rasterizer)
-            .has_value());
+        ground_below("a cat", GaussianSet(), views, Up, *rasterizer, ModelTraits{}).has_value());
+    orbit.radius = 0.3;  // so near that hardly anything else is seen
+    DOCTEST_CHECK_FALSE(ground_below("a cat", column_on(-1, 0).set, orbit_views(orbit, 6, 32, 32), Up,
+                                     *rasterizer, ModelTraits{})
+                            .has_value());
 }
 
 DOCTEST_TEST_CASE("a picture is moved before the plain ground by what it covers of its background") {

@@ -20,7 +20,7 @@ std::optional<Rgb> look(const char* prompt, const char* target,
     request.source = "grass";
     request.prompt = prompt;
     request.target = target;
-    return edit::usual_look(request, mode);
+    return edit::usual_look(request, mode, edit::ModelTraits{});
 }
 
 /// A grey ramp of 8x8, times `light`; its lower half may change.

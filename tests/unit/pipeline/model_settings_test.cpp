@@ -109,6 +109,38 @@ DOCTEST_TEST_CASE("model settings: a value that a recipe or a user sets to the p
     DOCTEST_CHECK(!request.geometry_share.is_set());
 }
 
+DOCTEST_TEST_CASE("model settings: a model's traits are read from its bundle, the rest is as usual") {
+    const test::ScratchFolder scratch;
+    JobParameters job;
+    job.model = scratch.path().string();
+    const edit::ModelTraits usual;
+    DOCTEST_CHECK(traits_of(job).figure_aim == usual.figure_aim);
+    const auto state = [&](const Json& traits) {
+        write_file(scratch.path() / "gseditpro.json", Json{{"traits", traits}}.dump());
+    };
+    state({{"figure_aim", 0.5}, {"sky", {0, 0.5, 1}}, {"usual_colours", {{"frog", "blue"}}}});
+    const auto traits = traits_of(job);
+    DOCTEST_CHECK(traits.figure_aim == 0.5);
+    DOCTEST_CHECK(traits.sky == edit::ModelTraits::Colour{0, 0.5f, 1});
+    DOCTEST_CHECK(traits.usual_colours == std::map<std::string, std::string>{{"frog", "blue"}});
+    DOCTEST_CHECK(traits.ground_colours == usual.ground_colours);
+    for (const Json& wrong : {Json{{"figure_aim", -1}}, Json{{"no_such", 1}}, Json{{"sky", {0, 1}}},
+                              Json{{"sky", {0, 1, 2}}}, Json{{"plain_grounds", {"moss"}}}, Json(5)}) {
+        state(wrong);
+        DOCTEST_CHECK_THROWS_AS(traits_of(job), Error);
+    }
+}
+
+DOCTEST_TEST_CASE(
+    "model settings: the traits of the bundled model are those that its pictures were drawn by") {
+    const auto traits = traits_of({});
+    const edit::ModelTraits usual;
+    DOCTEST_CHECK(fields_to_json(traits) == fields_to_json(usual));
+    DOCTEST_CHECK(traits.sky == usual.sky);
+    DOCTEST_CHECK(traits.ground_colours == usual.ground_colours);
+    DOCTEST_CHECK(traits.usual_colours == usual.usual_colours);
+}
+
 DOCTEST_TEST_CASE("model settings: with another model, only what nobody changed moves on") {
     EditRecipe small, wide;
     apply_profile(wide_profile(), wide, {});

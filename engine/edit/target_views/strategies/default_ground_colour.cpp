@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "engine/edit/request/colour_word.h"
 #include "engine/edit/request/words.h"
@@ -34,19 +33,11 @@ float median_luminance(const std::vector<EditView>& views) {
 
 }  // namespace
 
-std::optional<std::array<float, 3>> ground_colour(const std::string& word) {
-    // Means of what engine/synth paints; of those that the encoder has no word for, by eye.
-    static const std::map<std::string, std::array<float, 3>> colours{
-        {"snow", {0.88f, 0.93f, 0.99f}},  {"sand", {0.85f, 0.73f, 0.50f}}, {"grass", {0.36f, 0.62f, 0.15f}},
-        {"water", {0.13f, 0.56f, 0.70f}}, {"ice", {0.66f, 0.86f, 0.96f}},  {"mud", {0.33f, 0.21f, 0.13f}},
-        {"gravel", {0.55f, 0.54f, 0.52f}}};
-    const auto found = colours.find(word);
-    return found == colours.end() ? std::nullopt : std::optional(found->second);
-}
-
-std::optional<std::array<float, 3>> usual_look(const EditRequest& request, EditMode mode) {
+std::optional<std::array<float, 3>> usual_look(const EditRequest& request, EditMode mode,
+                                               const ModelTraits& traits) {
     if (mode != EditMode::Modify || is_described(request.prompt, request.target)) return std::nullopt;
-    return ground_colour(request.target);
+    const auto found = traits.ground_colours.find(request.target);
+    return found == traits.ground_colours.end() ? std::nullopt : std::optional(found->second);
 }
 
 double gone_towards(const std::array<float, 3>& colour, const ViewTargets& round) {

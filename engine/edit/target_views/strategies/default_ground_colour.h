@@ -6,17 +6,17 @@
 #include <string>
 
 #include "engine/edit/interfaces/interfaces.h"
+#include "engine/edit/interfaces/model_traits.h"
 #include "engine/edit/interfaces/view_targets.h"
 #include "engine/edit/request/request.h"
 
 namespace gse::edit {
 
-/// The colour, display values in [0,1], of a ground by its word; none where it has no usual one.
-std::optional<std::array<float, 3>> ground_colour(const std::string& word);
-
-/// That of the ground that a validated request makes of another ("snow" for the grass); none where it makes
-/// something else, where that has no usual colour, or where the sentence says what it is like ("red sand").
-std::optional<std::array<float, 3>> usual_look(const EditRequest& request, EditMode mode);
+/// Colour, display values in [0,1], of the ground that a validated request makes of another ("snow" for the
+/// grass); none where it makes something else, where that has no usual colour, or where the sentence says
+/// what it is like ("red sand").
+std::optional<std::array<float, 3>> usual_look(const EditRequest& request, EditMode mode,
+                                               const ModelTraits& traits);
 
 /// How much of the way to the colour redrawn views have gone, of what changed in them: 1 = all of it; below 0
 /// = away from it. 1 where they began near it.

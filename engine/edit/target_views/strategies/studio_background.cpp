@@ -8,13 +8,10 @@
 #include "engine/base/log.h"
 #include "engine/edit/placement/ground_cover.h"
 #include "engine/edit/request/words.h"
-#include "engine/edit/target_views/strategies/default_ground_colour.h"
 
 namespace gse::edit {
 namespace {
 
-constexpr double PlainReach =
-    3;  // figures' heights: as wide as in the pictures that the bundled model learned from
 constexpr double LeastUpright = 0.1;  // of its width: what is lower is a ground itself
 constexpr double LeastGroundCover =
     0.5;  // of the ground around it: less is no ground that a picture would show
@@ -22,9 +19,6 @@ constexpr double LeastShown =
     0.05;  // of the pictures: where a scene shows less of a ground, its surroundings are there
 constexpr std::size_t LookedAt = 4;  // views that tell
 constexpr int PlainSamples = 2;      // along a pixel's side
-// Before it st-peter, cut out as in README, is drawn more golden (score 0.40) than before black (0.35), and
-// as much of a red cat (0.30, 0.29).
-constexpr std::array<float, 3> Sky{0.69f, 0.78f, 0.88f};
 
 /// Takes what shows beside and through a thing for what is behind it in the scene.
 void move_before(const Image& scene, const Image& shown, const Image& outline, Image& picture) {
@@ -53,23 +47,21 @@ double shown_share(const StudioBackground& plain, const GaussianSet& set, const 
 }  // namespace
 
 std::optional<StudioBackground> plain_ground(const std::string& sentence, const UprightBounds& standing,
-                                             const Vec3& up) {
+                                             const Vec3& up, const ModelTraits& traits) {
     if (!standing.found() || standing.height < LeastUpright * standing.width()) return std::nullopt;
-    // Of grass, snow and sand under a cat the last left the least of a rim; a grey like that of stone, which
-    // is no ground in the pictures that the model learned from, did no better than the scene.
-    std::string ground = "sand";
-    for (const char* word : {"grass", "snow"})
+    std::string ground = traits.plain_grounds.front();
+    for (const auto& word : traits.plain_grounds)
         if (has_word(sentence, word)) ground = word;
-    const auto colour = *ground_colour(ground);
-    return StudioBackground{standing, normalized(up), colour, Sky};
+    return StudioBackground{standing, normalized(up), traits.ground_colours.at(ground), traits.sky,
+                            traits.ground_reach * figure_height(standing)};
 }
 
 std::optional<GroundUnder> ground_under(const std::string& sentence, const GaussianSet& set,
                                         std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front,
-                                        raster::Rasterizer& rasterizer) {
+                                        raster::Rasterizer& rasterizer, const ModelTraits& traits) {
     if (bits.size() != set.size()) return std::nullopt;
     const auto standing = standing_of(set, bits, up, front);
-    const auto plain = plain_ground(sentence, standing, up);
+    const auto plain = plain_ground(sentence, standing, up, traits);
     if (!plain) return std::nullopt;
     const double cover = ground_cover(set, bits, standing, up, rasterizer);
     log::debug("{:.0f} % of the ground around it are there", 100 * cover);
@@ -78,9 +70,9 @@ std::optional<GroundUnder> ground_under(const std::string& sentence, const Gauss
 
 std::optional<StudioBackground> ground_below(const std::string& sentence, const GaussianSet& set,
                                              const std::vector<View>& views, const Vec3& up,
-                                             raster::Rasterizer& rasterizer) {
+                                             raster::Rasterizer& rasterizer, const ModelTraits& traits) {
     const auto whole = standing_of_scene(set, up);
-    const auto plain = plain_ground(sentence, whole, up);
+    const auto plain = plain_ground(sentence, whole, up, traits);
     if (!plain) return std::nullopt;
     const double cover = ground_of_scene(set, whole, up, rasterizer);
     log::debug("{:.0f} % of the ground around what rises out of the scene are there", 100 * cover);
@@ -92,13 +84,12 @@ std::optional<StudioBackground> ground_below(const std::string& sentence, const 
 Image shown_of(const StudioBackground& plain, const Camera& camera) {
     Image shown(camera.width, camera.height, 1);
     const Vec3 from = camera.centre();
-    const double above = dot(from - plain.standing.foot, plain.up),
-                 reach = PlainReach * figure_height(plain.standing);
+    const double above = dot(from - plain.standing.foot, plain.up);
     const auto hits = [&](double x, double y) {
         const Vec3 ray = camera.rotation.row(0) * ((x - camera.cx) / camera.fx) +
                          camera.rotation.row(1) * ((y - camera.cy) / camera.fy) + camera.rotation.row(2);
         const double rises = dot(ray, plain.up), way = rises != 0 ? -above / rises : -1;
-        return way > 0 && length(from + ray * way - plain.standing.foot) <= reach;
+        return way > 0 && length(from + ray * way - plain.standing.foot) <= plain.reach;
     };
     for (int y = 0; y < shown.height; ++y)
         for (int x = 0; x < shown.width; ++x) {

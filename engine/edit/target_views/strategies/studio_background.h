@@ -9,6 +9,7 @@
 #include <string>
 
 #include "engine/edit/interfaces/interfaces.h"
+#include "engine/edit/interfaces/model_traits.h"
 #include "engine/edit/placement/upright_bounds.h"
 #include "engine/raster/rasterizer.h"
 
@@ -20,12 +21,13 @@ struct StudioBackground {
     Vec3 up;                      // of the world, unit length
     std::array<float, 3> ground;  // colours
     std::array<float, 3> sky;
+    double reach = 0;  // radius of the ground, world units
 };
 
-/// The ground for a sentence: of the colour of the one that it names, of sand where it names none that the
-/// bundled model has learned. None where nothing stands, or what is labelled is itself as flat as a ground.
+/// The ground for a sentence: the one of ModelTraits::plain_grounds that it names, else the first of them.
+/// None where nothing stands, or what is labelled is itself as flat as a ground.
 std::optional<StudioBackground> plain_ground(const std::string& sentence, const UprightBounds& standing,
-                                             const Vec3& up);
+                                             const Vec3& up, const ModelTraits& traits);
 
 /// The plain ground under what a scene shows.
 struct GroundUnder {
@@ -37,17 +39,17 @@ struct GroundUnder {
 /// The same of what `bits` [N] label; none also where they label nothing, or are not of the scene's size.
 std::optional<GroundUnder> ground_under(const std::string& sentence, const GaussianSet& set,
                                         std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front,
-                                        raster::Rasterizer& rasterizer);
+                                        raster::Rasterizer& rasterizer, const ModelTraits& traits);
 
 /// The ground below a whole scene that was cut out of its surroundings (ground_of_scene()); none where it has
 /// one, or where some of the `views` would hardly show it, as those within a room.
 std::optional<StudioBackground> ground_below(const std::string& sentence, const GaussianSet& set,
                                              const std::vector<View>& views, const Vec3& up,
-                                             raster::Rasterizer& rasterizer);
+                                             raster::Rasterizer& rasterizer, const ModelTraits& traits);
 
 /// [H,W,1] share of each pixel that shows it, where nothing stands before it.
 Image shown_of(const StudioBackground& plain, const Camera& camera);
-/// [H,W,3] in [0,1], of the camera's size: a disc around the foot, three figures' heights in radius, as the
+/// [H,W,3] in [0,1], of the camera's size: a disc around the foot, as the
 /// camera sees it.
 Image picture_of(const StudioBackground& plain, const Camera& camera);
 /// The same behind a picture of the scene; `depth` [H,W,1] is 0 where that has nothing.
