@@ -37,9 +37,11 @@ ModelController::ModelController(Workspace& workspace, MoveRequest move_request)
 
 std::string ModelController::in_use() const { return path_.empty() ? starter_model_path().string() : path_; }
 
-std::string ModelController::key() const {
-    return fmt::format("{}\n{}\n{}\n{}", path_, settings_.device, settings_.precision,
-                       fmt::join(loras_, "\n"));
+ContentKey ModelController::key() const {
+    ContentHash hash;
+    hash.texts({path_, settings_.device, settings_.precision});
+    hash.texts(loras_);
+    return hash.key();
 }
 
 void ModelController::keep(std::shared_ptr<neural::TextToImage> model) {

@@ -12,6 +12,7 @@
 #include "app/cli/engine_names.h"
 #include "app/session/model_list.h"
 #include "app/session/workspace.h"
+#include "engine/base/content_hash.h"
 #include "engine/neural/api/model_profile.h"
 #include "engine/pipeline/models/recipe_model.h"
 #include "engine/pipeline/run/recipe.h"
@@ -24,7 +25,8 @@ public:
     /// Fields of the request that nobody chose go from the one model's values to the other's.
     using MoveRequest = std::function<void(const edit::EditRequest& before, const edit::EditRequest& after)>;
     struct Ticket {
-        std::string key, path;
+        ContentKey key;
+        std::string path;
         bool on_cpu = true;
     };
     ModelController(Workspace& workspace, MoveRequest move_request);
@@ -51,7 +53,7 @@ public:
     EditRecipe recipe(const edit::EditRequest& request, const std::string& looked_from) const;
 
     // The loaded model
-    std::string key() const;  // what the loaded model depends on
+    ContentKey key() const;  // of everything that the loaded model depends on
     const std::shared_ptr<neural::TextToImage>& loaded() const { return loaded_; }
     bool loaded_fits() const { return loaded_ != nullptr && loaded_key_ == key(); }
     const ModelLoad& load() const { return load_; }
@@ -100,7 +102,7 @@ private:
     ModelList list_;
     std::vector<ui::LoraView> lora_rows_;
     std::shared_ptr<neural::TextToImage> loaded_;
-    std::string loaded_key_;
+    ContentKey loaded_key_;
     ModelLoad load_;  // of the model in memory
     std::shared_ptr<DiskCache> cache_;
     int cache_mb_ = 0;

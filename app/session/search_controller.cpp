@@ -106,7 +106,7 @@ void SearchController::from_json(const nlohmann::json& json) {
 
 void SearchController::take_document() {
     last_.forget();
-    reach_key_.clear();
+    reach_key_ = {};
     choice_.reset();
 }
 
@@ -308,12 +308,15 @@ void SearchController::rename_label(const std::string& from, const std::string& 
 
 /// Made anew only when words, label or choice are others.
 void SearchController::refresh_reach() {
-    const auto choice =
-        choice_ ? fmt::format("{} {} {}", choice_->by_label, choice_->label, choice_->source) : "";
-    auto key = fmt::format("{}\n{}\n{}\n{}\n{}\n{}", workspace_.document.revision(), last_.number(),
-                           request_.source, request_.target, models_.path(), choice);
-    if (key == reach_key_) return;
-    reach_key_ = std::move(key);
+    ContentHash hash;
+    hash.numbers(workspace_.document.revision(), last_.number(), choice_.has_value());
+    hash.texts({request_.source, request_.target, models_.path()});
+    if (choice_) {
+        hash.numbers(choice_->by_label);
+        hash.texts({choice_->label, choice_->source});
+    }
+    if (reach_key_ == hash.key()) return;
+    reach_key_ = hash.key();
     const auto& labels = workspace_.document.state().labels;
     const auto source = edit::as_told(last_.words().source);
     attention_corrected_ =

@@ -18,6 +18,7 @@
 #include "app/session/state/edit_scope.h"
 #include "app/session/view_controller.h"
 #include "app/session/workspace.h"
+#include "engine/base/content_hash.h"
 
 namespace gse::app {
 
@@ -116,7 +117,7 @@ private:
     std::optional<Vote> wanted_vote_;
     std::shared_ptr<ArrivingViews> arriving_ = std::make_shared<ArrivingViews>();  // of the search under way
     std::optional<ReachChoice> choice_;  // of the label that was active then
-    std::string reach_key_;              // that the three below were made for
+    ContentKey reach_key_;               // that the three below were made for
     ui::EditReach reach_;
     bool labelled_by_hand_ = false, attention_corrected_ = false;
     Clock::time_point last_estimate_{};
