@@ -33,6 +33,17 @@ ARROWS = {
 }
 # room -> its sub-rooms, each with the sub-rooms of the same room that it may include; "" = files directly in the room
 SUB_ROOMS = {
+    "laboratory": {
+        "synth": {"synth/objects"},
+        "synth/objects": set(),
+        "starter": set(),
+        "training": {"synth", "starter"},
+        "eval": {"synth"},
+        "bench": {"synth", "eval", "bench/charts", "bench/raster"},
+        "bench/charts": set(),
+        "bench/raster": {"synth", "bench/charts"},
+        "figures": {"eval", "bench", "bench/charts", "bench/raster"},
+    },
     "io": {
         "bytes": set(),
         "files": {"formats"},

@@ -9,18 +9,18 @@
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/json.h"
+#include "engine/laboratory/bench/charts/machine.h"
+#include "engine/laboratory/bench/charts/page.h"
+#include "engine/laboratory/bench/charts/pareto_chart.h"
 #include "engine/laboratory/bench/edit_bench.h"
 #include "engine/laboratory/bench/locate_bench.h"
-#include "engine/laboratory/bench/machine.h"
-#include "engine/laboratory/bench/page.h"
-#include "engine/laboratory/bench/pareto_chart.h"
 #ifdef GSE_WINDOW
-#include "engine/laboratory/bench/preview_sweep.h"
+#include "engine/laboratory/bench/raster/preview_sweep.h"
 #endif
 #include "engine/io/image/image_file.h"
-#include "engine/laboratory/bench/raster_sweep.h"
+#include "engine/laboratory/bench/raster/raster_sweep.h"
+#include "engine/laboratory/bench/raster/stability_bench.h"
 #include "engine/laboratory/bench/scale_bench.h"
-#include "engine/laboratory/bench/stability_bench.h"
 
 namespace gse::bench {
 namespace {

@@ -11,7 +11,7 @@
 #include "engine/base/error.h"
 #include "engine/edit/request/words.h"
 #include "engine/io/image/image_file.h"
-#include "engine/laboratory/bench/setting_points.h"
+#include "engine/laboratory/bench/charts/setting_points.h"
 #include "engine/laboratory/eval/eval_run.h"
 
 namespace gse::bench {

@@ -11,7 +11,7 @@
 #include "engine/base/error.h"
 #include "engine/edit/request/words.h"
 #include "engine/evaluate/metrics.h"
-#include "engine/laboratory/bench/setting_points.h"
+#include "engine/laboratory/bench/charts/setting_points.h"
 #include "engine/laboratory/eval/eval_figures.h"
 
 namespace gse::bench {

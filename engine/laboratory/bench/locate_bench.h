@@ -6,7 +6,7 @@
 #include <string>
 
 #include "engine/base/fields.h"
-#include "engine/laboratory/bench/subject.h"
+#include "engine/laboratory/bench/charts/subject.h"
 #include "engine/pipeline/run/edit_job.h"
 
 namespace gse::bench {

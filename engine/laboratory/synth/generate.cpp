@@ -4,8 +4,8 @@
 #include <numbers>
 
 #include "engine/base/error.h"
-#include "engine/laboratory/synth/ground.h"
-#include "engine/laboratory/synth/models.h"
+#include "engine/laboratory/synth/objects/ground.h"
+#include "engine/laboratory/synth/objects/models.h"
 #include "engine/laboratory/synth/synth.h"
 #include "engine/laboratory/synth/words.h"
 

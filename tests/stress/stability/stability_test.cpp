@@ -7,7 +7,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/print.h"
-#include "engine/laboratory/bench/stability_bench.h"
+#include "engine/laboratory/bench/raster/stability_bench.h"
 #include "engine/raster/cuda/emulated_device.h"
 #include "engine/raster/rasterizer.h"
 

@@ -5,10 +5,10 @@
 #include <limits>
 
 #include "engine/io/image/image_file.h"
-#include "engine/laboratory/bench/growth.h"
-#include "engine/laboratory/bench/pareto_chart.h"
-#include "engine/laboratory/bench/setting_points.h"
-#include "engine/laboratory/bench/subject.h"
+#include "engine/laboratory/bench/charts/growth.h"
+#include "engine/laboratory/bench/charts/pareto_chart.h"
+#include "engine/laboratory/bench/charts/setting_points.h"
+#include "engine/laboratory/bench/charts/subject.h"
 #include "tests/test_paths.h"
 
 namespace chart_test {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "engine/io/image/image_file.h"
-#include "engine/laboratory/bench/pareto_chart.h"
+#include "engine/laboratory/bench/charts/pareto_chart.h"
 #include "tests/test_paths.h"
 
 namespace pareto_test {
