@@ -1,4 +1,5 @@
-// What a thing hid from a view: what is left of the scene without it, and a guess for where that has holes.
+// Clean plate of a view: the scene without the edited object, and a guess for its holes (METHOD.md, Clean
+// plates).
 #pragma once
 
 #include <cstddef>
@@ -7,19 +8,20 @@
 
 namespace gse::edit {
 
-/// A view of the scene without what may change.
+/// View of the scene without the splats that may change.
 struct CleanPlate {
     Image picture;     // [H,W,3] in [0,1]
     Image depth;       // [H,W,1] along z, 0 = nothing there
     Mask filled = {};  // 1 = a guess: there was a hole; empty before fill_holes()
 };
 
-/// Fills the holes of a backdrop, colour and depth, from their surroundings, and marks them: both solve
-/// Laplace's equation between what is known around a hole, the depth as 1/z, which is linear across the
-/// picture of a plane. A hole is an empty place inside `mask` that is enclosed by what is there (it does not
-/// touch the picture's rim nor anything empty outside the mask, as sky does), with the rim around it that is
-/// not quite opaque, whose colour is in part that of what is behind the scene. `alpha` [H,W,1]: opacity of
-/// the backdrop. Returns how many pixels were filled.
+/// Fills the holes of a clean plate, colour and depth, from their surroundings, and marks them. Both solve
+/// Laplace's equation between the known values around a hole. Depth is filled as 1/z, which is linear across
+/// the picture of a plane. Returns how many pixels were filled.
+///
+/// A hole is an empty place inside `mask` that the scene encloses: it touches neither the picture's rim nor
+/// empty pixels outside the mask (sky). Its rim that is not quite opaque belongs to it, since its colour is
+/// in part the background's. `alpha` [H,W,1] is the opacity of the plate.
 std::size_t fill_holes(CleanPlate& backdrop, const Mask& mask, const Image& alpha);
 
 }  // namespace gse::edit

@@ -1,4 +1,5 @@
-// What the edit needs from networks and segmenters, in plain types: implemented in engine/neural and here.
+// Interfaces of the edit to networks and segmenters, in plain types. They are implemented in engine/neural
+// and here.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +18,7 @@
 
 namespace gse::edit {
 
-/// What a guidance sees of one iteration.
+/// Inputs of a guidance in one iteration.
 struct GuidanceInput {
     const Image& rendered;        // [H,W,3] in [0,1], the current render
     const View& view;             // where it was rendered from
@@ -26,8 +27,7 @@ struct GuidanceInput {
     int iteration = 0;
     int iteration_count = 1;
     std::uint64_t seed = 0;  // already mixed with the iteration: the only source of randomness
-    /// [H,W,3] the unedited scene from there, not clamped; the same picture for the same view_index. Null =
-    /// not known.
+    /// The unedited scene from there [H,W,3], not clamped. One picture per view_index. Null = not known.
     const Image* original = nullptr;
 };
 
@@ -41,7 +41,8 @@ struct GuidanceOutput {
 class Guidance {
 public:
     virtual ~Guidance() = default;
-    /// A gradient with a value that is not finite says that there is none this time; the step is left out.
+    /// Gradient for one picture. A value that is not finite means that there is none this time; the step is
+    /// left out.
     virtual GuidanceOutput evaluate(const GuidanceInput& input) = 0;
 };
 
@@ -61,7 +62,7 @@ struct EditView {
         {};  // the scene without what may change, its holes filled; empty unless the round draws anew
 };
 
-/// What a round is asked to be.
+/// Orders for a round.
 struct EditViewsRequest {
     int round = 0, rounds = 1;
     int steps = 6;              // of the sampler
@@ -78,33 +79,32 @@ struct EditViewsRequest {
         1;  // standard deviation of the noise of a round that is `anew`; below 1 it draws nearer to the mean
 };
 
-/// The pictures as the model would have them, and numbers for the log.
+/// Pictures as the model would have them, and numbers for the log.
 struct EditedViews {
     std::vector<Image> images;  // per view, [H,W,3] in [0,1], of the size that came in
-    /// Per view, [H,W,1]: how much the picture differs from what the model makes of the backdrop alone (of
-    /// the channel that differs most); empty where it cannot tell, or was not asked.
+    /// Per view [H,W,1]: difference of the picture from the model's picture of the clean plate alone, in the
+    /// channel that differs most. Empty if the model cannot tell, or was not asked.
     std::vector<Image> changes = {};
-    /// Per view, [H,W,1] in [0,1]: how much of each pixel the new thing covers; empty where the model cannot
-    /// tell.
+    /// Per view [H,W,1] in [0,1]: coverage of each pixel by the new object. Empty if the model cannot tell.
     std::vector<Image> outlines = {};
     std::map<std::string, double> scalars = {};
     bool unfinished = false;  // what they lack is laid over the edited scene: pictures like the scene do not
                               // mean that nothing came
 };
 
-/// Edits all views of a round in the picture; the scene is fitted to what comes back.
+/// Edits all views of a round in the picture. The scene is fitted to its results.
 class MultiViewEditor {
 public:
     virtual ~MultiViewEditor() = default;
     /// Throws Error (Cancelled) on a stop request.
     virtual EditedViews edit(const std::vector<EditView>& views, const EditViewsRequest& input,
                              const JobControl& job) = 0;
-    /// Whether rounds that are not `anew` are drawn by a network that is shown the unedited views and keeps
-    /// their shapes, however much noise there is in the beginning.
+    /// True when a network that is shown the unedited views draws rounds that are not `anew`. It keeps their
+    /// shapes, however much noise there is in the beginning.
     virtual bool supports_appearance_editing() const { return false; }
 };
 
-/// One attention query: where in the image does each of these words of the prompt land?
+/// Attention query: the places in the image of each of these words of the prompt.
 struct AttentionQuery {
     const Image& image;              // [H,W,3] in [0,1]
     std::string prompt;              // must contain every word
@@ -115,20 +115,19 @@ struct AttentionQuery {
     std::uint64_t seed = 0;
 };
 
-/// Cross-attention of a text-to-image model (GSEditPro 3.2). Returns one single-channel image per word, at
-/// the size of the input image, non-negative, on the same scale for all pictures (all zero if the word drew
-/// no attention at all): where a word draws much less than in others, what it means is not there.
+/// Cross-attention of a text-to-image model (METHOD.md, Attention maps). Returns one single-channel image per
+/// word, at the size of the input image. Values are non-negative, on one scale for all pictures, and zero if
+/// the word drew no attention at all. A word that draws much less than in others has no object there.
 class AttentionSource {
 public:
     virtual ~AttentionSource() = default;
     virtual std::vector<Image> locate(const AttentionQuery& query) = 0;
-    /// Tells what locate() is asked next: a source that is quicker with several queries works them out
+    /// Announces the next queries of locate(). A source that is quicker with several queries works them out
     /// together. One that fails is left to locate(), which says why.
     virtual void prepare(std::span<const AttentionQuery> queries) { static_cast<void>(queries); }
-    /// How many queries are worth preparing together; no longer than a stop request may wait.
+    /// Number of queries worth preparing together. It takes no longer than a stop request may wait.
     virtual std::size_t at_once() const { return 1; }
-    /// Binarisation threshold the model was measured to work best with; 0.5 (the paper's) unless it states
-    /// its own.
+    /// Binarisation threshold that suits the model best. 0.5 (the paper's) unless it states its own.
     virtual double threshold() const { return 0.5; }
     /// Side in pixels of the square images the model works at.
     virtual int image_size() const = 0;
@@ -148,16 +147,17 @@ struct BoxPrompt {
 class Segmenter {
 public:
     virtual ~Segmenter() = default;
-    /// `hint` (may be empty) is a coarse map in [0,1] of where the object probably is, at the image's size.
+    /// Mask of the object. `hint` (may be empty) is a coarse map in [0,1] of its probable place, at the
+    /// image's size.
     virtual Mask segment(const Image& image, const std::vector<PointPrompt>& points,
                          const std::optional<BoxPrompt>& box, const Image& hint) = 0;
-    /// Whether its masks are better than the attention they come from: then attention outside of them does
-    /// not count.
+    /// True when its masks are better than the attention they come from. Attention outside of them does not
+    /// count then.
     virtual bool trusted() const { return false; }
     virtual std::string name() const = 0;
 };
 
-/// Image and noun to a mask with a confidence in [0,1]; absent without weights.
+/// Image and noun to a mask with a confidence in [0,1]. Absent without weights.
 class TextSegmenter {
 public:
     virtual ~TextSegmenter() = default;

@@ -1,4 +1,4 @@
-// The state of an edit at one moment, kept as what differs from the scene it works on.
+// State of an edit at one moment, kept as its difference from the scene.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,11 @@ namespace gse::edit {
 
 struct RoundState;
 
-/// In place of the base row that a row descends from: it grew from a seed of what is new, or of what the old
-/// thing hid.
+/// Marks in place of the base row that a row descends from. Such a row grew from a seed of a new object, or
+/// of the surface that the old one hid.
 constexpr std::int64_t OfSeed = -1, OfHidden = -2;
 
-/// The rows of the label as they are at that moment.
+/// Rows of the label at that moment.
 struct SnapshotRows {
     GaussianData rows;                // those that are the base's, in its order, then those born in the run
     std::vector<std::uint32_t> kept;  // base row of each of the first ones, ascending
@@ -28,12 +28,11 @@ struct SnapshotRows {
 };
 
 struct EditSnapshot;
-/// What is laid over the edited set and is no part of what an edit goes on from, such as a pattern.
+/// Layer over the edited set, such as a pattern. The edit does not go on from it.
 using SnapshotFinish = std::function<GaussianSet(const EditSnapshot& snapshot, const GaussianSet& edited)>;
 
-/// May be kept: it is immutable, shares the arrays of the scene and holds the rows of the label beside them.
-/// The edited set has the base's rows in their order, without those that are gone, and the born ones at its
-/// end.
+/// Immutable state that may be kept. It shares the arrays of the scene and holds the rows of the label beside
+/// them. The edited set has the base's rows in their order, without removed ones, and added ones at its end.
 struct EditSnapshot {
     GaussianSet base;
     std::shared_ptr<const SnapshotRows> rows;
@@ -44,18 +43,18 @@ struct EditSnapshot {
 
     /// Rows of the edited set.
     std::size_t size() const { return base.size() - rows->removed.size() + rows->ancestor.size(); }
-    /// The edited set, finished, with arrays of its own.
+    /// Edited set, finished, with arrays of its own.
     GaussianSet materialise() const;
     std::vector<std::int64_t> base_to_new() const;  // [base rows] row of the edited set, -1 = removed
     std::vector<std::uint8_t> label() const;        // [size()] 1 = the row belongs to the label
     std::vector<int> generation() const;            // [size()] 0 = there before the edit
     std::vector<std::uint8_t> hidden() const;       // [size()] 1 = of what the old thing hid
-    /// What it holds beside the base's arrays.
+    /// Bytes beside the base's arrays.
     std::size_t byte_size() const;
 };
 
-/// Drops every second snapshot of the older half until they are at most `most` and hold at most `most_bytes`;
-/// the two newest stay.
+/// Drops every second snapshot of the older half until at most `most` are left with at most `most_bytes`. The
+/// two newest stay.
 void thin_out(std::deque<EditSnapshot>& snapshots, std::size_t most, std::size_t most_bytes);
 
 /// Receives the state of a running edit every few iterations.

@@ -1,4 +1,4 @@
-// The part of a view that is redrawn by itself: a small thing gets more of the model's few pixels.
+// Part of a view that is redrawn by itself, so that a small object gets more of the model's few pixels.
 #pragma once
 
 #include "engine/edit/interfaces/interfaces.h"
@@ -10,17 +10,18 @@ struct ViewSection {
     int left = 0, top = 0, side = 0;
 };
 
-/// The square around what a mask of a square picture shows, of which that takes SectionShare; the whole
-/// picture where little would be left out, or where the mask is empty.
+/// Square around the mask of a square picture, of which the mask takes SectionShare. The whole picture if
+/// little would be left out, or if the mask is empty.
 ViewSection section_around(const Mask& mask);
 constexpr double SectionShare = 0.6;  // of the square's side, for the longer side of what is in it
 constexpr double LeastSection = 0.3;  // of the picture's side
 constexpr double LargestSection = 0.8;
 
-/// The view through that part of its picture: all pictures cut, the camera's principal point moved along.
+/// View through that part of its picture. All pictures are cut, and the camera's principal point is moved
+/// along.
 EditView cut_out_section(const EditView& view, const ViewSection& section);
 
-/// The picture with that part (of the section's size) replaced.
+/// Picture with that part (of the section's size) replaced.
 Image with_section(Image picture, const Image& part, const ViewSection& section);
 
 }  // namespace gse::edit

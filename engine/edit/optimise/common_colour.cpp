@@ -20,8 +20,8 @@ Vec3 base_colour(const float* sh) {
     return {colour_from_sh(sh[0]), colour_from_sh(sh[1]), colour_from_sh(sh[2])};
 }
 
-/// Second moments of the colours about black, the mean over the rows and over all directions they are seen
-/// from: harmonics are orthonormal, so a coefficient above DC adds its square over 4 pi = ShC0^2.
+/// Second moments of the colours about black, the mean over the rows and over all viewing directions.
+/// Harmonics are orthonormal, so a coefficient above DC adds its square over 4 pi = ShC0^2.
 Mat3 second_moments(std::span<const float> birth, std::size_t stride) {
     Mat3 sum;
     const std::size_t rows = birth.size() / stride;

@@ -1,4 +1,4 @@
-// The change of colour that all splats of a label share.
+// Change of colour that all splats of a label share.
 #pragma once
 
 #include <span>
@@ -9,23 +9,23 @@
 
 namespace gse::edit {
 
-/// colour' = colour + A colour_at_birth + b for all rows of a label: a low-rank change that keeps texture,
-/// shading and black. A is learned along the axes of the label's own colours, each measured by how much the
-/// colours spread along it: the first is mostly light and shade, the others tell paint from trim and grain
-/// from gaps, and without this Adam would move them together. View-dependent coefficients are colours without
-/// the constant: the same A applies to them.
+/// Low-rank change colour' = colour + A colour_at_birth + b for all rows of a label, which keeps texture,
+/// shading and black. A is learned along the axes of the label's own colours, each measured by the spread of
+/// the colours along it. The first axis is mostly light and shade. The others tell paint from trim and grain
+/// from gaps; without the axes Adam would move them together. View-dependent coefficients are colours without
+/// the constant, so A applies to them, too.
 class CommonColour {
 public:
     CommonColour() = default;
-    /// `birth` [rows,stride]: spherical harmonics at birth, RGB triples, the DC term first.
+    /// `birth` [rows,stride] holds spherical harmonics at birth, RGB triples, the DC term first.
     CommonColour(std::span<const float> birth, std::size_t stride);
 
-    /// One Adam step along the mean over the rows; adds the step to `sh`. All [rows,stride]; rows may come
-    /// and go between steps. Colours beyond those of the constructor's rows count as the nearest of them
-    /// along each axis: what was learned where colours hardly spread says nothing about others.
+    /// One Adam step along the mean over the rows; adds the step to `sh`. All arrays are [rows,stride]. Rows
+    /// may come and go between steps. Colours beyond those of the constructor's rows count as the nearest of
+    /// them along each axis. An axis of little spread says nothing about other colours.
     void step(std::span<const float> gradient, std::span<const float> birth, std::span<float> sh,
               double rate);
-    /// Adds all that was learned so far to rows that start as `birth`.
+    /// Adds all learned changes so far to rows that start as `birth`.
     void apply(std::span<const float> birth, std::span<float> sh) const { add(learned_, birth, sh); }
 
 private:

@@ -1,4 +1,4 @@
-// What is checked of every finished edit.
+// Checks of every finished edit.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace gse::edit {
 
-/// Rows outside the label that are gone or differ in any bit.
+/// Rows outside the label that are missing or differ in any bit.
 std::size_t count_changed_outside(const GaussianSet& base, const std::vector<std::uint8_t>& label,
                                   const EditResult& result);
 

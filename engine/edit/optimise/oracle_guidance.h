@@ -1,4 +1,5 @@
-// A guidance that knows the answer: pulls each view towards the render of a given target scene (method 6.4).
+// Guidance with a known answer: pulls each view towards the render of a given target scene (METHOD.md, Oracle
+// guidance).
 #pragma once
 
 #include <vector>
@@ -9,7 +10,7 @@
 namespace gse::edit {
 
 /// Weighted L2 to the target's renders. With the perfect denoiser of a diffusion model, SDS becomes this up
-/// to a factor sqrt(abar (1 - abar)), so the whole engine can be tested without any network.
+/// to a factor sqrt(abar (1 - abar)). The whole engine can be tested without any network.
 class OracleGuidance : public Guidance {
 public:
     /// Renders the target from every view at once.

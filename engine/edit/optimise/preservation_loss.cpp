@@ -116,7 +116,7 @@ void PreservationLoss::load(const Image& rendered, const Box& work, std::size_t 
     for (auto* plane : {&x_, &y_, &xx_, &yy_, &xy_}) blur(*plane, scratch_, work.width(), work.height());
 }
 
-/// Turns x_, xx_, xy_ into the derivative of the summed SSIM map by E[x], E[x^2] and E[xy]; returns sum(1 -
+/// Turns x_, xx_, xy_ into the derivative of the summed SSIM map by E[x], E[x^2] and E[xy]. Returns sum(1 -
 /// SSIM).
 double PreservationLoss::differentiate(const Box& work, const Box& live) {
     double loss = 0;
@@ -141,8 +141,8 @@ double PreservationLoss::differentiate(const Box& work, const Box& live) {
     return loss;
 }
 
-/// Outside `changed` the pictures are equal, so SSIM differs from 1 only within a window of it, and its
-/// gradient from 0 only within two (method E3): the rest of the picture is skipped.
+/// Skips the picture outside `changed`, where both pictures are equal. SSIM differs from 1 only within a
+/// window of it, and its gradient from 0 only within two.
 void PreservationLoss::ssim_gradient(const Image& rendered, const Box& changed, double scale, Image& gradient,
                                      double& loss) {
     const Box live = grown(changed, WindowRadius, rendered),

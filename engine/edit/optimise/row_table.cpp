@@ -1,4 +1,4 @@
-// What happens to rows, column by column.
+// Changes of rows, column by column.
 #include "engine/edit/optimise/row_table.h"
 
 #include <algorithm>

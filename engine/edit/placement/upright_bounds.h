@@ -1,5 +1,5 @@
-// Where a thing stands and how large it is: from this follow the room for what takes its place, and the
-// cameras that frame it.
+// Place and size of a standing object. The room for its replacement and the cameras that frame it follow from
+// them.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace gse::edit {
 
-/// A labelled thing on its ground, world units. All zero where no labelled row can be seen.
+/// Labelled object on its ground, world units. All zero if no labelled row can be seen.
 struct UprightBounds {
     Vec3 foot;                   // the middle of where it stands, at the height of the ground
     double height = 0;           // above the foot
@@ -19,18 +19,18 @@ struct UprightBounds {
     double width() const { return side > depth ? side : depth; }
 };
 
-/// Of what `bits` [N] label. Its foot is the middle of its lowest part (a tail or a head reaches out of a
-/// thing's middle, but stands on nothing), at the height of the rows around, not labelled, that reach out
-/// from under it, where there are such near its lowest ones or below them (a label may lack a stem, or hold
-/// some ground). The outermost rows and those too faint to be seen do not count.
+/// Bounds of the rows that `bits` [N] label. The foot is the middle of the lowest part, since a tail or a
+/// head may reach out. Its height is that of unlabelled rows that reach out from under it, if there are such
+/// near its lowest ones or below. A label may lack a stem, or hold some ground. The outermost rows and those
+/// too faint to be seen do not count.
 UprightBounds standing_of(const GaussianSet& set, std::span<const std::uint8_t> bits, const Vec3& up,
                           const Vec3& front);
-/// The same of a part cut out of a thing: nothing around it is the ground that it stands on.
+/// Bounds of a part cut out of an object. Nothing around it is the ground that it stands on.
 UprightBounds standing_alone(const GaussianSet& set, std::span<const std::uint8_t> bits, const Vec3& up,
                              const Vec3& front);
 
-/// How high a figure would be that stands there: what is wider than high counts as high as others of its
-/// width are, as a car does beside a bear. World units.
+/// Height of a figure that would stand there, in world units. An object wider than high counts as high as
+/// others of its width, like a car beside a bear.
 double figure_height(const UprightBounds& standing);
 
 }  // namespace gse::edit

@@ -1,4 +1,4 @@
-// A coarse grid finds where the thing is, a second one fits it closely.
+// A coarse grid finds the object, a second one fits it closely.
 #include "engine/edit/placement/visual_hull.h"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ struct Pixel {
     double x = 0, y = 0, z = 0;
 };
 
-/// Where a world point is seen; nothing when it is behind the camera or out of the picture.
+/// Pixel of a world point. Nothing when it is behind the camera or out of the picture.
 std::optional<Pixel> project(const Camera& camera, const Vec3& point) {
     const Vec3 p = camera.to_camera(point);
     if (!(p.z > 0)) return std::nullopt;
@@ -141,7 +141,7 @@ HullBox bounds(const Cubes& cubes) {
     return {low - margin, high + margin};
 }
 
-/// Away from the cubes nearby; zero where they are on all sides.
+/// Normal of a cube: away from the cubes nearby. Zero if they are on all sides.
 Vec3 outwards(const Cubes& cubes, std::size_t cube) {
     const auto [x, y, z] = cubes.place(cube);
     Vec3 sum;

@@ -1,5 +1,5 @@
-// The space that a thing's outlines from several sides enclose (Laurentini 1994: the visual hull; space
-// carving, Kutulakos and Seitz 2000), with some outlines wrong and some places hidden (views.md 17).
+// Visual hull (Laurentini 1994): the space that an object's outlines from several sides enclose (METHOD.md,
+// Visual hull). Some outlines may be wrong and some places hidden (space carving, Kutulakos and Seitz 2000).
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace gse::edit {
 
-/// A thing as one view shows it.
+/// Object as one view shows it.
 struct HullView {
     Camera camera;
     Image inside;  // [H,W,1] in [0,1]: 1 = the pixel shows the thing
@@ -44,28 +44,27 @@ struct VisualHull {
     bool empty() const { return centres.empty(); }
 };
 
-/// Share of the views that see the point in which it is inside the outline; negative where too few see it: it
-/// is out of the picture, or more than `slack` behind what else is there.
+/// Share of the views that see the point in which it is inside the outline. Negative if too few see it. Views
+/// do not see points out of the picture, or more than `slack` behind other splats.
 double hull_share(std::span<const HullView> views, const Vec3& point, double slack,
                   const HullParameters& parameters);
 
-/// The part of the box that the outlines enclose; of several parts that do not touch, those of at least a
-/// tenth of the largest.
+/// Part of the box that the outlines enclose. Of several separate parts, those of at least a tenth of the
+/// largest.
 VisualHull carve_hull(std::span<const HullView> views, const HullBox& box,
                       const HullParameters& parameters = {});
 
-/// How well a hull fits the outlines: mean IoU, over the views, of the outline with where the hull is seen
-/// before what else is there.
+/// Fit of a hull to the outlines: mean IoU, over the views, of the outline with the visible part of the hull.
 double hull_fit(std::span<const HullView> views, const VisualHull& hull);
 
-/// Of the hulls with different `least_share`, the one that fits the outlines best: where outlines agree
-/// little, a strict hull is smaller than all of them, and a loose one is larger where they agree.
+/// Best fitting hull among those with different `least_share`. If outlines agree little, a strict hull is
+/// smaller than all of them. A loose one is larger where they agree.
 VisualHull best_hull(std::span<const HullView> views, const HullBox& box, HullParameters parameters = {});
 
-/// Where the hull is seen in a view.
+/// Mask of the hull's visible part in a view.
 Mask hull_mask(const VisualHull& hull, const Camera& camera);
 
-/// A splat that is seen alike from everywhere. Rotation (w, x, y, z); colour is clamped to [0,1], opacity in
+/// Splat that is seen alike from everywhere. Rotation is (w, x, y, z); colour is clamped to [0,1], opacity in
 /// (0,1).
 struct PlainSplat {
     Vec3 centre, deviation, colour;
@@ -74,8 +73,8 @@ struct PlainSplat {
 };
 void append_splat(GaussianData& data, const PlainSplat& splat);
 
-/// One row per cube that lies at the hull's surface, and one for every few within: flat along the surface, of
-/// the mean colour of the pictures that show it there. `opacity` in (0,1).
+/// One row per cube at the hull's surface, and one for every few within. Rows are flat along the surface and
+/// have the mean colour of the pictures that show them. `opacity` in (0,1).
 GaussianData hull_seeds(const VisualHull& hull, std::span<const HullView> views, int sh_degree,
                         double opacity = 0.9);
 

@@ -1,5 +1,5 @@
-// What a scene shows of a sentence before anything is looked for: which of its words is new, and from which
-// distance the model knows the scene best.
+// Reading of a scene before a search: the new word of a sentence, and the best distance for the model
+// (METHOD.md, Reading the scene).
 #pragma once
 
 #include <cstddef>
@@ -17,11 +17,13 @@ struct SceneReading {
     std::vector<std::size_t> distances;  // those that fit nearly as well, in their order
 };
 
-/// Compares the pictures of each distance with the sentence as it was before the edit, for each of the
-/// `targets`: the one whose absence fits best is new, or the first where the sentence with all of them fits
-/// better still. `recognition` compares(); `pictures`: some of each distance, [H,W,3] in [0,1]; both lists
-/// have an entry. A validated request. `known`: of targets with other words, which the encoder is not told,
-/// none is shown or missed; they are new unless the pictures clearly miss another. Empty = it is told all.
+/// Compares the pictures of each distance with the sentence before the edit, for each of the `targets`. The
+/// target whose absence fits best is new, or the first if the sentence with all of them fits better still.
+///
+/// `recognition` compares(). `pictures` has some of each distance, [H,W,3] in [0,1]; both lists have an
+/// entry. The request is validated. `known` is for targets with words that the encoder is not told: none of
+/// them is shown or missed. They are new unless the pictures clearly miss another. Empty = the encoder is
+/// told all.
 SceneReading read_scene(VocabularyRanker& recognition, const EditRequest& request,
                         const std::vector<std::string>& targets,
                         const std::vector<std::vector<Image>>& pictures,

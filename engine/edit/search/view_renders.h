@@ -1,4 +1,4 @@
-// What the views of a scene show.
+// Renders of the views of a scene.
 #pragma once
 
 #include <optional>
@@ -20,13 +20,13 @@ struct ViewRenders {
                                  // scene; empty without one
 };
 
-/// `ground`: what is seen below and behind the scene instead of the background of `settings`. Throws Error
-/// (Cancelled) on a stop request.
+/// Renders the views. `ground` is seen below and behind the scene in place of the background of `settings`.
+/// Throws Error (Cancelled) on a stop request.
 ViewRenders render_views(const GaussianSet& set, const std::vector<View>& views,
                          const raster::Settings& settings, const std::optional<StudioBackground>& ground,
                          raster::Rasterizer& rasterizer, const JobControl& job);
 
-/// What the views show of that ground, in pixels.
+/// Pixels of that ground in the views.
 struct GroundEvidence {
     double seen = 0;
     double inside = 0;  // the masks

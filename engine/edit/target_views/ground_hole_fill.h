@@ -1,5 +1,4 @@
-// What a thing stood on, where nobody ever saw it: rows for the holes that it leaves in the scene when it
-// goes.
+// Rows for the holes that an object leaves in the scene when it goes (METHOD.md, Holes in the ground).
 #pragma once
 
 #include <vector>
@@ -9,10 +8,10 @@
 
 namespace gse::edit {
 
-/// One row per square of the surface that fills the holes of the views' backdrops (CleanPlate::filled): a
-/// field of heights over the plane that fits the holes best, of the mean colour that they were filled with.
-/// Squares that would hide what a view shows behind them, and those that hardly any view has in a hole, get
-/// none. `opacity` in (0,1).
+/// One row per square of the surface that fills the holes of the views' clean plates (CleanPlate::filled).
+/// The surface is a field of heights over the plane that fits the holes best, of the mean colour that they
+/// were filled with. Squares that would hide visible rows behind them get none. Neither do those that hardly
+/// any view has in a hole. `opacity` in (0,1).
 GaussianData ground_hole_fill(const std::vector<EditView>& views, int sh_degree, double opacity = 0.95);
 
 }  // namespace gse::edit

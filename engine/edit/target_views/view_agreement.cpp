@@ -59,8 +59,8 @@ public:
     PointColours(const std::vector<EditView>& views, const std::vector<Image>& pictures)
         : views_(views), pictures_(pictures) {}
 
-    /// The point that a pixel of view `of` shows; false where it shows none inside the mask, or too few views
-    /// show it.
+    /// Finds the point that a pixel of view `of` shows. Returns false if it shows none inside the mask, or
+    /// too few views show it.
     bool look(std::size_t of, int x, int y) {
         if (views_[of].mask.at(x, y) == 0 || !(views_[of].depth.at(x, y, 0) > 0)) return false;
         const Vec3 point = point_of(views_[of], x, y);
@@ -73,7 +73,7 @@ public:
         }
         return values_[0].size() >= LeastSeen;
     }
-    /// Of the pixel looked up last, from the median over the views: mean over the channels.
+    /// Distance of the pixel looked up last from the median over the views; mean over the channels.
     double distance(std::size_t of, int x, int y) {
         double sum = 0;
         for (std::size_t c = 0; c < 3; ++c)
@@ -101,7 +101,7 @@ double disagreement_of(const std::vector<EditView>& views, const std::vector<Ima
     return points > 0 ? sum / static_cast<double>(points) : 0;
 }
 
-/// Of pixels inside the mask; mean over the channels.
+/// Change of a pixel inside the mask; mean over the channels.
 double change_at(const EditView& view, const Image& picture, std::size_t pixel) {
     double sum = 0;
     for (std::size_t c = 0; c < 3; ++c)
