@@ -1,4 +1,4 @@
-// What suits the pictures that a model has learned from; read from the gseditpro.json of its bundle.
+// Traits of a model that follow from its training pictures; read from the gseditpro.json of its bundle.
 #pragma once
 
 #include <array>

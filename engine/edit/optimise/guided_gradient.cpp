@@ -1,4 +1,4 @@
-// Gate and calibration of a guidance's gradient (method 2.5).
+// Gate and calibration of a guidance's gradient (METHOD.md, Score distillation).
 #include "engine/edit/optimise/guided_gradient.h"
 
 #include <algorithm>
@@ -49,8 +49,8 @@ void GuidedGradient::gate(const Image& rendered, const Mask& mask, Image& gradie
     }
 }
 
-/// Brings the gradient to the norm that the preservation loss has when every pixel differs, so that neither
-/// drowns the other whatever the model's scale is. The median of the first steps decides, then it is fixed.
+/// Brings the gradient to the norm that the preservation loss has when every pixel differs. Neither drowns
+/// the other then, whatever the model's scale is. The median of the first steps decides, then it is fixed.
 double GuidedGradient::calibrated_weight(double norm, std::size_t values) {
     if (norms_.size() < CalibrationSteps && norm > 0) {
         norms_.push_back(norm);

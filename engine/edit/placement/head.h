@@ -20,21 +20,21 @@ struct HeadRegion {
         1;  // its height, as a share of the whole thing's: the topmost part that is as high as it is wide
 };
 
-/// Of what `bits` [N] label, as high as so many `heads`. All of it where no part is as high as wide, or
-/// nothing of it can be seen.
+/// Head of the rows that `bits` [N] label, as high as so many `heads`. All rows if no part is as high as
+/// wide, or none can be seen.
 HeadRegion bust_of(const GaussianSet& set, std::span<const std::uint8_t> bits, const Vec3& up,
                    const Vec3& front, double heads = 1);
 
-/// What of a thing wears something new.
+/// Part of an object that wears something new.
 struct AttachmentTarget {
     std::vector<std::uint8_t> bits;  // [N]
     UprightBounds standing;
     double head = 1;  // where it is the head: its height, as a share of the whole thing's
 };
 
-/// The head of what `bits` [N] label, where it is small for the model (ModelTraits::small_head), the target
-/// has its place there (usual_place()) and is `drawn` into the views; the whole otherwise. A model draws what
-/// suits the figure that it is shown.
+/// Head of the rows that `bits` [N] label, if it is small for the model (ModelTraits::small_head). The target
+/// must have its place there (usual_place()) and be `drawn` into the views. All rows otherwise. A model draws
+/// what suits the figure that it is shown.
 AttachmentTarget wearer_of(const EditRequest& request, const GaussianSet& set,
                            std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front, bool drawn,
                            const ModelTraits& traits);

@@ -37,9 +37,9 @@ public:
     virtual ~EditMethod() = default;
     /// Value of LoopSettings::method.
     virtual const char* name() const = 0;
-    /// What the model does, for help texts: "redraws some views, the scene is fitted to them".
+    /// Work of the model, for help texts: "redraws some views, the scene is fitted to them".
     virtual const char* description() const = 0;
-    /// What leads the edit: "redrawn views".
+    /// Driver of the edit: "redrawn views".
     virtual const char* leader() const = 0;
     /// How the edit goes on: "views are redrawn and fitted to".
     virtual const char* process() const = 0;

@@ -40,10 +40,9 @@ std::optional<edit::GroundUnder> plain_ground_under(const SceneEdit& scene_edit)
                               workplace.painter().rasterizer(), workplace.traits());
 }
 
-/// A network that is shown the scene draws well where the scene looks as in the pictures that it was trained
-/// on, and may do nearly the opposite where it does not (METHOD.md, draw strategies). A thing that stands in
-/// nothing is drawn on a plain ground at first. A ground cannot be shown without the scene: its default
-/// colour comes last.
+/// Order of ways to draw. A network that is shown the scene draws well if the scene looks like its training
+/// pictures, and may do nearly the opposite otherwise. An object that stands in nothing is drawn on a plain
+/// ground at first. A ground cannot be shown without the scene: its default colour comes last.
 std::vector<DrawStrategy> draw_strategies(const SceneEdit& scene_edit,
                                           const std::optional<edit::GroundUnder>& ground) {
     const auto& model = scene_edit.workplace.model();

@@ -26,7 +26,7 @@ struct EditObserver {
         {};  // once, of the first views that were redrawn
 };
 
-/// What became of the scene. A value.
+/// Outcome for the scene. A value.
 struct Edited {
     edit::EditResult result;
     GaussianSet drawn;  // the result without what cannot be drawn
@@ -42,17 +42,17 @@ struct Edited {
 /// given.
 neural::SdsParameters with_sentence_before(neural::SdsParameters guidance, const edit::EditRequest& request);
 
-/// What a model that edits pictures by instructions is told.
+/// Instruction for a model that edits pictures by instructions.
 std::string told_to_editor(const edit::EditRequest& request);
 
-/// Masks, label and seeds for the loop. Of the recipe, how far masks are grown counts.
+/// Masks, label and seeds for the loop. The recipe counts for how far masks are grown.
 edit::EditPlan plan_of(RunContext& workplace, const Located& located, const EditRecipe& recipe);
 
 /// Runs the edit loop with the settings of `recipe`, which agrees with `located.recipe` in what search_key()
 /// is of. Throws as edit::run_edit does.
 Edited edit_scene(RunContext& workplace, const Located& located, const edit::EditPlan& plan,
                   const EditRecipe& recipe, const EditObserver& observer, const JobControl& control);
-/// The same with another scene in place of the workplace's; the plan is of that one.
+/// Loop with another scene in place of the workplace's. The plan is of that one.
 Edited edit_scene(RunContext& workplace, const GaussianSet& scene, const Located& located,
                   const edit::EditPlan& plan, const EditRecipe& recipe, const EditObserver& observer,
                   const JobControl& control);

@@ -1,4 +1,5 @@
-// Grounds that look much the same everywhere: snow is white, whoever draws it.
+// Grounds that look much alike everywhere: snow is white, whoever draws it (METHOD.md, Usual colours of
+// grounds).
 #pragma once
 
 #include <array>
@@ -13,13 +14,13 @@
 namespace gse::edit {
 
 /// Colour, display values in [0,1], of the ground that a validated request makes of another ("snow" for the
-/// grass); none where it makes something else, where that has no usual colour, or where the sentence says
-/// what it is like ("red sand").
+/// grass). None if it makes something else, if that ground has no usual colour, or if the sentence says its
+/// colour ("red sand").
 std::optional<std::array<float, 3>> usual_look(const EditRequest& request, EditMode mode,
                                                const ModelTraits& traits);
 
-/// How much of the way to the colour redrawn views have gone, of what changed in them: 1 = all of it; below 0
-/// = away from it. 1 where they began near it.
+/// Share of the way to the colour that redrawn views have gone, in their changed pixels. 1 = all of it; below
+/// 0 = away from it. 1 if they began near it.
 double gone_towards(const std::array<float, 3>& colour, const ViewTargets& round);
 
 /// Draws without a model: what the masks hold gets the colour, in the light and shade in which the unedited

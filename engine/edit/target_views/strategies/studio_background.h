@@ -1,5 +1,5 @@
-// A thing drawn as if it stood alone on a plain ground, where the scene around it is unlike all that a model
-// has learned from.
+// Drawing of an object as if it stood alone on a plain ground (METHOD.md, Studio background). For scenes that
+// are unlike all training pictures of a model.
 #pragma once
 
 #include <array>
@@ -36,13 +36,14 @@ struct GroundUnder {
                               // of its surroundings
 };
 
-/// The same of what `bits` [N] label; none also where they label nothing, or are not of the scene's size.
+/// Background for the rows that `bits` [N] label. None also if they label nothing, or are not of the scene's
+/// size.
 std::optional<GroundUnder> ground_under(const std::string& sentence, const GaussianSet& set,
                                         std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front,
                                         raster::Rasterizer& rasterizer, const ModelTraits& traits);
 
-/// The ground below a whole scene that was cut out of its surroundings (ground_of_scene()); none where it has
-/// one, or where some of the `views` would hardly show it, as those within a room.
+/// Ground below a whole scene that was cut out of its surroundings (ground_of_scene()). None if it has one,
+/// or if some of the `views` would hardly show it, as those within a room.
 std::optional<StudioBackground> ground_below(const std::string& sentence, const GaussianSet& set,
                                              const std::vector<View>& views, const Vec3& up,
                                              raster::Rasterizer& rasterizer, const ModelTraits& traits);
@@ -52,23 +53,24 @@ Image shown_of(const StudioBackground& plain, const Camera& camera);
 /// [H,W,3] in [0,1], of the camera's size: a disc around the foot, as the
 /// camera sees it.
 Image picture_of(const StudioBackground& plain, const Camera& camera);
-/// The same behind a picture of the scene; `depth` [H,W,1] is 0 where that has nothing.
+/// Puts the background behind a picture of the scene. `depth` [H,W,1] is 0 where the scene has nothing.
 Image before_plain(const StudioBackground& plain, const Camera& camera, const Image& picture,
                    const Image& depth);
 
-/// The same behind a picture that was rendered before `background`, and covers `alpha` [H,W,1] of it.
+/// Puts the background behind a picture that was rendered without it and covers `alpha` [H,W,1] of it.
 Image before_plain(const StudioBackground& plain, const Camera& camera, const Image& picture,
                    const Image& alpha, const std::array<float, 3>& background);
 
-/// What of the scene a model is still shown.
+/// Part of the scene that a model is still shown.
 enum class BeforePlain {
     Nothing,  // where something is drawn anew in the place of all that stands there
     Scene,    // where something is added: the ground and the sky show where the scene has nothing
 };
 
-/// Shows the model the plain ground instead of the scene: in the first round of those that draw anew (what it
-/// draws is moved before the scene by the outlines that it tells; where it tells none, it is shown the scene
-/// after all), in rounds that restyle what the masks hold on it. All others go through.
+/// Shows the model the plain ground in place of the scene, in two kinds of rounds; all others go through. One
+/// is the first round that draws anew: the outlines that the model tells move its drawing before the scene.
+/// Without outlines it is shown the scene after all. The other is a round that restyles the masks' contents
+/// on that ground.
 class OnPlainGround final : public MultiViewEditor {
 public:
     /// `guidance` stays alive.
