@@ -50,7 +50,7 @@ class Quality(unittest.TestCase):
         folder = pathlib.Path(tempfile.mkdtemp(prefix="gse-quality-"))
         cls.addClassCleanup(shutil.rmtree, folder, ignore_errors=True)
         process = run_laboratory("-q", "eval", "--seed", SEED, "--edits", EDITS, "--kinds", " ".join(KINDS), "--held-out-views", 6,
-                                 "--out", folder / "out")
+                                 "--out", folder / "out", timeout=3600)
         if process.returncode != 0:
             raise RuntimeError(process.stderr)
         cls.edits = json.loads((folder / "out/eval.json").read_text())["edits"]
