@@ -62,7 +62,7 @@ edit::EditResult edit_of(const OracleCase& oracle, const edit::EditRequest& requ
     plan.seeds = oracle.seeds;
     for (const auto& view : plan.views) plan.masks.push_back(region(oracle, view.camera, rasterizer, 2));
     edit::OracleGuidance guidance(oracle.target, plan.views, plan.settings, rasterizer);
-    return edit::run_edit(oracle.scene.scene.gaussians, plan, request, {rasterizer, guidance, {}, {}});
+    return edit::run_edit(oracle.scene.scene.gaussians, plan, request, {rasterizer, &guidance, {}, {}});
 }
 
 struct Outcome {

@@ -43,7 +43,7 @@ edit::EditResult run(const test::BallScene& scene, const edit::EditRequest& requ
     const auto plan = test::ball_plan(test::ball_scene(), *rasterizer);
     auto own = plan;
     own.label = scene.first;
-    return edit::run_edit(scene.set, own, request, {*rasterizer, guidance, {}, {}});
+    return edit::run_edit(scene.set, own, request, {*rasterizer, &guidance, {}, {}});
 }
 
 /// The ball scene with `change` applied to its arrays.
@@ -178,7 +178,7 @@ DOCTEST_TEST_CASE("steps that are left out are not rest") {
         if (input.iteration % 12 > 2) output.gradient.data[5] = Nan;  // three good ones, nine bad ones
         return output;
     });
-    const auto result = edit::run_edit(scene.set, plan, request, {*rasterizer, guidance, {}, {}});
+    const auto result = edit::run_edit(scene.set, plan, request, {*rasterizer, &guidance, {}, {}});
     DOCTEST_CHECK_FALSE(result.converged);
     DOCTEST_CHECK(result.skipped_steps == 45);
 }
@@ -320,7 +320,7 @@ DOCTEST_TEST_CASE("far and tiny worlds") {
         for (auto& view : plan.views) view.camera.translation = view.camera.translation * scale;
         plan.settings.near_plane = static_cast<float>(0.01 * scale);
         auto guidance = test::towards({0.1, 0.1, 0.9});
-        check_sane(edit::run_edit(scene.set, plan, hostile_request(), {*rasterizer, guidance, {}, {}}));
+        check_sane(edit::run_edit(scene.set, plan, hostile_request(), {*rasterizer, &guidance, {}, {}}));
     }
 }
 

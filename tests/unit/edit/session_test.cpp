@@ -231,13 +231,13 @@ DOCTEST_TEST_CASE("no label, and a label nobody sees, are refused in one sentenc
     auto guidance = test::towards({0, 0, 1});
     auto plan = test::ball_plan(scene, *rasterizer, 3, 16);
     plan.label.assign(plan.label.size(), 0);
-    DOCTEST_CHECK_THROWS_AS(edit::run_edit(scene.set, plan, short_request(), {*rasterizer, guidance, {}, {}}),
-                            Error);
+    DOCTEST_CHECK_THROWS_AS(
+        edit::run_edit(scene.set, plan, short_request(), {*rasterizer, &guidance, {}, {}}), Error);
     GaussianData data = scene.set.to_data();
     for (std::size_t row = 0; row < data.size(); ++row) data.opacity_logit[row] = -20;
     plan.label = scene.first;
     DOCTEST_CHECK_THROWS_AS(
-        edit::run_edit(GaussianSet(std::move(data)), plan, short_request(), {*rasterizer, guidance, {}, {}}),
+        edit::run_edit(GaussianSet(std::move(data)), plan, short_request(), {*rasterizer, &guidance, {}, {}}),
         Error);
 }
 
@@ -252,7 +252,7 @@ DOCTEST_TEST_CASE("seeds are new rows of a later generation, the scene itself st
     region.centres = {{-0.55, -0.6, 0}, {-0.55, -0.8, 0}};
     plan.seeds = edit::seed_splats(region, 60, 0, 1);
     auto guidance = test::towards({0.1, 0.1, 0.9});
-    const auto result = edit::run_edit(scene.set, plan, short_request(), {*rasterizer, guidance, {}, {}});
+    const auto result = edit::run_edit(scene.set, plan, short_request(), {*rasterizer, &guidance, {}, {}});
     DOCTEST_CHECK(result.set.size() > scene.set.size());
     for (std::size_t row = 0; row < scene.set.size(); ++row)
         DOCTEST_CHECK(result.base_to_new[row] == static_cast<std::int64_t>(row));
@@ -362,7 +362,7 @@ DOCTEST_TEST_CASE("what was driven to black comes back") {
             output.gradient.data[i] = input.rendered.data[i] - goal;
         return output;
     });
-    const auto result = edit::run_edit(scene.set, plan, request, {*rasterizer, guidance, {}, {}});
+    const auto result = edit::run_edit(scene.set, plan, request, {*rasterizer, &guidance, {}, {}});
     double sum = 0, count = 0;
     for (const auto& view : plan.views) {
         raster::ForwardOutput output;

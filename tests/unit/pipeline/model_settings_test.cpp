@@ -22,7 +22,8 @@ neural::ModelProfile wide_profile() {
              {"guidance", "guidance_scale", 7.5, "model"},
              {"attention", "steps", 20, "file gseditpro.json"},
              {"dreambooth", "steps", 400, "file gseditpro.json"},
-             {"job", "threads", 8, "model"}}};
+             {"job", "threads", 8, "model"}},
+            {}};
 }
 
 /// "value from source", or "" of a field that is not listed.
