@@ -249,7 +249,8 @@ DOCTEST_TEST_CASE(
     }
     const auto whole = synth::generate({});
     RunContext workplace(whole.scene, model, {});
-    DOCTEST_CHECK_FALSE(workplace.ground("a bear", orbit_views({}, 4, 64, 64)).has_value());
+    workplace.look_for_ground(orbit_views({}, 4, 64, 64));
+    DOCTEST_CHECK_FALSE(workplace.ground("a bear").has_value());
 }
 
 DOCTEST_TEST_CASE("the front is read off the scene where the recipe leaves it open") {
@@ -461,7 +462,7 @@ DOCTEST_TEST_CASE("stages: each is a value that names what it follows from, and 
     const Edited edited = edit_scene(workplace, located, plan, recipe, {}, {});
     DOCTEST_CHECK(edit_scene(workplace, located, plan, recipe, {}, {}).key == edited.key);
     EditRecipe slower = recipe;
-    slower.request.rate_colour *= 0.5;
+    slower.request.rate_colour = 0.5 * slower.request.rate_colour;
     const Edited other = edit_scene(workplace, located, plan, slower, {}, {});
     DOCTEST_CHECK(other.key != edited.key);
     DOCTEST_CHECK(!std::equal(other.result.set.sh().begin(), other.result.set.sh().end(),
