@@ -33,10 +33,12 @@ edit::ModelTraits read_traits(Json json) {
     if (json.contains("sky")) traits.sky = read_colour("sky", json["sky"]);
     json.erase("sky");
     if (json.contains("ground_colours")) traits.ground_colours.clear();
-    for (const auto& [word, colour] : take_object(json, "ground_colours").items())
+    const Json grounds = take_object(json, "ground_colours");
+    for (const auto& [word, colour] : grounds.items())
         traits.ground_colours[word] = read_colour(word, colour);
     if (json.contains("usual_colours")) traits.usual_colours.clear();
-    for (const auto& [thing, colour] : take_object(json, "usual_colours").items())
+    const Json things = take_object(json, "usual_colours");
+    for (const auto& [thing, colour] : things.items())
         read_field(thing.c_str(), traits.usual_colours[thing], colour);
     fields_from_json(traits, json);
     for (const auto& ground : traits.plain_grounds)
