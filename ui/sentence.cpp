@@ -9,6 +9,10 @@
 #include "engine/base/error.h"
 #include "engine/edit/request/edit_method.h"
 #include "engine/edit/request/vocabulary.h"
+#include "engine/language/news.h"
+#include "engine/language/sentence.h"
+#include "engine/language/vocabulary.h"
+#include "engine/language/words.h"
 
 namespace gse::ui {
 namespace {
@@ -20,32 +24,32 @@ std::string first_letter_up(std::string text) {
 
 /// Words that stand, in part at least, where the text encoder has stopped reading.
 bool unread(const std::string& sentence, const std::string& phrase, const SentenceGround& ground) {
-    return ground.words_read > 0 && edit::has_word(sentence, phrase) &&
-           edit::first_word(sentence, phrase) + edit::words_of(phrase).size() > ground.words_read;
+    return ground.words_read > 0 && language::has_phrase(sentence, phrase) &&
+           language::position_of(sentence, phrase) + language::words_of(phrase).size() > ground.words_read;
 }
 
 std::string unknown_source(const std::string& source, const SentenceGround& ground) {
-    if (edit::knows(edit::promptable_vocabulary(ground.known, ground.drawn), source))
+    if (language::vocabulary_contains(language::promptable_vocabulary(ground.known, ground.drawn), source))
         return fmt::format("The model can draw \"{}\" but not find it: label it by hand instead", source);
     return fmt::format("The model does not know the word \"{}\" and cannot find it: label it by hand instead",
-                       edit::unknown_word(ground.known, source));
+                       language::unknown_word(ground.known, source));
 }
 
 /// Instead of a target that cannot be made: words near to it; where there are none, all of them would fill
 /// the panel.
 std::string what_to_say(const std::string& target, const std::vector<std::string>& known, bool dyes,
                         const std::string& hint) {
-    const auto word = edit::unknown_word(known, target);
-    if (!edit::nearest_words(word, known).empty()) return hint;
+    const auto word = language::unknown_word(known, target);
+    if (!language::nearest_words(word, known).empty()) return hint;
     return std::string("the words that it knows are under Models") +
            (dyes ? "; colours and patterns go by their names" : "");
 }
 
 /// Whether the word number `index` of the sentence belongs to the phrase.
 bool within(const std::string& sentence, const std::string& phrase, std::size_t index) {
-    if (!edit::has_word(sentence, phrase)) return false;
-    const std::size_t first = edit::first_word(sentence, phrase);
-    return index >= first && index < first + edit::words_of(phrase).size();
+    if (!language::has_phrase(sentence, phrase)) return false;
+    const std::size_t first = language::position_of(sentence, phrase);
+    return index >= first && index < first + language::words_of(phrase).size();
 }
 
 /// Sentence of the engine, in the window's words if they are clearer.
@@ -70,7 +74,7 @@ std::string problem_of(const edit::EditRequest& request, const SentenceGround& g
         edit::require_known_words(valid, ground.known, drawn, ground.labelled_by_hand);
     } catch (const Error& error) {
         return fmt::format("{}: {}", first_letter_up(error.message()),
-                           what_to_say(valid.target, edit::promptable_vocabulary(ground.known, drawn),
+                           what_to_say(valid.target, language::promptable_vocabulary(ground.known, drawn),
                                        !drawn.empty(), error.hint()));
     }
     for (const auto& word : {valid.source, valid.target})
@@ -92,22 +96,23 @@ std::string locate_problem_of(const std::string& source, const SentenceGround& g
 
 edit::EditRequest with_target(edit::EditRequest request, const std::vector<std::string>& said,
                               const std::string& read_target) {
-    const auto source = edit::as_told(request.source);
+    const auto source = language::normalised_prompt(request.source);
     if (request.target.empty() && !source.empty())
-        request.target =
-            read_target.empty() ? edit::guessed_target(request.prompt, source, said) : read_target;
+        request.target = read_target.empty()
+                             ? language::guessed_target(language::Sentence(request.prompt), source, said)
+                             : read_target;
     return request;
 }
 
 SentenceFacts facts_of(const edit::EditRequest& request, const SentenceGround& ground) {
     SentenceFacts facts;
-    const auto say = edit::promptable_vocabulary(ground.known, ground.drawn);
-    for (const auto& word : edit::words_of(request.prompt)) {
+    const auto say = language::promptable_vocabulary(ground.known, ground.drawn);
+    for (const auto& word : language::words_of(request.prompt)) {
         Chip chip;
         chip.text = word;
-        chip.known = edit::knows(say, word);
+        chip.known = language::vocabulary_contains(say, word);
         if (!chip.known) {
-            const auto near = edit::nearest_words(word, say, 1);
+            const auto near = language::nearest_words(word, say, 1);
             if (!near.empty()) chip.suggestion = near.front();
         }
         chip.source = within(request.prompt, request.source, facts.chips.size());
@@ -115,16 +120,16 @@ SentenceFacts facts_of(const edit::EditRequest& request, const SentenceGround& g
         if (!chip.read && facts.cut_at.empty()) facts.cut_at = word;
         facts.chips.push_back(std::move(chip));
     }
-    const auto unknown = edit::unknown_word(ground.known, request.source);
+    const auto unknown = language::unknown_word(ground.known, request.source);
     facts.source_known = unknown.empty();
     if (!facts.source_known) {
-        const std::size_t index = edit::first_word(request.source, unknown);
-        for (const auto& near : edit::nearest_words(unknown, ground.known))
+        const std::size_t index = language::position_of(request.source, unknown);
+        for (const auto& near : language::nearest_words(unknown, ground.known))
             facts.source_suggestions.push_back(with_word(request.source, index, near));
-        facts.source_help = edit::words_to_use(unknown, ground.known);
+        facts.source_help = language::words_to_use(unknown, ground.known);
     }
     facts.problem = problem_of(request, ground, facts);
-    facts.locate_problem = locate_problem_of(edit::as_told(request.source), ground, facts);
+    facts.locate_problem = locate_problem_of(language::normalised_prompt(request.source), ground, facts);
     const auto& target = request.target.empty() ? facts.guessed_target : request.target;
     for (std::size_t index = 0; index < facts.chips.size(); ++index) {
         auto& chip = facts.chips[index];
@@ -137,18 +142,18 @@ SentenceFacts facts_of(const edit::EditRequest& request, const SentenceGround& g
 edit::EditRequest locate_request(const edit::EditRequest& request, const std::string& problem) {
     if (problem.empty()) return request;
     edit::EditRequest alone = request;
-    alone.target = edit::as_told(request.source);
+    alone.target = language::normalised_prompt(request.source);
     alone.prompt = "a " + alone.target;
     alone.mode = "modify";
     return alone;
 }
 
 std::string target_to(const std::string& sentence, const std::string& target, std::size_t index) {
-    const auto words = edit::words_of(sentence);
+    const auto words = language::words_of(sentence);
     if (index >= words.size()) return target;
-    if (!edit::has_word(sentence, target)) return words[index];
-    const std::size_t first = edit::first_word(sentence, target),
-                      last = first + edit::words_of(target).size() - 1;
+    if (!language::has_phrase(sentence, target)) return words[index];
+    const std::size_t first = language::position_of(sentence, target),
+                      last = first + language::words_of(target).size() - 1;
     std::string phrase;
     for (std::size_t i = std::min(first, index); i <= std::max(last, index); ++i)
         phrase += (phrase.empty() ? "" : " ") + words[i];
@@ -157,7 +162,7 @@ std::string target_to(const std::string& sentence, const std::string& target, st
 
 std::string with_word(const std::string& sentence, std::size_t index, const std::string& word) {
     std::string result;
-    for (std::size_t at = 0; const auto& present : edit::words_of(sentence)) {
+    for (std::size_t at = 0; const auto& present : language::words_of(sentence)) {
         if (!result.empty()) result += ' ';
         result += at == index ? word : present;
         ++at;

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "engine/edit/request/vocabulary.h"
+#include "engine/language/grammar.h"
 #include "engine/pipeline/models/segmenters.h"
 #include "engine/pipeline/run/scene_tools.h"
 #include "engine/pipeline/run/views.h"
@@ -153,7 +153,7 @@ template <> void LabelController::on(const command::CutOut& one) {
                           screen_area(one.box),
                           {},
                           state().info.up,
-                          edit::names_ground(recipe.request.source)};
+                          language::names_ground(recipe.request.source)};
     request.settings.background = parse_colour(view_.settings().background);
     request.settings.antialiased = state().info.antialiased;
     auto rows = std::make_shared<std::vector<std::uint8_t>>();

@@ -16,7 +16,9 @@
 #include "engine/base/random.h"
 #include "engine/edit/request/edit_method.h"
 #include "engine/edit/request/excluded_views.h"
-#include "engine/edit/request/vocabulary.h"
+#include "engine/language/news.h"
+#include "engine/language/vocabulary.h"
+#include "engine/language/words.h"
 #include "engine/pipeline/models/model_settings.h"
 #include "engine/pipeline/models/model_words.h"
 #include "engine/pipeline/models/neural_loader.h"
@@ -55,7 +57,7 @@ void SearchController::set_request(const edit::EditRequest& request) {
     if (told_else) request_.left_out.clear();  // they were views of another search
     // A word that was clicked in another sentence is no target of this one.
     auto& target = request_.target;
-    if (!target.empty() && !edit::has_word(request.prompt, target)) target.clear();
+    if (!target.empty() && !language::has_phrase(request.prompt, target)) target.clear();
     refresh_reading();
 }
 
@@ -64,13 +66,13 @@ void SearchController::move_request(const edit::EditRequest& before, const edit:
 }
 
 void SearchController::refresh_reading() {
-    const auto words = edit::words_of(request_.prompt);
+    const auto words = language::words_of(request_.prompt);
     const auto read = words.empty() ? 0 : words_read(std::filesystem::path(models_.in_use()), words);
     words_read_ = read < words.size() ? read : 0;
 }
 
 void SearchController::follow_document() {
-    said_words_ = edit::words_said(applied_requests(workspace_.document.state().stack));
+    said_words_ = language::words_said(applied_sentences(workspace_.document.state().stack));
 }
 
 EditRecipe SearchController::recipe() const {
@@ -289,7 +291,7 @@ bool SearchController::label_drives_edit() const {
 
 void SearchController::set_reach(bool by_label) {
     if (const NamedLabel* label = workspace_.active_label())
-        choice_ = ReachChoice{by_label, label->name, edit::as_told(request_.source)};
+        choice_ = ReachChoice{by_label, label->name, language::normalised_prompt(request_.source)};
 }
 
 void SearchController::choose_label_by_hand() {
@@ -299,7 +301,7 @@ void SearchController::choose_label_by_hand() {
 }
 
 void SearchController::choose_for_source() {
-    if (choice_) choice_->source = edit::as_told(request_.source);
+    if (choice_) choice_->source = language::normalised_prompt(request_.source);
 }
 
 void SearchController::rename_label(const std::string& from, const std::string& to) {
@@ -318,7 +320,7 @@ void SearchController::refresh_reach() {
     if (reach_key_ == hash.key()) return;
     reach_key_ = hash.key();
     const auto& labels = workspace_.document.state().labels;
-    const auto source = edit::as_told(last_.words().source);
+    const auto source = language::normalised_prompt(last_.words().source);
     attention_corrected_ =
         !last_.views().empty() && std::any_of(labels.begin(), labels.end(), [&](const NamedLabel& label) {
             return (label.found_for == last_.word() || label.found_for == source) &&
@@ -357,7 +359,7 @@ void SearchController::refresh_estimate() {
     work.tune_steps = settings.learn_scene && !work.located && !learned ? settings.learning.steps : 0;
     work.rows = current.size();
     work.traits = models_.traits();
-    work.words = edit::promptable_vocabulary(models_.list().known_words(), models_.list().drawn_words());
+    work.words = language::promptable_vocabulary(models_.list().known_words(), models_.list().drawn_words());
     try {
         work.mode = edit::planned_mode(edit::validated(request_));
     } catch (const Error&) {  // not a sentence yet

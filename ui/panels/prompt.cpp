@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "engine/edit/request/edit_method.h"
-#include "engine/edit/request/instruction.h"
-#include "engine/edit/request/vocabulary.h"
+#include "engine/language/vocabulary.h"
+#include "engine/language/words.h"
 #include "engine/scene/strength.h"
 #include "ui/commands/guarded.h"
 #include "ui/keys/keyboard.h"
@@ -48,15 +48,16 @@ constexpr std::array<const char*, 4> ModeHelp{
 /// Advice for a source that the model does not know.
 void draw_unknown_source(Context& context) {
     const auto& prompt = context.state.prompt;
-    const std::string word = edit::unknown_word(context.model.known_words, context.request.source);
+    const std::string word = language::unknown_word(context.model.known_words, context.request.source);
     if (context.model.labelled_by_hand) {
         dim_text(fmt::format("The model cannot find \"{}\": the label says where it is.", word));
         return;
     }
-    coloured_text(palette::Warning,
-                  edit::knows(context.model.drawn_words, word) && !context.model.drawn_words.empty()
-                      ? fmt::format("The model can draw \"{}\" but not find it.", word)
-                      : fmt::format("The model does not know \"{}\" and cannot find it.", word));
+    coloured_text(
+        palette::Warning,
+        language::vocabulary_contains(context.model.drawn_words, word) && !context.model.drawn_words.empty()
+            ? fmt::format("The model can draw \"{}\" but not find it.", word)
+            : fmt::format("The model does not know \"{}\" and cannot find it.", word));
     for (std::size_t i = 0; i < prompt.source_suggestions.size(); ++i) {
         const auto& suggestion = prompt.source_suggestions[i];
         const std::string text = fmt::format("Use \"{}\"", suggestion);
@@ -98,7 +99,8 @@ void draw_sentence(Context& context) {
                    "for example: a bear wearing a red hat")) {
         context.request_changed = true;
         // What was clicked belongs to the sentence it was clicked in.
-        if (edit::words_of(before) != edit::words_of(context.request.prompt)) context.request.target.clear();
+        if (language::words_of(before) != language::words_of(context.request.prompt))
+            context.request.target.clear();
     }
     if (prompt.chips.empty()) return;
     const ChipClick click = chips(context, "prompt.chip", prompt.chips);
@@ -114,7 +116,7 @@ void draw_sentence(Context& context) {
         const auto index = static_cast<std::size_t>(click.replaced);
         const auto& chip = prompt.chips[index];
         if (chip.target && !chip.guessed) {
-            const std::size_t first = edit::first_word(context.request.prompt, context.request.target);
+            const std::size_t first = language::position_of(context.request.prompt, context.request.target);
             context.request.target = with_word(context.request.target, index - first, chip.suggestion);
         }
         context.request.prompt = with_word(context.request.prompt, index, chip.suggestion);
@@ -300,12 +302,12 @@ void draw_estimate(Context& context) {
 std::string reach_text(const Context& context) {
     const auto& reach = context.model.reach;
     const auto planned = as_planned(context);
-    const auto word = edit::as_told(planned.source.empty() ? planned.target : planned.source);
+    const auto word = language::normalised_prompt(planned.source.empty() ? planned.target : planned.source);
     if (!context.scene_open() || word.empty() || context.model.job.running) return {};
     if (!reach.by_label && !context.state.prompt.source_known) return {};
     if (edit::planned_mode(planned) == edit::EditMode::Add)
         return fmt::format(
-            "Adds \"{}\" where a search places it.{}", edit::as_told(planned.target),
+            "Adds \"{}\" where a search places it.{}", language::normalised_prompt(planned.target),
             reach.corrected ? " What was set by hand in the label does not count for that." : "");
     if (reach.by_label)
         return fmt::format("May change: label \"{}\", {} splats.", reach.label, count_text(reach.splats));

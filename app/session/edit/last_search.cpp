@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/language/words.h"
 #include "engine/pipeline/run/recipe.h"
 #include "engine/pipeline/run/views.h"
 
@@ -73,8 +74,10 @@ bool LastSearch::take_arriving(ArrivingViews& arriving, bool working) {
 }
 
 std::string LastSearch::read_target(const edit::EditRequest& request) const {
-    const bool same = target_read_ && edit::as_told(words_.source) == edit::as_told(request.source) &&
-                      edit::as_told(words_.prompt) == edit::as_told(request.prompt);
+    const bool same =
+        target_read_ &&
+        language::normalised_prompt(words_.source) == language::normalised_prompt(request.source) &&
+        language::normalised_prompt(words_.prompt) == language::normalised_prompt(request.prompt);
     return same ? words_.target : std::string();
 }
 

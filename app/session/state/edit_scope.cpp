@@ -7,7 +7,9 @@
 
 #include "engine/base/error.h"
 #include "engine/base/json.h"
-#include "engine/edit/request/vocabulary.h"
+#include "engine/language/sentence.h"
+#include "engine/language/vocabulary.h"
+#include "engine/language/words.h"
 #include "engine/scene/label_ops.h"
 
 namespace gse::app {
@@ -27,8 +29,8 @@ bool is_label_of(const NamedLabel& label, const std::string& word) {
     return !word.empty() && (label.name == word || label.found_for == word);
 }
 
-std::vector<edit::EditRequest> applied_requests(const std::vector<EditNode>& stack) {
-    std::vector<edit::EditRequest> applied;
+std::vector<language::EditSentence> applied_sentences(const std::vector<EditNode>& stack) {
+    std::vector<language::EditSentence> applied;
     for (const auto& node : stack) {
         const auto json = try_parse_json<nlohmann::ordered_json>(node.recipe);
         if (!node.enabled || !json.is_object() || !json.contains("request")) continue;
@@ -38,7 +40,7 @@ std::vector<edit::EditRequest> applied_requests(const std::vector<EditNode>& sta
         } catch (const Error&) {  // of another version: what it said is not known
             continue;
         }
-        applied.push_back(std::move(request));
+        applied.push_back(edit::edit_sentence(request));
     }
     return applied;
 }
@@ -58,18 +60,20 @@ bool same_vote(const edit::LabelThresholds& a, const edit::LabelThresholds& b) {
 
 bool stands_alone(const NamedLabel& label, const edit::EditRequest& request,
                   const std::vector<std::string>& known) {
-    return made_by_hand(label) || (is_label_of(label, edit::as_told(request.source)) &&
-                                   !edit::knows(known, edit::as_told(request.source)));
+    return made_by_hand(label) ||
+           (is_label_of(label, language::normalised_prompt(request.source)) &&
+            !language::vocabulary_contains(known, language::normalised_prompt(request.source)));
 }
 
 bool label_says(const NamedLabel& label, const edit::EditRequest& request,
                 const std::vector<std::string>& known, const std::optional<ReachChoice>& choice) {
     if (count_labelled(label) == 0) return false;
-    const auto source = edit::as_told(request.source), target = edit::as_told(request.target);
+    const auto source = language::normalised_prompt(request.source),
+               target = language::normalised_prompt(request.target);
     if (choice && choice->label == label.name && (choice->source.empty() || choice->source == source))
         return choice->by_label;
     if (is_label_of(label, source) || is_label_of(label, target)) return true;
-    return made_by_hand(label) && !edit::knows(known, source.empty() ? target : source);
+    return made_by_hand(label) && !language::vocabulary_contains(known, source.empty() ? target : source);
 }
 
 }  // namespace gse::app

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/edit/request/request.h"
+#include "engine/language/sentence.h"
 #include "engine/scene/document.h"
 
 namespace gse::app {
@@ -39,7 +40,7 @@ bool stands_alone(const NamedLabel& label, const edit::EditRequest& request,
 
 /// Prompts of the edits of a stack that are switched on. Edits by hand, or of another version, are passed
 /// over.
-std::vector<edit::EditRequest> applied_requests(const std::vector<EditNode>& stack);
+std::vector<language::EditSentence> applied_sentences(const std::vector<EditNode>& stack);
 
 /// Search settings of the active label: thresholds and excluded views. A negative attention threshold = not
 /// by a search.

@@ -9,6 +9,8 @@
 #include "engine/edit/request/edit_method.h"
 #include "engine/edit/search/place_drawing.h"
 #include "engine/edit/target_views/view_round.h"
+#include "engine/language/description.h"
+#include "engine/language/words.h"
 #include "engine/pipeline/run/preview_check.h"
 
 namespace gse::app {
@@ -94,8 +96,9 @@ Cost estimated_cost(const CostProfile& measured, const edit::EditRequest& asked,
                        ? edit::restyling(asked, work.mode)
                        : asked;
     if (method.draws_views() && work.mode != edit::EditMode::Modify)
-        request.prompt = edit::with_usual_colour(edit::as_told(request.prompt), new_thing(request, work.mode),
-                                                 work.words, work.traits.usual_colours);
+        request.prompt =
+            language::with_usual_colour(language::normalised_prompt(request.prompt),
+                                        new_thing(request, work.mode), work.words, work.traits.usual_colours);
     Sum sum;
     sum.add(work.loaded ? 0 : 1, measured.load);
     sum.add(work.tune_steps, measured.tune_step, measured.tune_step_tflop);

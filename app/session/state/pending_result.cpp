@@ -7,7 +7,7 @@
 #include "engine/base/error.h"
 #include "engine/base/json.h"
 #include "engine/base/log.h"
-#include "engine/edit/request/words.h"
+#include "engine/language/words.h"
 #include "engine/pipeline/report/edit_output.h"
 #include "engine/pipeline/run/loop.h"
 #include "engine/scene/row_values.h"
@@ -18,7 +18,8 @@ namespace gse::app {
 Renamed renamed_by(const EditJob& job) {
     if (job.located().mode != edit::EditMode::Replace) return {};
     const auto& request = job.recipe().request;
-    return {edit::as_told(request.source), edit::as_told(new_thing(request, edit::EditMode::Replace))};
+    return {language::normalised_prompt(request.source),
+            language::normalised_prompt(new_thing(request, edit::EditMode::Replace))};
 }
 
 namespace {

@@ -15,8 +15,8 @@
 
 namespace gse::app {
 
-/// The object that an edit turned into another, and that other; empty for other edits. Words as as_told() has
-/// them.
+/// The object that an edit turned into another, and that other; empty for other edits. Words are
+/// normalised.
 struct Renamed {
     std::string from, to;
 };

@@ -6,6 +6,8 @@
 #include "engine/edit/placement/placement_volume.h"
 #include "engine/edit/request/colour_word.h"
 #include "engine/edit/search/locate.h"
+#include "engine/language/description.h"
+#include "engine/language/words.h"
 #include "engine/localize/clusters.h"
 
 namespace gse::edit {
@@ -40,7 +42,8 @@ EditPlan make_plan(const LocateInput& input, const LocateResult& located, raster
     plan.seeds = located.seeds;
     plan.settings = input.settings;
     plan.mode = located.mode;
-    if (located.mode == EditMode::Add && !is_described(as_told(input.request.prompt), input.request.target))
+    if (located.mode == EditMode::Add &&
+        !language::is_described(language::normalised_prompt(input.request.prompt), input.request.target))
         plan.drawn_colour = colour_of_drawn(located, input.known);
     const std::vector<float> values(plan.label.begin(), plan.label.end());
     const bool any = std::find(plan.label.begin(), plan.label.end(), std::uint8_t{1}) != plan.label.end();

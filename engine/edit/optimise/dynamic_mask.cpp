@@ -9,6 +9,7 @@
 #include "engine/base/random.h"
 #include "engine/edit/masks/word_mask.h"
 #include "engine/edit/request/scales.h"
+#include "engine/language/words.h"
 #include "engine/localize/clusters.h"
 
 namespace gse::edit {
@@ -23,8 +24,8 @@ constexpr double RestMemory = 0.98;               // X8
 
 /// What replaces the word ("on the snow" that was "on the grass") is looked for once the edit shows it.
 std::string word_after(const EditRequest& request, std::string word) {
-    if (has_word(request.prompt, word)) return word;
-    return has_word(request.prompt, request.target) ? request.target : std::string();
+    if (language::has_phrase(request.prompt, word)) return word;
+    return language::has_phrase(request.prompt, request.target) ? request.target : std::string();
 }
 
 }  // namespace
@@ -54,7 +55,7 @@ bool DynamicMasks::due(std::size_t view, int iteration) const {
 Mask DynamicMasks::found_in(const Image& shown, std::size_t view, int iteration) const {
     const AttentionQuery query{
         shown,
-        as_told(request_.prompt),
+        language::normalised_prompt(request_.prompt),
         {word_},
         plan_.view_words.empty() ? std::string() : plan_.view_words[view],
         false,

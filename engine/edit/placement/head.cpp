@@ -8,6 +8,7 @@
 #include "engine/base/check.h"
 #include "engine/edit/placement/region_frame.h"
 #include "engine/edit/search/place_drawing.h"
+#include "engine/language/grammar.h"
 
 namespace gse::edit {
 namespace {
@@ -65,10 +66,11 @@ HeadRegion bust_of(const GaussianSet& set, std::span<const std::uint8_t> bits, c
 AttachmentTarget wearer_of(const EditRequest& request, const GaussianSet& set,
                            std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front, bool drawn,
                            const ModelTraits& traits) {
-    const bool at_head = has_usual_place(request.target) && usual_place(request.target) != "around";
+    const bool at_head =
+        language::has_usual_place(request.target) && language::usual_place(request.target) != "around";
     if (drawn && at_head && draws_place(request, EditMode::Add)) {
-        auto bust =
-            bust_of(set, bits, up, front, usual_place(request.target) == "neck" ? traits.head_and_neck : 1);
+        auto bust = bust_of(set, bits, up, front,
+                            language::usual_place(request.target) == "neck" ? traits.head_and_neck : 1);
         if (bust.head < traits.small_head) {
             const auto standing = standing_alone(set, bust.bits, up, front);
             return {std::move(bust.bits), standing, bust.head};
@@ -78,11 +80,13 @@ AttachmentTarget wearer_of(const EditRequest& request, const GaussianSet& set,
 }
 
 bool replaces_accessory(const EditRequest& request, EditMode mode) {
-    return mode == EditMode::Replace && has_usual_place(request.source) && has_usual_place(request.target);
+    return mode == EditMode::Replace && language::has_usual_place(request.source) &&
+           language::has_usual_place(request.target);
 }
 
 bool moves_worn_place(const EditRequest& request, EditMode mode) {
-    return replaces_accessory(request, mode) && usual_place(request.source) != usual_place(request.target);
+    return replaces_accessory(request, mode) &&
+           language::usual_place(request.source) != language::usual_place(request.target);
 }
 
 }  // namespace gse::edit

@@ -33,8 +33,8 @@ struct AttachmentTarget {
 };
 
 /// Head of the rows that `bits` [N] label, if it is small for the model (ModelTraits::small_head). The target
-/// must have its place there (usual_place()) and be `drawn` into the views. All rows otherwise. A model draws
-/// what suits the figure that it is shown.
+/// must have its place there (language::usual_place()) and be `drawn` into the views. All rows otherwise. A
+/// model draws what suits the figure that it is shown.
 AttachmentTarget wearer_of(const EditRequest& request, const GaussianSet& set,
                            std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front, bool drawn,
                            const ModelTraits& traits);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/language/grammar.h"
+
 namespace gse::edit {
 namespace {
 
@@ -21,7 +23,7 @@ constexpr double GroundShare = 0.9;   // of the points below the source that lie
 
 }  // namespace
 
-RelatedPlace::RelatedPlace(Relation relation, const std::vector<Vec3>& source,
+RelatedPlace::RelatedPlace(language::Relation relation, const std::vector<Vec3>& source,
                            const std::vector<Vec3>& others)
     : relation_(relation), source_(trimmed_box(source, BoundsTrim)) {
     const Vec3 size = source_.size();
@@ -31,22 +33,22 @@ RelatedPlace::RelatedPlace(Relation relation, const std::vector<Vec3>& source,
     box_.low.y -= IntoGround * size.y;
     box_.high.y = source_.low.y + MostRise * size.y;
     const double wide = radius_ + Gap * longest;  // sideways of the direction of the relation
-    const bool sideways =
-        relation == Relation::Beside || relation == Relation::Left || relation == Relation::Right;
+    const bool sideways = relation == language::Relation::Beside || relation == language::Relation::Left ||
+                          relation == language::Relation::Right;
     const Vec3 room =
-        sideways ? Vec3{reach, 0, wide} : Vec3{wide, 0, relation == Relation::Under ? wide : reach};
+        sideways ? Vec3{reach, 0, wide} : Vec3{wide, 0, relation == language::Relation::Under ? wide : reach};
     box_.low = box_.low - room;
     box_.high = box_.high + room;
-    if (relation == Relation::Left || relation == Relation::Behind) {
+    if (relation == language::Relation::Left || relation == language::Relation::Behind) {
         const int axis = sideways ? 0 : 2;
         box_.high[axis] = source_.low[axis];
-    } else if (relation == Relation::Right || relation == Relation::Before) {
+    } else if (relation == language::Relation::Right || relation == language::Relation::Before) {
         const int axis = sideways ? 0 : 2;
         box_.low[axis] = source_.high[axis];
     }
     find_room_below(others);
     choose_side(others);
-    if (relation == Relation::Under) {
+    if (relation == language::Relation::Under) {
         const double flat = FlatHeight * size.y;
         box_.low.y = source_.low.y - (below_ > 0 ? std::min(below_, reach) : flat);
         box_.high.y = source_.low.y + (below_ > 0 ? 0 : 0.5 * flat);
@@ -65,8 +67,8 @@ void RelatedPlace::find_room_below(const std::vector<Vec3>& others) {
 }
 
 void RelatedPlace::choose_side(const std::vector<Vec3>& others) {
-    if (relation_ != Relation::Beside) {
-        sign_ = relation_ == Relation::Left ? -1 : 1;
+    if (relation_ != language::Relation::Beside) {
+        sign_ = relation_ == language::Relation::Left ? -1 : 1;
         return;
     }
     const auto in_the_way = [&](double sign) {
@@ -80,7 +82,7 @@ void RelatedPlace::choose_side(const std::vector<Vec3>& others) {
 
 bool RelatedPlace::allows(const Vec3& p) const {
     switch (relation_) {
-        case Relation::Beside: return p.x < source_.low.x || p.x > source_.high.x;
+        case language::Relation::Beside: return p.x < source_.low.x || p.x > source_.high.x;
         default: return box_.has(p);
     }
 }
@@ -90,9 +92,9 @@ Box RelatedPlace::thing() const {
     const double gap = Gap / Radius * radius_;
     Vec3 centre{middle.x, source_.low.y + radius_, middle.z}, size{radius_, radius_, radius_};
     switch (relation_) {
-        case Relation::Behind: centre.z -= half.z + gap + radius_; break;
-        case Relation::Before: centre.z += half.z + gap + radius_; break;
-        case Relation::Under:
+        case language::Relation::Behind: centre.z -= half.z + gap + radius_; break;
+        case language::Relation::Before: centre.z += half.z + gap + radius_; break;
+        case language::Relation::Under:
             if (below_ > 0) {
                 size.y = std::min(radius_, 0.5 * below_);
                 centre.y = std::max(source_.low.y - below_ + size.y, source_.low.y - 2 * radius_);
@@ -113,7 +115,7 @@ VoxelRegion RelatedPlace::usual(const Frame& frame, int cells) const {
         const Vec3 d = p - centre;
         return std::hypot(d.x / half.x, d.y / half.y, d.z / half.z) <= 1;
     });
-    region.origin = place_name(relation_);
+    region.origin = language::place_name(relation_);
     return region;
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/edit/placement/region_frame.h"
-#include "engine/edit/request/relation.h"
+#include "engine/language/lexicon.h"
 
 namespace gse::edit {
 
@@ -11,7 +11,8 @@ namespace gse::edit {
 class RelatedPlace {
 public:
     /// `source` and `others`: visible points of the source (at least one) and of the rest of the scene.
-    RelatedPlace(Relation relation, const std::vector<Vec3>& source, const std::vector<Vec3>& others);
+    RelatedPlace(language::Relation relation, const std::vector<Vec3>& source,
+                 const std::vector<Vec3>& others);
     /// Where the views vote.
     const Box& box() const { return box_; }
     /// Whether a point of it stands in the relation to the source.
@@ -25,7 +26,7 @@ private:
     void choose_side(const std::vector<Vec3>& others);
     Box thing() const;
 
-    Relation relation_;
+    language::Relation relation_;
     Box source_, box_;
     double radius_ = 0;  // of a thing that suits the source
     double sign_ = 1;    // of x, where either side would do: the emptier one

@@ -6,13 +6,12 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <map>
 
 #include "engine/base/check.h"
 #include "engine/base/random.h"
 #include "engine/edit/placement/related_place.h"
 #include "engine/edit/placement/upright_bounds.h"
-#include "engine/edit/request/words.h"
+#include "engine/language/grammar.h"
 #include "engine/localize/clusters.h"
 
 namespace gse::edit {
@@ -204,23 +203,6 @@ double silhouette_match(const RegionSearch& search, const VoxelRegion& region) {
     return views > 0 ? sum / static_cast<double>(views) : 0;
 }
 
-const std::map<std::string, std::string>& usual_places() {
-    static const std::map<std::string, std::string> places{
-        {"hat", "top"},          {"crown", "top"},     {"cap", "top"},         {"helmet", "top"},
-        {"sunglasses", "front"}, {"glasses", "front"}, {"moustache", "front"}, {"mask", "front"},
-        {"scarf", "neck"},       {"necklace", "neck"}, {"collar", "neck"},     {"tie", "neck"},
-        {"horns", "top"},        {"antlers", "top"},   {"halo", "top"},        {"headphones", "top"},
-        {"beard", "neck"},       {"bow", "neck"},      {"flames", "around"},   {"fire", "around"},
-        {"smoke", "around"},     {"wings", "around"},  {"snow", "around"}};
-    return places;
-}
-
-/// Last word of a phrase: a top hat is a hat.
-std::string head_of(const std::string& phrase) {
-    const auto words = words_of(phrase);
-    return words.empty() ? std::string() : words.back();
-}
-
 /// Where the votes for what the source wears or has on are counted: around it, down to its foot (a label may
 /// lack what carries a thing) and above.
 Box worn_box(const std::vector<Vec3>& points, const UprightBounds& standing, const Frame& frame) {
@@ -264,7 +246,7 @@ VoxelRegion vote_region(const RegionSearch& search, const RegionParameters& para
     const auto voters = std::count_if(search.masks.begin(), search.masks.end(),
                                       [](const Mask& m) { return !m.data.empty(); });
     if (points.empty() || voters == 0) return {};
-    const bool related = !place_name(search.relation).empty();
+    const bool related = !language::place_name(search.relation).empty();
     const RelatedPlace place(search.relation, points,
                              related ? visible_points(search, frame, false) : std::vector<Vec3>{});
     const auto worn = [&] {
@@ -311,19 +293,13 @@ VoxelRegion anchor_region(const RegionSearch& search, const std::string& place, 
 }
 
 VoxelRegion usual_region(const RegionSearch& search, const std::string& thing, int cells) {
-    if (place_name(search.relation).empty()) return anchor_region(search, usual_place(thing), cells);
+    if (language::place_name(search.relation).empty())
+        return anchor_region(search, language::usual_place(thing), cells);
     const Frame frame = make_frame(search.up, search.front);
     const auto points = visible_points(search, frame, true);
     if (points.empty()) return {};
     return RelatedPlace(search.relation, points, visible_points(search, frame, false)).usual(frame, cells);
 }
-
-std::string usual_place(const std::string& thing) {
-    const auto found = usual_places().find(head_of(thing));
-    return found == usual_places().end() ? "top" : found->second;
-}
-
-bool has_usual_place(const std::string& thing) { return usual_places().contains(head_of(thing)); }
 
 GaussianData seed_splats(const VoxelRegion& region, int count, int sh_degree, std::uint64_t seed,
                          double opacity) {

@@ -9,7 +9,7 @@
 #include "engine/base/image.h"
 #include "engine/base/thread_pool.h"
 #include "engine/edit/placement/upright_bounds.h"
-#include "engine/edit/request/relation.h"
+#include "engine/language/lexicon.h"
 #include "engine/scene/scene.h"
 
 namespace gse::edit {
@@ -33,11 +33,11 @@ struct RegionSearch {
     std::span<const Mask> masks;    // per view; an empty mask does not vote
     std::span<const Image> depths;  // per view [H,W,1] depth of the surface, 0 = nothing there
     Vec3 up{0, -1, 0};
-    Vec3 front{0, 0, -1};  // where the thing looks
-    Relation relation =
-        Relation::None;  // what the sentence says of the new thing's place: cells elsewhere do not count
-    ThreadPool* threads = nullptr;  // may be null
-    UprightBounds standing{};       // of the thing; not found = read off its rows
+    Vec3 front{0, 0, -1};                                    // where the thing looks
+    language::Relation relation = language::Relation::None;  // what the sentence says of the new thing's
+                                                             // place: cells elsewhere do not count
+    ThreadPool* threads = nullptr;                           // may be null
+    UprightBounds standing{};                                // of the thing; not found = read off its rows
 };
 
 struct RegionParameters {
@@ -64,11 +64,6 @@ VoxelRegion anchor_region(const RegionSearch& search, const std::string& place, 
 /// Where the relation puts a thing of that name when nothing else says it; without a relation, where it
 /// usually goes.
 VoxelRegion usual_region(const RegionSearch& search, const std::string& thing, int cells = 28);
-
-/// The place a thing ("hat", "top hat") usually takes: "top" for what is not known.
-std::string usual_place(const std::string& thing);
-/// Whether the place is known, not only supposed.
-bool has_usual_place(const std::string& thing);
 
 /// `count` round splats of neutral colour, spread over the region; sized by the room each has. `opacity` in
 /// (0,1).

@@ -8,8 +8,7 @@
 
 #include "engine/base/check.h"
 #include "engine/edit/request/request.h"
-#include "engine/edit/request/vocabulary.h"
-#include "engine/edit/request/words.h"
+#include "engine/language/vocabulary.h"
 
 namespace gse::edit {
 namespace {
@@ -58,13 +57,11 @@ double distance(const Colour& a, const Colour& b) {
     return l * l + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]);
 }
 
-bool is_vowel(char letter) { return std::string("aeiou").find(letter) != std::string::npos; }
-
 }  // namespace
 
 ColourVote::ColourVote(const std::vector<std::string>& known) {
     for (std::size_t i = 0; i < Terms.size(); ++i)
-        if (knows(known, Terms[i].word)) terms_.push_back(i);
+        if (language::vocabulary_contains(known, Terms[i].word)) terms_.push_back(i);
     votes_.resize(terms_.size());
 }
 
@@ -104,38 +101,6 @@ std::string colour_shown(const Image& picture, const Image& share, const std::ve
     ColourVote vote(known);
     vote.add(picture, share);
     return vote.winner();
-}
-
-bool is_described(const std::string& sentence, const std::string& thing) {
-    const auto words = words_of(sentence);
-    const auto at = first_word(sentence, thing);
-    if (at >= words.size()) return true;
-    if (at > 0 && (says_something(words[at - 1]) || words[at - 1] == "in" || words[at - 1] == "on"))
-        return true;                                 // "in flames": a state
-    const auto after = at + words_of(thing).size();  // "wings of gold", "a hat made of wood"
-    return after < words.size() && (words[after] == "of" || words[after] == "made");
-}
-
-std::string described_as(const std::string& sentence, const std::string& thing, const std::string& colour) {
-    auto words = words_of(sentence);
-    const auto at = first_word(sentence, thing);
-    if (at >= words.size() || colour.empty()) return sentence;
-    if (at > 0 && (words[at - 1] == "a" || words[at - 1] == "an"))
-        words[at - 1] = is_vowel(colour.front()) ? "an" : "a";
-    words.insert(words.begin() + static_cast<std::ptrdiff_t>(at), colour);
-    return joined(words);
-}
-
-std::string with_usual_colour(const std::string& sentence, const std::string& thing,
-                              const std::vector<std::string>& sayable,
-                              const std::map<std::string, std::string>& usual_colours) {
-    const auto usual = usual_colours.find(thing);
-    if (sayable.empty() || usual == usual_colours.end() || !knows(sayable, usual->second)) return sentence;
-    auto told = words_of(sentence);  // less what says nothing to the model ("big")
-    for (auto at = first_word(sentence, thing);
-         at > 0 && at < told.size() && says_something(told[at - 1]) && !knows(sayable, told[at - 1]); --at)
-        told.erase(told.begin() + static_cast<std::ptrdiff_t>(at - 1));
-    return is_described(joined(told), thing) ? sentence : described_as(sentence, thing, usual->second);
 }
 
 }  // namespace gse::edit

@@ -30,19 +30,4 @@ private:
 /// That of one picture.
 std::string colour_shown(const Image& picture, const Image& share, const std::vector<std::string>& known);
 
-/// Whether the sentence says what the thing is like ("white wings"), or does not name it; "in flames" and "on
-/// fire" are states, whose colour is their own.
-bool is_described(const std::string& sentence, const std::string& thing);
-
-/// "a bear with wings" with "white" wings; the article before it follows ("a hat", "an orange hat"). Words as
-/// as_told() has them.
-std::string described_as(const std::string& sentence, const std::string& thing, const std::string& colour);
-
-/// The sentence of a thing that comes or is added, in the colour that such a thing mostly has where it tells
-/// none ("a frog": "a green frog"): what learned it in all colours draws it in any. Words as as_told() has
-/// them; as it was where no such colour is among `sayable`. `usual_colours`: of things, ModelTraits.
-std::string with_usual_colour(const std::string& sentence, const std::string& thing,
-                              const std::vector<std::string>& sayable,
-                              const std::map<std::string, std::string>& usual_colours);
-
 }  // namespace gse::edit

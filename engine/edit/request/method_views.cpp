@@ -5,6 +5,8 @@
 
 #include "engine/edit/request/colour_word.h"
 #include "engine/edit/request/edit_method.h"
+#include "engine/language/description.h"
+#include "engine/language/words.h"
 
 namespace gse::edit {
 namespace {
@@ -13,7 +15,7 @@ namespace {
 bool draws_key_view(const EditRequest& request, EditMode mode, bool drawn) {
     if (drawn || !round_plan(request, mode).anew) return false;
     const auto thing = new_thing(request, mode);
-    return !thing.empty() && !is_described(as_told(request.prompt), thing);
+    return !thing.empty() && !language::is_described(language::normalised_prompt(request.prompt), thing);
 }
 
 class RedrawnViews final : public EditMethod {

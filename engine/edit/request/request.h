@@ -10,7 +10,7 @@
 #include "engine/base/fields.h"
 #include "engine/base/image.h"
 #include "engine/edit/request/field_use.h"
-#include "engine/edit/request/words.h"
+#include "engine/language/sentence.h"
 
 namespace gse::edit {
 
@@ -411,19 +411,12 @@ struct EditRequest : EditWords, SearchSettings, LabelThresholds, LoopSettings {
 /// not: numbers that such a request has at their default are left unset. Throws Error.
 void read_request(EditRequest& request, const nlohmann::ordered_json& json);
 
-/// What an edit does with what is there: changes its colour, material or style; puts something beside it; or
-/// puts something else in its place.
-enum class EditMode { Modify, Add, Replace };
+using language::EditMode;
 
 /// "modify", "add" or "replace", as `EditWords::mode` has it.
 const char* mode_name(EditMode mode);
 /// The mode of that name; nothing for others, "auto" among them.
 std::optional<EditMode> mode_named(const std::string& name);
-
-/// The thing of the sentence that is to be in the source's place ("cat" of "a red cat on the grass" for a
-/// bear); empty where the sentence keeps the source, or changes what things stand on. The words of a
-/// validated request.
-std::string thing_in_place(const EditRequest& request);
 
 /// What has a shape of its own after an edit of that mode: what takes the source's place, or is added. The
 /// words of a validated request.
@@ -459,54 +452,12 @@ double mask_growth(const LoopSettings& settings, EditMode mode, const Mask& mask
 /// Mode as the words of the request say, before anything was looked for.
 EditMode planned_mode(const EditRequest& request);
 
-/// The sentence's terms, with compound prepositions ("next to") as one: what a reader of noun phrases goes
-/// through.
-std::vector<std::string> noun_terms(const std::string& sentence, const std::vector<std::string>& phrases);
+/// The words of a validated request, parsed.
+language::EditSentence edit_sentence(const EditRequest& request);
 
-/// Whether a term stands between noun phrases: "wearing", "on", "next to".
-bool ends_phrase(const std::string& term);
-
-/// "it", "him", ...: what stands for the source after a preposition.
-bool is_pronoun(const std::string& term);
-
-/// Whether a (lower-case) word names or describes something: "bear", "golden"; not "the", "wearing" or
-/// "remove".
-bool says_something(const std::string& word);
-
-/// Whether the word at `i` is an "in" that puts something on: "in flames", "in a hat", but not "in gold", "in
-/// the snow".
-bool says_worn(const std::vector<std::string>& words, std::size_t i);
-
-/// The one word of the prompt that is new, guessed from the sentence: what the source is "wearing", "with",
-/// "in" or "made of", else the word before it ("golden" statue), else, where the prompt does not name the
-/// source, the first thing it names. Words that the scene shows already (`said`) are no news: where the
-/// sentence has other ones, it is about those.
-std::string guessed_target(const std::string& prompt, const std::string& source,
-                           const std::vector<std::string>& said = {});
-
-/// All that may be the news of the sentence: what describes the source, and the things it names,
-/// guessed_target() first; not what was `said` already, where there is something else.
-std::vector<std::string> possible_targets(const std::string& prompt, const std::string& source,
-                                          const std::vector<std::string>& said = {});
-
-/// Words that hold for a scene after these edits, in the order in which they were applied: what their
-/// sentences say, less what a later one replaced ("blue" of a bear that was made red since).
-std::vector<std::string> words_said(const std::vector<EditRequest>& applied);
-
-/// The prompt as it was before the edit: without the new word, or without the phrase that brings it ("wearing
-/// a red hat"); where it stands in the source's place ("into a panda"), with the source instead. The words of
-/// a validated request.
-std::string sentence_before(const EditRequest& request);
-
-/// The things a sentence names, in its order, each once: the last words of its noun phrases ("a white dog
-/// wearing a hat on the snow": dog, hat, snow). A thing named by one of the phrases ("teddy bear") is named
-/// whole.
-std::vector<std::string> things_named(const std::string& sentence,
-                                      const std::vector<std::string>& phrases = {});
-
-/// What pictures of the scene are captioned with while the model learns it: "a photo of a bear", with the
-/// identifier where the prompt has one ("a photo of a * bear").
-std::string instance_sentence(const EditRequest& request);
+/// The order for a model that edits pictures by instructions (InstructPix2Pix): the request's instruction;
+/// without one language::instruction_for().
+std::string instruction_of(const EditRequest& request);
 
 /// Fills what the request leaves open (target and source) and checks it; both may be phrases of several
 /// words. Throws Error with one sentence: an empty prompt, a target that is not in the prompt, an unknown

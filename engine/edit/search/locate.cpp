@@ -19,9 +19,12 @@
 #include "engine/edit/placement/head.h"
 #include "engine/edit/placement/placement_volume.h"
 #include "engine/edit/request/excluded_views.h"
-#include "engine/edit/request/vocabulary.h"
 #include "engine/edit/search/confidence.h"
 #include "engine/edit/target_views/strategies/studio_background.h"
+#include "engine/language/grammar.h"
+#include "engine/language/sentence.h"
+#include "engine/language/vocabulary.h"
+#include "engine/language/words.h"
 #include "engine/localize/clusters.h"
 #include "engine/localize/graph_cut.h"
 #include "engine/localize/propagate_labels.h"
@@ -139,16 +142,19 @@ private:
 
     /// The word with a prompt that surely contains it and its rivals.
     Search search_for(const std::string& word, bool absent) const {
-        std::string sentence = as_told(request().prompt);
-        if (!has_word(sentence, word))
-            sentence = sentence_before(request());  // "on the snow" was "on the grass"
-        if (!has_word(sentence, word)) sentence = "a " + word;
+        std::string sentence = language::normalised_prompt(request().prompt);
+        if (!language::has_phrase(sentence, word))
+            sentence = edit_sentence(request()).before();  // "on the snow" was "on the grass"
+        if (!language::has_phrase(sentence, word)) sentence = "a " + word;
         Search search{word, std::move(sentence), {}, request().rivals != "auto", absent};
         if (absent || request().rivals == "none") return search;
-        for (const auto& rival : search.rivals_given ? phrases_of(request().rivals)
-                                                     : things_named(sentence_before(request()), {word})) {
-            if (rival == word || (!search.rivals_given && !knows(input_.known, rival))) continue;
-            if (!has_word(search.prompt, rival)) search.prompt += ", " + rival;
+        for (const auto& rival : search.rivals_given
+                                     ? language::phrases_of(request().rivals)
+                                     : language::Sentence(edit_sentence(request()).before()).things({word})) {
+            if (rival == word ||
+                (!search.rivals_given && !language::vocabulary_contains(input_.known, rival)))
+                continue;
+            if (!language::has_phrase(search.prompt, rival)) search.prompt += ", " + rival;
             search.rivals.push_back(rival);
         }
         return search;
@@ -409,8 +415,9 @@ private:
         std::vector<const Image*> some;
         const std::size_t step = std::max<std::size_t>(1, seen_.renders.size() / RecognisedViews);
         for (std::size_t v = 0; v < seen_.renders.size(); v += step) some.push_back(&seen_.renders[v]);
-        const std::string sentence = sentence_before(request());
-        return tools_.recognition->of(has_word(sentence, word) ? sentence : "a " + word, word, some);
+        const std::string sentence = edit_sentence(request()).before();
+        return tools_.recognition->of(language::has_phrase(sentence, word) ? sentence : "a " + word, word,
+                                      some);
     }
 
     static std::string common_remedy(const std::vector<ViewEvidence>& views) {
@@ -435,7 +442,7 @@ private:
         Search search = search_for(request().source, false);
         search.whole = true;
         search.alone = result.mode == EditMode::Replace &&
-                       std::all_of(search.rivals.begin(), search.rivals.end(), names_ground);
+                       std::all_of(search.rivals.begin(), search.rivals.end(), language::names_ground);
         result.word = search.word;
         if (input_.label != nullptr) {
             result.views = labelled_views();
@@ -588,8 +595,7 @@ private:
         const Search search = search_for(request().target, true);
         result.word = search.word;
         const bool of_source = request().source != request().target;
-        const auto relation =
-            of_source ? relation_of(request().prompt, request().source, request().target) : Relation::None;
+        const auto relation = of_source ? edit_sentence(request()).relation() : language::Relation::None;
         const auto wearer = wearer_of(request(), input_.gaussians, *result.source_label.bits, input_.up,
                                       input_.front, tools_.drawing != nullptr, input_.traits);
         if (wearer.head < 1)

@@ -14,8 +14,9 @@
 #include "engine/edit/interfaces/broken_values.h"
 #include "engine/edit/masks/neighbours.h"
 #include "engine/edit/masks/word_mask.h"
-#include "engine/edit/request/relation.h"
 #include "engine/edit/target_views/view_round.h"
+#include "engine/language/grammar.h"
+#include "engine/language/words.h"
 #include "engine/localize/clusters.h"
 
 namespace gse::edit {
@@ -107,7 +108,7 @@ Mask changed_thing(const Image& change, const Mask& inside, const Image& map, do
 
 bool draws_place(const EditRequest& request, EditMode mode) {
     return mode == EditMode::Add && request.place_views > 0 && request.source != request.target &&
-           place_name(relation_of(request.prompt, request.source, request.target)).empty();
+           language::place_name(edit_sentence(request).relation()).empty();
 }
 
 double guided_steps_of_place(const EditRequest& request) {
@@ -185,7 +186,7 @@ std::vector<DrawnPlace> find_drawn(const PlaceDrawing& drawing, const DrawnViews
     for (std::size_t i = 0; i < drawn.views.size(); ++i) {
         const auto v = drawn.views[i];
         queries.push_back({drawn.pictures[i],
-                           as_told(drawing.request.prompt),
+                           language::normalised_prompt(drawing.request.prompt),
                            {drawing.word},
                            drawing.view_words.empty() ? std::string() : drawing.view_words[v],
                            false,

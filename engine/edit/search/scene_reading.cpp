@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "engine/base/check.h"
-#include "engine/edit/request/vocabulary.h"
+#include "engine/language/vocabulary.h"
 
 namespace gse::edit {
 namespace {
@@ -44,11 +44,11 @@ SceneReading read_scene(VocabularyRanker& recognition, const EditRequest& reques
     for (const auto& target : targets) {
         EditRequest with = request;
         with.target = target;
-        fits.push_back(fits_of(recognition, sentence_before(with), pictures));
+        fits.push_back(fits_of(recognition, edit_sentence(with).before(), pictures));
     }
     std::size_t chosen = 0;
     const auto worth = [&](std::size_t i) {
-        return best_of(fits[i]) + (knows(known, targets[i]) ? 0 : Doubt);
+        return best_of(fits[i]) + (language::vocabulary_contains(known, targets[i]) ? 0 : Doubt);
     };
     for (std::size_t i = 1; i < targets.size(); ++i)
         if (worth(i) > worth(chosen)) chosen = i;

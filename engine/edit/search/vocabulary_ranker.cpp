@@ -7,6 +7,8 @@
 
 #include "engine/base/check.h"
 #include "engine/edit/request/request.h"
+#include "engine/language/grammar.h"
+#include "engine/language/words.h"
 
 namespace gse::edit {
 namespace {
@@ -19,9 +21,9 @@ double cosine(const std::vector<float>& a, const std::vector<float>& b) {
 }
 
 std::string with_other(const std::string& sentence, const std::string& phrase, const std::string& other) {
-    auto terms = terms_of(sentence, {phrase});
+    auto terms = language::terms_of(language::words_of(sentence), {phrase});
     std::replace(terms.begin(), terms.end(), phrase, other);
-    return joined(terms);
+    return language::joined(terms);
 }
 
 }  // namespace
@@ -29,7 +31,7 @@ std::string with_other(const std::string& sentence, const std::string& phrase, c
 VocabularyRanker::VocabularyRanker(std::unique_ptr<ImageTextEncoder> score, std::vector<std::string> known)
     : score_(std::move(score)) {
     for (auto& word : known)
-        if (says_something(word)) known_.push_back(std::move(word));
+        if (language::says_something(word)) known_.push_back(std::move(word));
 }
 
 const std::vector<float>& VocabularyRanker::vector_of(const std::string& sentence) {
@@ -50,7 +52,8 @@ std::vector<float> VocabularyRanker::viewpoint(const Image& picture) {
 double VocabularyRanker::fit(const std::string& sentence, const std::vector<const Image*>& pictures) {
     GSE_CHECK(compares() && !pictures.empty());
     double sum = 0;
-    for (const Image* picture : pictures) sum += cosine(vector_of(*picture), vector_of(as_told(sentence)));
+    for (const Image* picture : pictures)
+        sum += cosine(vector_of(*picture), vector_of(language::normalised_prompt(sentence)));
     return sum / static_cast<double>(pictures.size());
 }
 
@@ -60,9 +63,9 @@ double VocabularyRanker::of(const std::string& sentence, const std::string& word
     double below = 0, all = 0;
     for (const Image* picture : pictures) {
         const auto seen = vector_of(*picture);
-        const double own = cosine(seen, vector_of(as_told(sentence)));
+        const double own = cosine(seen, vector_of(language::normalised_prompt(sentence)));
         for (const auto& other : known_) {
-            if (has_word(word, other)) continue;  // the word, or a part of the phrase
+            if (language::has_phrase(word, other)) continue;  // the word, or a part of the phrase
             below += cosine(seen, vector_of(with_other(sentence, word, other))) < own ? 1 : 0;
             all += 1;
         }

@@ -15,6 +15,7 @@
 #include "engine/edit/masks/word_mask.h"
 #include "engine/edit/request/colour_word.h"
 #include "engine/edit/search/place_drawing.h"
+#include "engine/language/words.h"
 
 namespace gse::edit {
 namespace {
@@ -44,7 +45,7 @@ ShapeFinder::ShapeFinder(const EditPlan& plan, const EditRequest& request, std::
     : plan_(plan), request_(request), word_(std::move(word)), attention_(attention) {}
 
 AttentionQuery ShapeFinder::query_of(const EditView& view, const Image& picture, std::uint64_t seed) const {
-    return {picture, as_told(request_.prompt), {word_}, view.view_words, false, 1, seed};
+    return {picture, language::normalised_prompt(request_.prompt), {word_}, view.view_words, false, 1, seed};
 }
 
 Image ShapeFinder::outline_of(const EditView& view, const EditedViews& drawn, std::size_t index,

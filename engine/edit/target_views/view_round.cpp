@@ -11,6 +11,8 @@
 #include "engine/edit/interfaces/broken_values.h"
 #include "engine/edit/request/colour_word.h"
 #include "engine/edit/request/scales.h"
+#include "engine/language/description.h"
+#include "engine/language/words.h"
 #include "engine/localize/clusters.h"
 
 namespace gse::edit {
@@ -179,11 +181,11 @@ EditViewsRequest ViewRounds::input(std::uint64_t stream) const {
 /// Where the sentence leaves open what colour the new thing has, it is the one that the search has drawn it
 /// in most; else the view with most room for it is drawn first. The word for it is told to all.
 void ViewRounds::name_colour(const std::vector<EditView>& views, const JobControl& job) {
-    const auto told = as_told(request_.prompt);
-    if (shapes_ == nullptr || views.empty() || is_described(told, shapes_->word())) return;
+    const auto told = language::normalised_prompt(request_.prompt);
+    if (shapes_ == nullptr || views.empty() || language::is_described(told, shapes_->word())) return;
     const auto colour = plan_.drawn_colour.empty() ? colour_of_key_view(views, job) : plan_.drawn_colour;
     if (colour.empty()) return;
-    sentence_ = described_as(told, shapes_->word(), colour);
+    sentence_ = language::described_as(told, shapes_->word(), colour);
     log::info(
         "the sentence names no colour for \"{}\"; most of what was drawn is {}: all views are drawn as "
         "\"{}\"",

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "engine/base/error.h"
-#include "engine/edit/request/words.h"
 #include "engine/io/image/image_file.h"
 #include "engine/laboratory/bench/charts/setting_points.h"
 #include "engine/laboratory/eval/eval_run.h"

@@ -9,10 +9,10 @@
 
 #include "engine/base/clock.h"
 #include "engine/base/error.h"
-#include "engine/edit/request/words.h"
 #include "engine/evaluate/metrics.h"
 #include "engine/laboratory/bench/charts/setting_points.h"
 #include "engine/laboratory/eval/eval_figures.h"
+#include "engine/language/words.h"
 
 namespace gse::bench {
 namespace {
@@ -80,7 +80,7 @@ public:
     LocateBench(const LocateBenchParameters& parameters, const pipeline::EditRecipe& settings,
                 const JobControl& job)
         : job_(job), settings_(settings), points_(search_points(parameters, settings)),
-          suite_(make_suite(parameters.seed, parameters.scenes, edit::words_of(parameters.kinds))) {
+          suite_(make_suite(parameters.seed, parameters.scenes, language::words_of(parameters.kinds))) {
         for (const auto& edit : suite_)
             if (edit.kind == "add")
                 throw Error(ErrorCode::InvalidArgument, "what is added is not there to be found",

@@ -8,10 +8,10 @@
 #include <map>
 
 #include "engine/base/error.h"
-#include "engine/edit/request/vocabulary.h"
 #include "engine/evaluate/metrics.h"
 #include "engine/laboratory/eval/eval_figures.h"
 #include "engine/laboratory/synth/without_ground.h"
+#include "engine/language/vocabulary.h"
 
 namespace gse::bench {
 namespace {
@@ -127,7 +127,8 @@ private:
         recipe.request.target = question.target;
         Json entry{{"kind", question.kind},     {"scene", sentence(scene.spec)}, {"source", question.source},
                    {"prompt", question.prompt}, {"present", question.present},   {"confidence", 0.0}};
-        if (!edit::knows(model_->known_words(), question.source)) {  // refused before any work
+        if (!language::vocabulary_contains(model_->known_words(),
+                                           question.source)) {  // refused before any work
             entry["overlap"] = 0.0;
             return entry;
         }

@@ -15,6 +15,7 @@
 #include "engine/laboratory/eval/eval_sheet.h"
 #include "engine/laboratory/eval/eval_suite.h"
 #include "engine/laboratory/eval/eval_summary.h"
+#include "engine/language/words.h"
 #include "engine/pipeline/report/edit_output.h"
 
 namespace gse::bench {
@@ -76,8 +77,8 @@ public:
     Evaluation(const EvalRun& run, const std::filesystem::path& folder, const JobControl& job)
         : run_(run), job_(job), sheets_(folder, "edits", run.parameters.sheet_rows),
           scene_sheets_(folder, "scenes", run.parameters.sheet_rows) {
-        suite_ = make_suite(run.parameters.seed, run.parameters.edits, edit::words_of(run.parameters.kinds),
-                            run.parameters.drawn_words);
+        suite_ = make_suite(run.parameters.seed, run.parameters.edits,
+                            language::words_of(run.parameters.kinds), run.parameters.drawn_words);
         if (run.parameters.mode != "auto" && run.parameters.mode != "right")
             throw Error(ErrorCode::InvalidArgument, "the mode \"" + run.parameters.mode + "\" is not known",
                         "use auto or right");

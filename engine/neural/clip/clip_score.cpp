@@ -7,7 +7,7 @@
 #include <cctype>
 
 #include "engine/base/error.h"
-#include "engine/neural/api/known_sentence.h"
+#include "engine/language/vocabulary.h"
 #include "engine/neural/api/tokenizer.h"
 #include "engine/neural/clip/viewpoint_model.h"
 #include "engine/neural/layers/images.h"
@@ -63,8 +63,9 @@ public:
     std::vector<float> text(const std::string& sentence) override {
         return guard_torch("reading a sentence", [&] {
             const torch::NoGradGuard no_grad;
-            const auto known =
-                folder_.known_words.empty() ? sentence : filter_to_vocabulary(sentence, folder_.known_words);
+            const auto known = folder_.known_words.empty()
+                                   ? sentence
+                                   : language::filter_to_vocabulary(sentence, folder_.known_words);
             const auto length = std::min(tokenizer_.max_length(), config_.text.max_position_embeddings);
             const auto ids = torch::tensor(tokenizer_.encode(known, length).ids, torch::kInt64);
             return to_vector(model_->text_vectors(ids.unsqueeze(0).to(folder_.device)));

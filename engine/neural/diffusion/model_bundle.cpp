@@ -1,5 +1,7 @@
 // Finding, checking and loading the parts of a text-to-image model.
 #include "engine/neural/diffusion/model_bundle.h"
+#include "engine/language/lexicon.h"
+#include "engine/language/vocabulary.h"
 #include "engine/neural/diffusion/shared_tokenizer.h"
 
 #include <fmt/format.h>
@@ -11,8 +13,6 @@
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/base/memory.h"
-#include "engine/edit/request/words.h"
-#include "engine/neural/api/known_sentence.h"
 #include "engine/neural/layers/precision.h"
 #include "engine/neural/layers/torch_errors.h"
 #include "engine/neural/weights/key_map.h"
@@ -299,8 +299,9 @@ std::int64_t ModelBundle::token_count() const {
 }
 
 std::string ModelBundle::model_prompt(const std::string& sentence) const {
-    return facts.vocabulary.empty() ? sentence
-                                    : filter_to_vocabulary(sentence, facts.vocabulary, edit::Identifier);
+    return facts.vocabulary.empty()
+               ? sentence
+               : language::filter_to_vocabulary(sentence, facts.vocabulary, language::Identifier);
 }
 
 torch::Tensor ModelBundle::token_ids(const std::vector<std::string>& prompts) const {

@@ -8,10 +8,10 @@
 #include "engine/base/file.h"
 #include "engine/base/json.h"
 #include "engine/base/log.h"
-#include "engine/edit/request/vocabulary.h"
-#include "engine/edit/request/words.h"
 #include "engine/edit/target_views/strategies/colour_remap.h"
 #ifdef GSE_NEURAL
+#include "engine/language/lexicon.h"
+#include "engine/language/vocabulary.h"
 #include "engine/neural/api/prompt_reader.h"
 #endif
 
@@ -46,13 +46,17 @@ std::shared_ptr<const neural::PromptReader> reader_of(const fs::path& model) {
 std::size_t words_read(const fs::path& model, const std::vector<std::string>& words) {
     const auto reader = reader_of(model);
     if (!reader) return words.size();
-    const auto known = edit::promptable_vocabulary(model_words(model), drawn_words(model));
+    const auto known = language::promptable_vocabulary(model_words(model), drawn_words(model));
     std::vector<std::string> told;
     std::vector<std::size_t> places;  // of what is told, in the sentence
     for (std::size_t i = 0; i < words.size(); ++i) {
-        if (words[i] != edit::Identifier && !edit::knows(known, words[i])) continue;
-        told.push_back(words[i]);
-        places.push_back(i);
+        const auto kept = words[i] == language::Identifier || known.empty()
+                              ? std::vector<std::string>{words[i]}
+                              : language::match_word(words[i], known).kept;
+        for (const auto& word : kept) {
+            told.push_back(word);
+            places.push_back(i);
+        }
     }
     const auto read = reader->words_read(told);
     return read < told.size() ? places[read] : words.size();

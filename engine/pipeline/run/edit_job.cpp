@@ -14,6 +14,11 @@
 #include "engine/base/log_quiet.h"
 #include "engine/edit/request/vocabulary.h"
 #include "engine/edit/target_views/strategies/colour_remap.h"
+#include "engine/language/grammar.h"
+#include "engine/language/news.h"
+#include "engine/language/sentence.h"
+#include "engine/language/vocabulary.h"
+#include "engine/language/words.h"
 #include "engine/localize/focus.h"
 #include "engine/pipeline/models/neural_loader.h"
 #include "engine/pipeline/models/probe.h"
@@ -42,7 +47,7 @@ std::vector<std::uint8_t> labelled_by_box(const Scene& scene, const EditRecipe& 
                                           edit::Segmenter* segmenter, const JobControl& control) {
     const auto& job = recipe.job;
     auto request = cut_out_request(job.cut_out, scene, job.up);
-    request.ground = edit::names_ground(recipe.request.source);
+    request.ground = language::names_ground(recipe.request.source);
     auto bits = cut_out(drawable(scene.gaussians), request, segmenter, control);
     if (std::find(bits.begin(), bits.end(), std::uint8_t{1}) != bits.end()) return bits;
     throw Error(ErrorCode::InvalidArgument,
@@ -76,9 +81,12 @@ std::vector<float> splat_attention(EditJob& job) {
 
 void warn_unknown_words(const std::vector<std::string>& words, const std::vector<std::string>& known) {
     if (known.empty()) return;
-    for (const auto& word : words) {
-        if (std::find(known.begin(), known.end(), word) != known.end()) continue;
-        const auto nearest = edit::nearest_words(word, known, 1);
+    std::vector<std::string> left_out;
+    for (const auto& word : words)
+        for (auto& part : language::match_word(word, known).left_out)
+            if (!language::contains(left_out, part)) left_out.push_back(std::move(part));
+    for (const auto& word : left_out) {
+        const auto nearest = language::nearest_words(word, known, 1);
         if (nearest.empty()) log::warning("the model does not know the word \"{}\" and leaves it out", word);
         else
             log::warning(
@@ -138,7 +146,8 @@ void EditJob::check_recipe(const neural::TextToImage* model) {
     auto& request = recipe_.request;
     hints_.target_open = request.target.empty() && !request.source.empty();
     if (hints_.target_open)
-        request.target = edit::guessed_target(request.prompt, edit::as_told(request.source), hints_.said);
+        request.target = language::guessed_target(language::Sentence(request.prompt),
+                                                  language::normalised_prompt(request.source), hints_.said);
     recipe_.request = edit::validated(recipe_.request);
     check_fields(recipe_.job);
     check_fields(recipe_.guidance);
@@ -160,12 +169,12 @@ void EditJob::check_recipe(const neural::TextToImage* model) {
 
 /// The text encoder has so many places; what stands behind them has no effect.
 void EditJob::check_length() const {
-    const auto words = edit::words_of(recipe_.request.prompt);
+    const auto words = language::words_of(recipe_.request.prompt);
     const auto read = words_read(model_path(recipe_.job), words);
     if (read >= words.size()) return;
     for (const auto& word : {recipe_.request.source, recipe_.request.target}) {
-        const auto first = edit::first_word(recipe_.request.prompt, word);
-        if (first < words.size() && first + edit::words_of(word).size() > read)
+        const auto first = language::position_of(recipe_.request.prompt, word);
+        if (first < words.size() && first + language::words_of(word).size() > read)
             throw Error(
                 ErrorCode::InvalidArgument,
                 fmt::format("the model reads {} words of a sentence and stops before \"{}\"", read, word),
@@ -179,13 +188,13 @@ void EditJob::begin(Scene scene, std::shared_ptr<neural::TextToImage> model, Seg
                     const GivenCameras& given) {
     workplace_ =
         std::make_unique<RunContext>(std::move(scene), std::move(model), recipe_.job, std::move(segmenters));
-    auto words = edit::words_of(recipe_.request.prompt);
-    for (auto& word : edit::words_of(recipe_.request.source)) words.push_back(std::move(word));
+    auto words = language::words_of(recipe_.request.prompt);
+    for (auto& word : language::words_of(recipe_.request.source)) words.push_back(std::move(word));
     std::sort(words.begin(), words.end());
     words.erase(std::unique(words.begin(), words.end()), words.end());
     const auto known = workplace_->model().known_words();
     warn_unknown_words(words, edit::method_of(recipe_.request).draws_views()
-                                  ? edit::promptable_vocabulary(
+                                  ? language::promptable_vocabulary(
                                         known, edit::with_dyes(workplace_->model().drawn_words(), known))
                                   : known);
     views_ = std::make_shared<const Views>(choose_views(workplace_->scene(), recipe_, given));
@@ -196,7 +205,7 @@ void EditJob::begin(Scene scene, std::shared_ptr<neural::TextToImage> model, Seg
     edited_ = std::make_shared<const Edited>();
 }
 
-std::string EditJob::model_prompt() const { return edit::as_told(recipe_.request.prompt); }
+std::string EditJob::model_prompt() const { return language::normalised_prompt(recipe_.request.prompt); }
 
 std::vector<Image> EditJob::instance_pictures() {
     const Views& chosen = *views_;
@@ -216,9 +225,9 @@ std::vector<Image> EditJob::instance_pictures() {
 
 void EditJob::tune() {
     times_.begin("dreambooth");
-    auto tuned =
-        model().tune(recipe_.dreambooth, instance_pictures(), edit::instance_sentence(recipe_.request),
-                     edit::without_identifier(model_prompt()), control_);
+    auto tuned = model().tune(recipe_.dreambooth, instance_pictures(),
+                              language::instance_prompt(edit::edit_sentence(recipe_.request)),
+                              language::without_identifier(model_prompt()), control_);
     workplace_->take_model(std::move(tuned.model));
     tuning_ = std::move(tuned.report);
     times_.end();

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <string_view>
 
-#include "engine/edit/request/vocabulary.h"
-#include "engine/edit/request/words.h"
 #include "engine/evaluate/direction.h"
+#include "engine/language/vocabulary.h"
+#include "engine/language/words.h"
 
 namespace gse::pipeline {
 namespace {
@@ -28,12 +28,12 @@ constexpr double LeastLikeness = 0.4;
 bool says_what_is_drawn_only(const neural::TextToImage& model, const std::string& before,
                              const std::string& told) {
     const auto drawn = model.drawn_words();
-    const auto said = edit::words_of(before);
+    const auto said = language::words_of(before);
     const auto is_new = [&](const auto& word) {
         return std::find(said.begin(), said.end(), word) == said.end() &&
                std::find(drawn.begin(), drawn.end(), word) != drawn.end();
     };
-    return std::ranges::any_of(edit::words_of(told), is_new);
+    return std::ranges::any_of(language::words_of(told), is_new);
 }
 
 /// Things of many shapes; colours and grounds tell nothing of shapes.
@@ -67,10 +67,11 @@ std::optional<double> likeness_of(const neural::TextToImage& model, edit::ImageT
     const auto words_before = encoder.text(said_before);
     const auto pairs = encoded(encoder, pictures);
     for (const auto other : Things) {
-        auto words = edit::words_of(told);
+        auto words = language::words_of(told);
         std::replace(words.begin(), words.end(), thing, std::string(other));
-        const auto words_after =
-            edit::knows(known, std::string(other)) ? encoder.text(edit::joined(words)) : words_before;
+        const auto words_after = language::vocabulary_contains(known, std::string(other))
+                                     ? encoder.text(language::joined(words))
+                                     : words_before;
         if (words_after != words_before)
             most = std::max(most.value_or(-1), mean_score(pairs, words_before, words_after));
     }
@@ -88,9 +89,9 @@ EditQuality judge(const neural::TextToImage& model, const edit::EditRequest& req
     EditQuality result;
     const auto encoder = model.image_text_encoder();
     if (!encoder || pictures.empty()) return result;
-    const auto said_before = edit::sentence_before(request);
+    const auto said_before = edit::edit_sentence(request).before();
     if (says_what_is_drawn_only(model, said_before, told)) {
-        const auto thing = edit::thing_in_place(request);
+        const auto thing = edit::edit_sentence(request).replacement();
         if (!thing.empty() && says_what_is_drawn_only(model, said_before, thing))
             result.likeness = likeness_of(model, *encoder, said_before, told, thing, pictures);
         return result;

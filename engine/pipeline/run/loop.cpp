@@ -6,7 +6,7 @@
 #include "engine/base/content_hash.h"
 #include "engine/base/log.h"
 #include "engine/edit/request/edit_method.h"
-#include "engine/edit/request/instruction.h"
+#include "engine/language/words.h"
 #include "engine/pipeline/models/neural_loader.h"
 #include "engine/pipeline/models/recipe_model.h"
 #include "engine/pipeline/models/segmenters.h"
@@ -20,19 +20,19 @@ namespace {
 std::string dynamic_word(const Located& located, const edit::EditRequest& request) {
     const auto& result = located.result;
     const bool keeps_name =
-        result.mode == edit::EditMode::Modify && edit::has_word(request.prompt, result.word);
+        result.mode == edit::EditMode::Modify && language::has_phrase(request.prompt, result.word);
     return keeps_name ? result.word : new_thing(request, result.mode);
 }
 
 }  // namespace
 
 neural::SdsParameters with_sentence_before(neural::SdsParameters guidance, const edit::EditRequest& request) {
-    if (guidance.before_prompt.empty()) guidance.before_prompt = edit::sentence_before(request);
+    if (guidance.before_prompt.empty()) guidance.before_prompt = edit::edit_sentence(request).before();
     return guidance;
 }
 
 std::string told_to_editor(const edit::EditRequest& request) {
-    return edit::as_told(edit::instruction_of(request));
+    return language::normalised_prompt(edit::instruction_of(request));
 }
 
 edit::EditPlan plan_of(RunContext& workplace, const Located& located, const EditRecipe& recipe) {
@@ -119,8 +119,9 @@ Edited follow_gradient(const SceneEdit& scene_edit) {
     const auto& [workplace, scene, located, plan, recipe, observer, control] = scene_edit;
     const auto& model = workplace.model();
     const auto& request = recipe.request;
-    const auto prompt = model.kind() == neural::BundleKind::InstructPix2Pix ? told_to_editor(request)
-                                                                            : edit::as_told(request.prompt);
+    const auto prompt = model.kind() == neural::BundleKind::InstructPix2Pix
+                            ? told_to_editor(request)
+                            : language::normalised_prompt(request.prompt);
     const auto guidance = model.guidance(prompt, with_sentence_before(recipe.guidance, request));
     const auto attention = uncached(model).attention(recipe.attention);
     auto tools = tools_of(scene_edit, request, *attention, uncached(workplace.segmenter()));

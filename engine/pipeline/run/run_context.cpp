@@ -12,6 +12,7 @@
 #include "engine/base/log.h"
 #include "engine/edit/interfaces/stage_timer.h"
 #include "engine/edit/search/grabcut_segmenter.h"
+#include "engine/language/words.h"
 #include "engine/pipeline/models/neural_loader.h"
 
 namespace gse::pipeline {
@@ -77,7 +78,7 @@ void RunContext::ask_anew(const neural::AttentionParameters& attention) {
 
 std::unique_ptr<edit::MultiViewEditor> RunContext::place_drawing(const edit::EditRequest& request) {
     if (!model_->supports_scene_conditioning()) return nullptr;
-    auto views = model_->views(edit::as_told(request.prompt), neural::SdsParameters{});
+    auto views = model_->views(language::normalised_prompt(request.prompt), neural::SdsParameters{});
     return views ? std::make_unique<MeteredViews>(std::move(views), place_cost_) : nullptr;
 }
 

@@ -18,12 +18,14 @@
 #include "engine/edit/placement/placement_volume.h"
 #include "engine/edit/placement/upright_bounds.h"
 #include "engine/edit/request/excluded_views.h"
-#include "engine/edit/request/relation.h"
-#include "engine/edit/request/vocabulary.h"
 #include "engine/edit/search/front_reading.h"
 #include "engine/edit/search/place_drawing.h"
 #include "engine/edit/search/scene_reading.h"
 #include "engine/edit/target_views/strategies/colour_remap.h"
+#include "engine/language/grammar.h"
+#include "engine/language/news.h"
+#include "engine/language/sentence.h"
+#include "engine/language/vocabulary.h"
 #include "engine/localize/focus.h"
 #include "engine/pipeline/select/cut_out.h"
 
@@ -52,8 +54,8 @@ constexpr std::size_t FrontViews = 12;  // in which the front of a scene is look
 /// What is added needs room around what is there; beside it more than on it.
 double room_around(const edit::EditRequest& request) {
     constexpr double BesideIt = 1.75;
-    const auto relation = edit::relation_of(request.prompt, request.source, request.target);
-    return edit::place_name(relation).empty() ? 1 : BesideIt;  // what is worn fits into the head room
+    const auto relation = edit::edit_sentence(request).relation();
+    return language::place_name(relation).empty() ? 1 : BesideIt;  // what is worn fits into the head room
 }
 
 bool is_cut(const Mask& mask) {
@@ -144,7 +146,7 @@ void look_for_ground(RunContext& workplace, const EditRecipe& recipe, const View
 std::optional<edit::StudioBackground> ground_shown(RunContext& workplace, const EditRecipe& recipe,
                                                    const Views& views) {
     look_for_ground(workplace, recipe, views);
-    return recipe.guidance.plain_ground ? workplace.ground(edit::sentence_before(recipe.request))
+    return recipe.guidance.plain_ground ? workplace.ground(edit::edit_sentence(recipe.request).before())
                                         : std::nullopt;
 }
 
@@ -176,8 +178,9 @@ public:
 private:
     Located searched() {
         const bool by_label =
-            !hints_.label.empty() && (recipe_.job.brings_label() ||
-                                      !edit::knows(workplace_.model().known_words(), recipe_.request.source));
+            !hints_.label.empty() &&
+            (recipe_.job.brings_label() ||
+             !language::vocabulary_contains(workplace_.model().known_words(), recipe_.request.source));
         if (hints_.label.empty()) look_for_ground(workplace_, recipe_, views_);
         read_scene(moves() && !by_label);
         if (by_label) return from_label();
@@ -216,15 +219,18 @@ private:
                             static_cast<int>(distances_.size()));
         }
         std::vector<std::string> targets{request.target};
-        if (hints_.target_open) targets = edit::possible_targets(request.prompt, request.source, hints_.said);
-        if (const auto thing = edit::thing_in_place(request); hints_.target_open && !thing.empty())
+        if (hints_.target_open)
+            targets =
+                language::possible_targets(language::Sentence(request.prompt), request.source, hints_.said);
+        if (const auto thing = edit::edit_sentence(request).replacement();
+            hints_.target_open && !thing.empty())
             targets = {thing};
         // What is only drawn the encoder is not told: it is new where the scene shows all else that the
         // sentence says.
         const auto known = workplace_.model().known_words(),
-                   said = edit::promptable_vocabulary(
+                   said = language::promptable_vocabulary(
                        known, edit::with_dyes(workplace_.model().drawn_words(), known));
-        std::erase_if(targets, [&](const auto& word) { return !edit::knows(said, word); });
+        std::erase_if(targets, [&](const auto& word) { return !language::vocabulary_contains(said, word); });
         const auto reading = edit::read_scene(recognition, request, targets, pictures, known);
         if (hints_.target_open)
             log::info("new in the sentence: \"{}\" (what it says without fits the scene to {:.2f})",
@@ -250,7 +256,7 @@ private:
     /// model's encoder can tell, or else the side that the artist looked at.
     Views faced(Views views) {
         if (!recipe_.job.front.empty() || !views.words.empty() ||
-            !edit::knows(workplace_.model().known_words(), "front side back view"))
+            !language::vocabulary_contains(workplace_.model().known_words(), "front side back view"))
             return views;
         const auto looked = looked_from();
         const auto front = edit::chosen_front(front_shown(views), looked);
@@ -269,7 +275,7 @@ private:
         const auto pictures = workplace_.pictures(some, render_settings(workplace_.scene(), recipe_.request),
                                                   ground(), control_);
         const auto read =
-            edit::read_front(recognition, edit::sentence_before(recipe_.request), pictures, azimuths);
+            edit::read_front(recognition, edit::edit_sentence(recipe_.request).before(), pictures, azimuths);
         log::info("the front is seen at {:.0f} degrees (lead {:.4f})", read.azimuth / Degree, read.lead);
         return read;
     }
@@ -340,13 +346,14 @@ private:
         if (ground_shown(workplace_, recipe_, views_)) return std::vector<std::uint8_t>(rows, 1);
         EditRecipe scan = recipe_;
         auto& request = scan.request;
-        const auto things = edit::things_named(request.prompt, {request.source, request.target});
+        const auto things = language::Sentence(request.prompt).things({request.source, request.target});
         const auto wearer = std::find_if(things.begin(), things.end(), [&](const auto& thing) {
             return thing != request.source && thing != request.target &&
-                   edit::knows(workplace_.model().known_words(), thing);
+                   language::vocabulary_contains(workplace_.model().known_words(), thing);
         });
         if (wearer == things.end()) return {};
-        request.prompt = edit::sentence_before(recipe_.request);  // of what is new the scene shows nothing
+        request.prompt =
+            edit::edit_sentence(recipe_.request).before();  // of what is new the scene shows nothing
         request.target = recipe_.request.source;
         request.source = *wearer;
         request.mode = "modify";

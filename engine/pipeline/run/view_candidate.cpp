@@ -9,8 +9,10 @@
 #include "engine/base/log.h"
 #include "engine/edit/placement/head.h"
 #include "engine/edit/request/colour_word.h"
-#include "engine/edit/request/vocabulary.h"
 #include "engine/edit/target_views/strategies/default_ground_colour.h"
+#include "engine/language/description.h"
+#include "engine/language/vocabulary.h"
+#include "engine/language/words.h"
 #include "engine/pipeline/models/recipe_model.h"
 #include "engine/pipeline/models/segmenters.h"
 
@@ -40,7 +42,7 @@ EditQuality judge_undyed(const neural::TextToImage& model, const edit::EditReque
     for (const auto& view : views->drawn()) pictures.emplace_back(&view.original, &view.undyed);
     auto told = request;
     for (auto* words : {&told.prompt, &told.target}) *words = edit::told_with(remap, *words);
-    return judge(model, told, edit::as_told(told.prompt), pictures);
+    return judge(model, told, language::normalised_prompt(told.prompt), pictures);
 }
 
 /// Share of the way to a ground's colour from which on pictures show that ground, by judgement.
@@ -50,7 +52,7 @@ constexpr double InItsColour = 0.6;
 EditQuality judge_drawn(const neural::TextToImage& model, const edit::EditRequest& request,
                         edit::EditMode mode, const edit::ViewTargets& round,
                         const edit::ModelTraits& traits) {
-    auto verdict = judge_targets(model, request, edit::as_told(request.prompt), round);
+    auto verdict = judge_targets(model, request, language::normalised_prompt(request.prompt), round);
     const auto look = edit::usual_look(request, mode, traits);
     if (!look) return verdict;
     const double gone = edit::gone_towards(*look, round);
@@ -69,9 +71,9 @@ edit::EditRequest in_usual_colour(const neural::TextToImage& model, edit::EditRe
                                   edit::EditMode mode, const edit::ModelTraits& traits) {
     if (mode == edit::EditMode::Modify) return request;
     const auto known = model.known_words();
-    const auto thing = new_thing(request, mode), told = edit::as_told(request.prompt);
-    const auto usual = edit::with_usual_colour(
-        told, thing, edit::promptable_vocabulary(known, edit::with_dyes(model.drawn_words(), known)),
+    const auto thing = new_thing(request, mode), told = language::normalised_prompt(request.prompt);
+    const auto usual = language::with_usual_colour(
+        told, thing, language::promptable_vocabulary(known, edit::with_dyes(model.drawn_words(), known)),
         traits.usual_colours);
     if (usual == told) return request;
     log::info("the sentence names no colour for \"{}\": it is drawn as \"{}\"", thing, usual);
@@ -107,7 +109,7 @@ ViewCandidate::ViewCandidate(const SceneEdit& scene_edit, const DrawStrategy& st
     if (model.kind() != neural::BundleKind::InstructPix2Pix) {
         request_ = in_usual_colour(model, std::move(request_), plan.mode, workplace.traits());
         remap_ = edit::dye_of(request_, plan.mode,
-                              edit::promptable_vocabulary(model.known_words(), model.drawn_words()));
+                              language::promptable_vocabulary(model.known_words(), model.drawn_words()));
     }
     if (remap_ && remap_->pattern)
         pattern_ = PatternLayer{*remap_, located.views.orbit.up, located.views.front, request_.seed};
@@ -120,7 +122,7 @@ ViewCandidate::ViewCandidate(const SceneEdit& scene_edit, const DrawStrategy& st
     tools.views = editors_.back().get();
     tools.known = model.known_words();
     tools.redraw_key = model.name() + tuning_key(recipe) + fields_to_json(settings_).dump() +
-                       strategy.name() + (remap_ ? edit::joined(remap_->words) : "");
+                       strategy.name() + (remap_ ? language::joined(remap_->words) : "");
     tools.targets = [this](const edit::ViewTargets& sheet) { show(sheet); };
     tools.target_orders = observer.target_orders;
     optimiser_ = std::make_unique<edit::Optimiser>(scene, plan, request_, tools);
@@ -143,7 +145,8 @@ void ViewCandidate::add_editors(const DrawStrategy& strategy, const std::optiona
             *edit::usual_look(recipe.request, plan.mode, scene_edit_.workplace.traits()));
     } else {
         const bool instructed = model.kind() == neural::BundleKind::InstructPix2Pix;
-        const auto prompt = instructed ? told_to_editor(request_) : edit::as_told(request_.prompt);
+        const auto prompt =
+            instructed ? told_to_editor(request_) : language::normalised_prompt(request_.prompt);
         editors_.push_back(model.views(remap_ ? edit::told_with(*remap_, prompt) : prompt, settings_));
         if (remap_) remapped_ = &add<edit::DyedViews>(*editors_.back(), *remap_);
     }

@@ -4,6 +4,8 @@
 
 #include "tests/unit/edit/edit_scenes.h"
 
+#include "engine/language/grammar.h"
+
 namespace add_region_test {
 
 namespace {
@@ -221,12 +223,12 @@ DOCTEST_TEST_CASE("anchors lie where their names say") {
         DOCTEST_CHECK(region.origin == place);
         DOCTEST_CHECK(region.side > 0);
     }
-    DOCTEST_CHECK(edit::usual_place("hat") == "top");
-    DOCTEST_CHECK(edit::usual_place("sunglasses") == "front");
-    DOCTEST_CHECK(edit::usual_place("scarf") == "neck");
-    DOCTEST_CHECK(edit::usual_place("flames") == "around");
-    DOCTEST_CHECK(edit::usual_place("horns") == "top");
-    DOCTEST_CHECK(edit::usual_place("white beard") == "neck");
+    DOCTEST_CHECK(language::usual_place("hat") == "top");
+    DOCTEST_CHECK(language::usual_place("sunglasses") == "front");
+    DOCTEST_CHECK(language::usual_place("scarf") == "neck");
+    DOCTEST_CHECK(language::usual_place("flames") == "around");
+    DOCTEST_CHECK(language::usual_place("horns") == "top");
+    DOCTEST_CHECK(language::usual_place("white beard") == "neck");
 }
 
 DOCTEST_TEST_CASE("seeds lie in the region, are finite and repeatable") {
@@ -263,17 +265,17 @@ DOCTEST_TEST_CASE("beside is the side with room, under is below what floats and 
             mean = mean + cell / static_cast<double>(region.centres.size());
         return mean;
     };
-    search.relation = edit::Relation::Beside;
+    search.relation = language::Relation::Beside;
     const auto beside =
         edit::usual_region(search, "hat");  // what usually sits on top does not, where the sentence says so
     DOCTEST_CHECK(beside.origin == "beside");
     DOCTEST_CHECK(middle(beside).x < -0.95);
-    search.relation = edit::Relation::Right;
+    search.relation = language::Relation::Right;
     DOCTEST_CHECK(middle(edit::usual_region(search, "ball")).x > -0.15);
-    search.relation = edit::Relation::Under;
+    search.relation = language::Relation::Under;
     for (const auto& cell : edit::usual_region(search, "ball").centres)
         DOCTEST_CHECK(cell.y > 0.35);  // up is -y
-    search.relation = edit::Relation::Above;
+    search.relation = language::Relation::Above;
     DOCTEST_CHECK(edit::usual_region(search, "scarf").origin == "neck");
     // On a floor of other splats nothing fits below: it lies at the foot.
     GaussianData data = setup.scene.set.to_data();
@@ -288,7 +290,7 @@ DOCTEST_TEST_CASE("beside is the side with room, under is below what floats and 
     }
     const GaussianSet standing(std::move(data));
     const edit::RegionSearch floor{standing,     bits,       setup.views, setup.masks,
-                                   setup.depths, {0, -1, 0}, {0, 0, -1},  edit::Relation::Under};
+                                   setup.depths, {0, -1, 0}, {0, 0, -1},  language::Relation::Under};
     const auto rug = edit::usual_region(floor, "rug");
     DOCTEST_REQUIRE_FALSE(rug.empty());
     for (const auto& cell : rug.centres) DOCTEST_CHECK(std::abs(cell.y - 0.4) < 0.08);

@@ -9,6 +9,7 @@
 
 #include "engine/edit/interfaces/model_traits.h"
 #include "engine/edit/request/colour_word.h"
+#include "engine/language/description.h"
 
 namespace colour_word_test {
 
@@ -79,47 +80,48 @@ DOCTEST_TEST_CASE("light and shade do not divide the votes for a thing without a
 }
 
 DOCTEST_TEST_CASE("a thing is described by the words beside it only") {
-    DOCTEST_CHECK_FALSE(edit::is_described("a bear with wings on the grass", "wings"));
-    DOCTEST_CHECK_FALSE(edit::is_described("a red bear wearing a hat", "hat"));
-    DOCTEST_CHECK_FALSE(edit::is_described("cat", "cat"));
-    DOCTEST_CHECK(edit::is_described("a bear with white wings", "wings"));
-    DOCTEST_CHECK(edit::is_described("a bear wearing a straw hat", "hat"));
-    DOCTEST_CHECK(edit::is_described("a bear with wings of gold", "wings"));
-    DOCTEST_CHECK(edit::is_described("a bear with a hat made of wood", "hat"));
+    DOCTEST_CHECK_FALSE(language::is_described("a bear with wings on the grass", "wings"));
+    DOCTEST_CHECK_FALSE(language::is_described("a red bear wearing a hat", "hat"));
+    DOCTEST_CHECK_FALSE(language::is_described("cat", "cat"));
+    DOCTEST_CHECK(language::is_described("a bear with white wings", "wings"));
+    DOCTEST_CHECK(language::is_described("a bear wearing a straw hat", "hat"));
+    DOCTEST_CHECK(language::is_described("a bear with wings of gold", "wings"));
+    DOCTEST_CHECK(language::is_described("a bear with a hat made of wood", "hat"));
     DOCTEST_CHECK(
-        edit::is_described("a bear in flames on the grass", "flames"));  // a state has its own colour
-    DOCTEST_CHECK(edit::is_described("a bear on fire", "fire"));
-    DOCTEST_CHECK(edit::is_described("a bear on the grass", "hat"));  // nothing to describe
+        language::is_described("a bear in flames on the grass", "flames"));  // a state has its own colour
+    DOCTEST_CHECK(language::is_described("a bear on fire", "fire"));
+    DOCTEST_CHECK(language::is_described("a bear on the grass", "hat"));  // nothing to describe
 }
 
 DOCTEST_TEST_CASE("the colour stands before the thing, and the article follows it") {
-    DOCTEST_CHECK(edit::described_as("a bear with wings on the grass", "wings", "white") ==
+    DOCTEST_CHECK(language::described_as("a bear with wings on the grass", "wings", "white") ==
                   "a bear with white wings on the grass");
-    DOCTEST_CHECK(edit::described_as("a bear wearing a hat", "hat", "orange") ==
+    DOCTEST_CHECK(language::described_as("a bear wearing a hat", "hat", "orange") ==
                   "a bear wearing an orange hat");
-    DOCTEST_CHECK(edit::described_as("an owl on the sand", "owl", "red") == "a red owl on the sand");
-    DOCTEST_CHECK(edit::described_as("a bear with a top hat", "top hat", "black") ==
+    DOCTEST_CHECK(language::described_as("an owl on the sand", "owl", "red") == "a red owl on the sand");
+    DOCTEST_CHECK(language::described_as("a bear with a top hat", "top hat", "black") ==
                   "a bear with a black top hat");
-    DOCTEST_CHECK(edit::described_as("the cat", "cat", "") == "the cat");
+    DOCTEST_CHECK(language::described_as("the cat", "cat", "") == "the cat");
 }
 
 DOCTEST_TEST_CASE("a thing that comes has its usual colour where the sentence tells none") {
     const auto usual = edit::ModelTraits{}.usual_colours;
     const std::vector<std::string> sayable{"white", "green", "red", "frog", "owl"};
-    DOCTEST_CHECK(edit::with_usual_colour("a frog on the grass", "frog", sayable, usual) ==
+    DOCTEST_CHECK(language::with_usual_colour("a frog on the grass", "frog", sayable, usual) ==
                   "a green frog on the grass");
-    DOCTEST_CHECK(edit::with_usual_colour("a red frog", "frog", sayable, usual) == "a red frog");
-    DOCTEST_CHECK(edit::with_usual_colour("a big frog", "frog", sayable, usual) ==
+    DOCTEST_CHECK(language::with_usual_colour("a red frog", "frog", sayable, usual) == "a red frog");
+    DOCTEST_CHECK(language::with_usual_colour("a big frog", "frog", sayable, usual) ==
                   "a big green frog");  // which says nothing to the model
-    DOCTEST_CHECK(edit::with_usual_colour("a frog made of wood", "frog", sayable, usual) ==
+    DOCTEST_CHECK(language::with_usual_colour("a frog made of wood", "frog", sayable, usual) ==
                   "a frog made of wood");
-    DOCTEST_CHECK(edit::with_usual_colour("a cat", "cat", sayable, usual) == "a cat");
-    DOCTEST_CHECK(edit::with_usual_colour("a bear with wings", "wings",
-                                          {"a", "bear", "with", "wings", "white"},
-                                          usual) == "a bear with white wings");
-    DOCTEST_CHECK(edit::with_usual_colour("an owl", "owl", sayable, usual) ==
-                  "an owl");                                                          // brown cannot be said
-    DOCTEST_CHECK(edit::with_usual_colour("a frog", "frog", {}, usual) == "a frog");  // a model of all words
+    DOCTEST_CHECK(language::with_usual_colour("a cat", "cat", sayable, usual) == "a cat");
+    DOCTEST_CHECK(language::with_usual_colour("a bear with wings", "wings",
+                                              {"a", "bear", "with", "wings", "white"},
+                                              usual) == "a bear with white wings");
+    DOCTEST_CHECK(language::with_usual_colour("an owl", "owl", sayable, usual) ==
+                  "an owl");  // brown cannot be said
+    DOCTEST_CHECK(language::with_usual_colour("a frog", "frog", {}, usual) ==
+                  "a frog");  // a model of all words
 }
 
 }  // namespace colour_word_test

@@ -2,7 +2,7 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
-#include "engine/edit/request/instruction.h"
+#include "engine/edit/request/request.h"
 
 namespace instruction_test {
 

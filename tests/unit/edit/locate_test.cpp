@@ -6,6 +6,7 @@
 #include "engine/base/log.h"
 #include "engine/edit/search/cached_attention.h"
 #include "engine/edit/search/grabcut_segmenter.h"
+#include "engine/language/words.h"
 #include "tests/unit/edit/edit_scenes.h"
 
 namespace locate_test {
@@ -584,7 +585,7 @@ DOCTEST_TEST_CASE(
     DOCTEST_CHECK(found.word == "beach ball");
     DOCTEST_REQUIRE(!fixture.attention.queries.empty());
     const auto& query = fixture.attention.queries.front();
-    DOCTEST_CHECK(query.prompt == edit::as_told(request.prompt));
+    DOCTEST_CHECK(query.prompt == language::normalised_prompt(request.prompt));
     DOCTEST_CHECK(query.prompt == "a blue * beach ball on grass");
     DOCTEST_CHECK(query.words ==
                   std::vector<std::string>{"beach ball", "grass"});  // its head is no rival of the phrase

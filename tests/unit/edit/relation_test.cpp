@@ -4,16 +4,17 @@
 
 #include <string>
 
-#include "engine/edit/request/relation.h"
 #include "engine/edit/request/request.h"
 #include "engine/edit/search/locate.h"
+#include "engine/language/lexicon.h"
+#include "engine/language/sentence.h"
 
 namespace relation_test {
 
 namespace {
 
 using namespace gse;
-using edit::Relation;
+using language::Relation;
 
 struct Said {
     std::string sentence, target;
@@ -57,10 +58,16 @@ const std::vector<Said>& table() {
 DOCTEST_TEST_CASE("the sentence says where the target is, seen from the source") {
     for (const auto& said : table()) {
         DOCTEST_INFO(said.sentence);
-        DOCTEST_CHECK(edit::relation_of(said.sentence, "bear", said.target) == said.relation);
+        DOCTEST_CHECK(
+            language::EditSentence(language::Sentence(said.sentence), "bear", said.target).relation() ==
+            said.relation);
     }
-    DOCTEST_CHECK(edit::relation_of("a blue bear on the grass", "grass", "blue") == Relation::None);
-    DOCTEST_CHECK(edit::relation_of("a bear beside a ball", "ball", "bear") == Relation::Beside);
+    DOCTEST_CHECK(
+        language::EditSentence(language::Sentence("a blue bear on the grass"), "grass", "blue").relation() ==
+        Relation::None);
+    DOCTEST_CHECK(
+        language::EditSentence(language::Sentence("a bear beside a ball"), "ball", "bear").relation() ==
+        Relation::Beside);
 }
 
 DOCTEST_TEST_CASE("what stands somewhere is added, and the sentence before has neither it nor its place") {
@@ -71,7 +78,7 @@ DOCTEST_TEST_CASE("what stands somewhere is added, and the sentence before has n
         request.prompt = said.sentence;
         request.target = said.target;
         request = edit::validated(request);
-        DOCTEST_CHECK(edit::sentence_before(request) == said.before);
+        DOCTEST_CHECK(edit::edit_sentence(request).before() == said.before);
         if (said.relation != Relation::None)
             DOCTEST_CHECK(edit::decide_mode(request, std::nullopt).first == edit::EditMode::Add);
     }
@@ -79,8 +86,8 @@ DOCTEST_TEST_CASE("what stands somewhere is added, and the sentence before has n
 
 DOCTEST_TEST_CASE("compound prepositions name no things") {
     using Things = std::vector<std::string>;
-    DOCTEST_CHECK(edit::things_named("a bear next to a ball") == Things{"bear", "ball"});
-    DOCTEST_CHECK(edit::things_named("a bear in front of a tree to the left of a ball") ==
+    DOCTEST_CHECK(language::Sentence("a bear next to a ball").things() == Things{"bear", "ball"});
+    DOCTEST_CHECK(language::Sentence("a bear in front of a tree to the left of a ball").things() ==
                   Things{"bear", "tree", "ball"});
 }
 

@@ -14,6 +14,10 @@
 #include "engine/edit/request/vocabulary.h"
 #include "engine/edit/search/locate.h"
 #include "engine/edit/target_views/view_round.h"
+#include "engine/language/news.h"
+#include "engine/language/sentence.h"
+#include "engine/language/vocabulary.h"
+#include "engine/language/words.h"
 
 namespace request_test {
 
@@ -150,7 +154,7 @@ DOCTEST_TEST_CASE(
     "another thing in the source's place replaces it, whatever word of its phrase is the new one") {
     using edit::EditMode;
     const auto thing_of = [](const char* source, const char* prompt, const char* target) {
-        return edit::thing_in_place(edit::validated(bear(source, prompt, target)));
+        return edit::edit_sentence(edit::validated(bear(source, prompt, target))).replacement();
     };
     for (const auto& [source, prompt, target, thing] : std::vector<std::array<const char*, 4>>{
              {"bear", "a blue dog on the grass", "dog", "dog"},
@@ -306,7 +310,7 @@ DOCTEST_TEST_CASE("the sentence before an edit lacks what the edit brings") {
         request.prompt = prompt;
         request.source = source;
         request.target = target;
-        return edit::sentence_before(edit::validated(request));
+        return edit::edit_sentence(edit::validated(request)).before();
     };
     DOCTEST_CHECK(before("a blue bear on the grass", "bear", "blue") == "a bear on the grass");
     DOCTEST_CHECK(before("a bear wearing a red hat on the grass", "bear", "hat") == "a bear on the grass");
@@ -324,28 +328,31 @@ DOCTEST_TEST_CASE("the sentence before an edit lacks what the edit brings") {
 
 DOCTEST_TEST_CASE("the things a sentence names are the heads of its noun phrases, each once") {
     using Things = std::vector<std::string>;
-    DOCTEST_CHECK(edit::things_named("a white dog wearing a golden crown on the snow") ==
+    DOCTEST_CHECK(language::Sentence("a white dog wearing a golden crown on the snow").things() ==
                   Things{"dog", "crown", "snow"});
-    DOCTEST_CHECK(edit::things_named("A wooden chair in flames, on tiles.") ==
+    DOCTEST_CHECK(language::Sentence("A wooden chair in flames, on tiles.").things() ==
                   Things{"chair", "flames", "tiles"});
-    DOCTEST_CHECK(edit::things_named("a chair made of stone beside a chair") == Things{"chair"});
-    DOCTEST_CHECK(edit::things_named("a bear turned into a panda on the grass") == Things{"bear", "grass"});
-    DOCTEST_CHECK(edit::things_named("on the") == Things{});
-    DOCTEST_CHECK(edit::things_named("") == Things{});
+    DOCTEST_CHECK(language::Sentence("a chair made of stone beside a chair").things() == Things{"chair"});
+    DOCTEST_CHECK(language::Sentence("a bear turned into a panda on the grass").things() ==
+                  Things{"bear", "grass"});
+    DOCTEST_CHECK(language::Sentence("on the").things() == Things{});
+    DOCTEST_CHECK(language::Sentence("").things() == Things{});
 }
 
 DOCTEST_TEST_CASE("the target is guessed from the sentence") {
-    using edit::guessed_target;
-    DOCTEST_CHECK(guessed_target("a bear wearing a red hat", "bear") == "hat");
-    DOCTEST_CHECK(guessed_target("a red bear wearing a blue hat on the grass", "bear") == "hat");
-    DOCTEST_CHECK(guessed_target("a bear with white wings", "bear") == "wings");
-    DOCTEST_CHECK(guessed_target("a green statue in flames on the grass", "statue") == "flames");
-    DOCTEST_CHECK(guessed_target("a red cat in a hat", "cat") == "hat");
-    DOCTEST_CHECK(guessed_target("a red cat in the snow", "cat") == "red");
-    DOCTEST_CHECK(guessed_target("a blue bear on the grass", "bear") == "blue");
-    DOCTEST_CHECK(guessed_target("a golden statue", "statue") == "golden");
-    DOCTEST_CHECK(guessed_target("a chair made of stone", "chair") == "stone");
-    DOCTEST_CHECK(guessed_target("turn the bear into a panda", "bear") == "panda");
+    DOCTEST_CHECK(language::guessed_target(language::Sentence("a bear wearing a red hat"), "bear") == "hat");
+    DOCTEST_CHECK(language::guessed_target(language::Sentence("a red bear wearing a blue hat on the grass"),
+                                           "bear") == "hat");
+    DOCTEST_CHECK(language::guessed_target(language::Sentence("a bear with white wings"), "bear") == "wings");
+    DOCTEST_CHECK(language::guessed_target(language::Sentence("a green statue in flames on the grass"),
+                                           "statue") == "flames");
+    DOCTEST_CHECK(language::guessed_target(language::Sentence("a red cat in a hat"), "cat") == "hat");
+    DOCTEST_CHECK(language::guessed_target(language::Sentence("a red cat in the snow"), "cat") == "red");
+    DOCTEST_CHECK(language::guessed_target(language::Sentence("a blue bear on the grass"), "bear") == "blue");
+    DOCTEST_CHECK(language::guessed_target(language::Sentence("a golden statue"), "statue") == "golden");
+    DOCTEST_CHECK(language::guessed_target(language::Sentence("a chair made of stone"), "chair") == "stone");
+    DOCTEST_CHECK(language::guessed_target(language::Sentence("turn the bear into a panda"), "bear") ==
+                  "panda");
     for (const char* sentence : {"turn the bear into a golden bear", "the bear is golden",
                                  "make the bear golden", "paint the bear golden on the grass"}) {
         edit::EditRequest golden;
@@ -353,22 +360,25 @@ DOCTEST_TEST_CASE("the target is guessed from the sentence") {
         golden.prompt = sentence;
         golden = edit::validated(golden);
         DOCTEST_CHECK_MESSAGE(golden.target == "golden", sentence);
-        DOCTEST_CHECK_MESSAGE(!edit::has_word(edit::sentence_before(golden), "golden"), sentence);
+        DOCTEST_CHECK_MESSAGE(!language::has_phrase(edit::edit_sentence(golden).before(), "golden"),
+                              sentence);
         DOCTEST_CHECK_MESSAGE(edit::planned_mode(golden) == edit::EditMode::Modify, sentence);
     }
-    DOCTEST_CHECK(guessed_target("a panda on the grass", "bear") == "panda");
-    DOCTEST_CHECK(guessed_target("a bear wearing a golden crown", "hat") == "crown");  // worn for worn
-    DOCTEST_CHECK(guessed_target("a bear wearing a golden crown", "dog") == "bear");
-    DOCTEST_CHECK(guessed_target("a bear wearing a red hat", "hat") == "red");
-    DOCTEST_CHECK(guessed_target("a photo of a bear", "bear") == "bear");
-    DOCTEST_CHECK(guessed_target("bear", "bear") == "bear");
-    DOCTEST_CHECK(guessed_target("a bear with", "bear") == "bear");
+    DOCTEST_CHECK(language::guessed_target(language::Sentence("a panda on the grass"), "bear") == "panda");
+    DOCTEST_CHECK(language::guessed_target(language::Sentence("a bear wearing a golden crown"), "hat") ==
+                  "crown");  // worn for worn
+    DOCTEST_CHECK(language::guessed_target(language::Sentence("a bear wearing a golden crown"), "dog") ==
+                  "bear");
+    DOCTEST_CHECK(language::guessed_target(language::Sentence("a bear wearing a red hat"), "hat") == "red");
+    DOCTEST_CHECK(language::guessed_target(language::Sentence("a photo of a bear"), "bear") == "bear");
+    DOCTEST_CHECK(language::guessed_target(language::Sentence("bear"), "bear") == "bear");
+    DOCTEST_CHECK(language::guessed_target(language::Sentence("a bear with"), "bear") == "bear");
 }
 
 DOCTEST_TEST_CASE("all that a sentence says of the source or names may be its news") {
     using Words = std::vector<std::string>;
     const auto possible = [](const char* sentence, const char* source, const Words& said = {}) {
-        return edit::possible_targets(sentence, source, said);
+        return language::possible_targets(language::Sentence(sentence), source, said);
     };
     DOCTEST_CHECK(possible("a golden bear wearing a red hat on the snow", "bear") ==
                   Words{"hat", "golden", "snow"});
@@ -382,29 +392,38 @@ DOCTEST_TEST_CASE("all that a sentence says of the source or names may be its ne
     DOCTEST_CHECK(possible("a blue bear", "bear", {"a", "blue", "bear"}) == Words{"blue"});
     DOCTEST_CHECK(possible("bear", "bear") == Words{"bear"});
     // What wears the source is there.
-    DOCTEST_CHECK(edit::possible_targets("a bear wearing a red hat on the grass", "hat", {}) ==
-                  std::vector<std::string>{"red", "grass"});
-    DOCTEST_CHECK(edit::possible_targets("a big bear with a hat", "hat", {}) ==
+    DOCTEST_CHECK(language::possible_targets(language::Sentence("a bear wearing a red hat on the grass"),
+                                             "hat", {}) == std::vector<std::string>{"red", "grass"});
+    DOCTEST_CHECK(language::possible_targets(language::Sentence("a big bear with a hat"), "hat", {}) ==
                   std::vector<std::string>{"hat", "bear"});
 }
 
 DOCTEST_TEST_CASE("what applied edits said already is no news") {
-    using edit::guessed_target;
-    const auto said = [](const std::vector<EditRequest>& applied) { return edit::words_said(applied); };
+    const auto said = [](const std::vector<EditRequest>& applied) {
+        std::vector<language::EditSentence> sentences;
+        for (const auto& request : applied) sentences.push_back(edit::edit_sentence(request));
+        return language::words_said(sentences);
+    };
     const auto blue = bear("bear", "a blue bear on the grass", "blue"),
                hat = bear("bear", "a blue bear wearing a hat", "hat");
-    DOCTEST_CHECK(guessed_target("a blue bear wearing a hat", "bear", said({blue})) == "hat");
-    DOCTEST_CHECK(guessed_target("a golden bear wearing a hat", "bear", said({blue, hat})) == "golden");
-    DOCTEST_CHECK(guessed_target("a blue bear wearing a hat and a scarf", "bear", said({blue, hat})) ==
-                  "scarf");
-    DOCTEST_CHECK(guessed_target("a blue bear wearing a red hat", "bear", said({blue, hat})) == "hat");
+    DOCTEST_CHECK(language::guessed_target(language::Sentence("a blue bear wearing a hat"), "bear",
+                                           said({blue})) == "hat");
+    DOCTEST_CHECK(language::guessed_target(language::Sentence("a golden bear wearing a hat"), "bear",
+                                           said({blue, hat})) == "golden");
+    DOCTEST_CHECK(language::guessed_target(language::Sentence("a blue bear wearing a hat and a scarf"),
+                                           "bear", said({blue, hat})) == "scarf");
+    DOCTEST_CHECK(language::guessed_target(language::Sentence("a blue bear wearing a red hat"), "bear",
+                                           said({blue, hat})) == "hat");
     // Nothing new: the sentence as it is, so that an edit can be repeated.
-    DOCTEST_CHECK(guessed_target("a blue bear on the grass", "bear", said({blue})) == "blue");
+    DOCTEST_CHECK(language::guessed_target(language::Sentence("a blue bear on the grass"), "bear",
+                                           said({blue})) == "blue");
     // What was replaced since can be asked for again.
     const auto red = bear("bear", "a red bear", "red");
-    DOCTEST_CHECK(guessed_target("a blue bear wearing a hat", "bear", said({hat, red})) == "blue");
+    DOCTEST_CHECK(language::guessed_target(language::Sentence("a blue bear wearing a hat"), "bear",
+                                           said({hat, red})) == "blue");
     const auto snow = bear("grass", "a bear on the snow", "snow");
-    DOCTEST_CHECK(guessed_target("a bear on the grass", "snow", said({blue, snow})) == "grass");
+    DOCTEST_CHECK(language::guessed_target(language::Sentence("a bear on the grass"), "snow",
+                                           said({blue, snow})) == "grass");
     DOCTEST_CHECK(said({}).empty());
 }
 
@@ -428,10 +447,10 @@ DOCTEST_TEST_CASE(
     DOCTEST_CHECK(refused(bear("sign", "a golden sign", "golden"), true).empty());
     const auto hat = refused(bear("bear", "a bear wearing a sombrero", "sombrero"), true);
     DOCTEST_CHECK_MESSAGE(hat.find("\"sombrero\"") != std::string::npos, hat);
-    DOCTEST_CHECK(edit::nearest_words("baer", known) == std::vector<std::string>{"bear"});
-    DOCTEST_CHECK(edit::nearest_words("bears", known) == std::vector<std::string>{"bear", "pear"});
-    DOCTEST_CHECK(edit::nearest_words("hta", known) == std::vector<std::string>{"hat"});
-    DOCTEST_CHECK(edit::nearest_words("sign", known).empty());
+    DOCTEST_CHECK(language::nearest_words("baer", known) == std::vector<std::string>{"bear"});
+    DOCTEST_CHECK(language::nearest_words("bears", known) == std::vector<std::string>{"bear", "pear"});
+    DOCTEST_CHECK(language::nearest_words("hta", known) == std::vector<std::string>{"hat"});
+    DOCTEST_CHECK(language::nearest_words("sign", known).empty());
     edit::require_known_words(edit::validated(bear("sign", "a jade sign", "jade")), {}, {},
                               false);  // an open vocabulary
 }

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <memory>
 
-#include "engine/edit/request/words.h"
 #include "engine/edit/search/scene_reading.h"
+#include "engine/language/words.h"
 
 namespace scene_reading_test {
 
@@ -26,7 +26,7 @@ public:
     }
     std::vector<float> text(const std::string& sentence) override {
         std::vector<float> vector;
-        for (const auto& word : Said) vector.push_back(edit::has_word(sentence, word) ? 1.0f : 0.0f);
+        for (const auto& word : Said) vector.push_back(language::has_phrase(sentence, word) ? 1.0f : 0.0f);
         return vector;
     }
 

@@ -9,6 +9,11 @@
 #include "engine/edit/request/vocabulary.h"
 #include "engine/edit/search/locate.h"
 #include "engine/edit/search/vocabulary_ranker.h"
+#include "engine/language/grammar.h"
+#include "engine/language/news.h"
+#include "engine/language/sentence.h"
+#include "engine/language/vocabulary.h"
+#include "engine/language/words.h"
 
 namespace words_test {
 
@@ -43,36 +48,38 @@ private:
 }  // namespace
 
 DOCTEST_TEST_CASE("words keep the identifier and lose punctuation; the model is told just them") {
-    DOCTEST_CHECK(edit::words_of("A * bear, wearing (a) Hat.") ==
+    DOCTEST_CHECK(language::words_of("A * bear, wearing (a) Hat.") ==
                   Words{"a", "*", "bear", "wearing", "a", "hat"});
-    DOCTEST_CHECK(edit::words_of("a *bear") == Words{"a", "*", "bear"});
-    DOCTEST_CHECK(edit::as_told("  A  * bear,\twearing a T-shirt!") == "a * bear wearing a t-shirt");
-    DOCTEST_CHECK(edit::as_told(edit::as_told("A * bear.")) == edit::as_told("A * bear."));
-    DOCTEST_CHECK(edit::without_identifier("A * bear") == "a bear");
-    DOCTEST_CHECK(!edit::says_something("*"));
+    DOCTEST_CHECK(language::words_of("a *bear") == Words{"a", "*", "bear"});
+    DOCTEST_CHECK(language::normalised_prompt("  A  * bear,\twearing a T-shirt!") ==
+                  "a * bear wearing a t-shirt");
+    DOCTEST_CHECK(language::normalised_prompt(language::normalised_prompt("A * bear.")) ==
+                  language::normalised_prompt("A * bear."));
+    DOCTEST_CHECK(language::without_identifier("A * bear") == "a bear");
+    DOCTEST_CHECK(!language::says_something("*"));
 }
 
 DOCTEST_TEST_CASE("a phrase is in a sentence when its words follow each other") {
-    DOCTEST_CHECK(edit::has_word("A teddy bear.", "teddy bear"));
-    DOCTEST_CHECK(edit::has_word("A teddy bear.", "Teddy  Bear"));
-    DOCTEST_CHECK(!edit::has_word("a bear named teddy", "teddy bear"));
-    DOCTEST_CHECK(!edit::has_word("a teddy bearing gifts", "teddy bear"));
-    DOCTEST_CHECK(!edit::has_word("a teddy bear", ""));
-    DOCTEST_CHECK(edit::first_word("a brown teddy bear", "teddy bear") == 2);
-    DOCTEST_CHECK(edit::terms_of("a teddy bear and a bear", {"bear", "teddy bear"}) ==
+    DOCTEST_CHECK(language::has_phrase("A teddy bear.", "teddy bear"));
+    DOCTEST_CHECK(language::has_phrase("A teddy bear.", "Teddy  Bear"));
+    DOCTEST_CHECK(!language::has_phrase("a bear named teddy", "teddy bear"));
+    DOCTEST_CHECK(!language::has_phrase("a teddy bearing gifts", "teddy bear"));
+    DOCTEST_CHECK(!language::has_phrase("a teddy bear", ""));
+    DOCTEST_CHECK(language::position_of("a brown teddy bear", "teddy bear") == 2);
+    DOCTEST_CHECK(language::terms_of(language::words_of("a teddy bear and a bear"), {"bear", "teddy bear"}) ==
                   Words{"a", "teddy bear", "and", "a", "bear"});
-    DOCTEST_CHECK(edit::phrases_of("hat grass") == Words{"hat", "grass"});
-    DOCTEST_CHECK(edit::phrases_of("top hat, grass,") == Words{"top hat", "grass"});
+    DOCTEST_CHECK(language::phrases_of("hat grass") == Words{"hat", "grass"});
+    DOCTEST_CHECK(language::phrases_of("top hat, grass,") == Words{"top hat", "grass"});
 }
 
 DOCTEST_TEST_CASE(
     "what a text processor makes of a sentence is the same sentence, and what belongs to a thing names it") {
-    DOCTEST_CHECK(edit::words_of("\u201ca golden\u00a0bear\u201d\u2026") == Words{"a", "golden", "bear"});
-    DOCTEST_CHECK(edit::words_of("the bear\u2019s hat \u2014 red") == Words{"the", "bear", "hat", "red"});
-    DOCTEST_CHECK(edit::words_of("the dogs' 'ball' isn't red") ==
+    DOCTEST_CHECK(language::words_of("\u201ca golden\u00a0bear\u201d\u2026") == Words{"a", "golden", "bear"});
+    DOCTEST_CHECK(language::words_of("the bear\u2019s hat \u2014 red") == Words{"the", "bear", "hat", "red"});
+    DOCTEST_CHECK(language::words_of("the dogs' 'ball' isn't red") ==
                   Words{"the", "dogs", "ball", "isn't", "red"});
-    DOCTEST_CHECK(edit::words_of("' 's ''") == Words{"s"});
-    DOCTEST_CHECK(edit::words_of("\u00e9t\u00e9") == Words{"\u00e9t\u00e9"});
+    DOCTEST_CHECK(language::words_of("' 's ''") == Words{"s"});
+    DOCTEST_CHECK(language::words_of("\u00e9t\u00e9") == Words{"\u00e9t\u00e9"});
     DOCTEST_CHECK(valid("bear", "the bear's hat is red", "hat").source == "bear");
 }
 
@@ -97,7 +104,7 @@ DOCTEST_TEST_CASE("the mode and the sentence before treat a phrase as one thing"
     DOCTEST_CHECK(mode(valid("teddy bear", "a light blue teddy bear", "light blue")) ==
                   edit::EditMode::Modify);
     DOCTEST_CHECK(mode(valid("bear", "a teddy bear with a hat", "teddy bear")) == edit::EditMode::Modify);
-    const auto before = [](const EditRequest& request) { return edit::sentence_before(request); };
+    const auto before = [](const EditRequest& request) { return edit::edit_sentence(request).before(); };
     DOCTEST_CHECK(before(valid("teddy bear", "a teddy bear wearing a top hat on the grass", "top hat")) ==
                   "a teddy bear on the grass");
     DOCTEST_CHECK(before(valid("teddy bear", "a light blue teddy bear", "light blue")) == "a teddy bear");
@@ -109,31 +116,35 @@ DOCTEST_TEST_CASE("the mode and the sentence before treat a phrase as one thing"
 }
 
 DOCTEST_TEST_CASE("things are named whole, and the identifier describes nothing") {
-    DOCTEST_CHECK(edit::things_named("a teddy bear wearing a top hat") == Words{"bear", "hat"});
-    DOCTEST_CHECK(edit::things_named("a teddy bear wearing a top hat", {"teddy bear"}) ==
+    DOCTEST_CHECK(language::Sentence("a teddy bear wearing a top hat").things() == Words{"bear", "hat"});
+    DOCTEST_CHECK(language::Sentence("a teddy bear wearing a top hat").things({"teddy bear"}) ==
                   Words{"teddy bear", "hat"});
-    DOCTEST_CHECK(edit::things_named("a * bear on grass") == Words{"bear", "grass"});
-    DOCTEST_CHECK(edit::guessed_target("a * bear", "bear") == "bear");
-    DOCTEST_CHECK(edit::guessed_target("a blue * bear", "bear") == "blue");
-    DOCTEST_CHECK(edit::guessed_target("a * clown", "man") == "clown");
+    DOCTEST_CHECK(language::Sentence("a * bear on grass").things() == Words{"bear", "grass"});
+    DOCTEST_CHECK(language::guessed_target(language::Sentence("a * bear"), "bear") == "bear");
+    DOCTEST_CHECK(language::guessed_target(language::Sentence("a blue * bear"), "bear") == "blue");
+    DOCTEST_CHECK(language::guessed_target(language::Sentence("a * clown"), "man") == "clown");
     // A teddy bear that became a panda can be asked for again.
-    const auto said = edit::words_said(
-        {valid("teddy bear", "a golden teddy bear", "golden"), valid("teddy bear", "a panda", "panda")});
-    DOCTEST_CHECK(edit::guessed_target("a teddy bear", "panda", said) == "bear");
+    const auto said =
+        language::words_said({edit::edit_sentence(valid("teddy bear", "a golden teddy bear", "golden")),
+                              edit::edit_sentence(valid("teddy bear", "a panda", "panda"))});
+    DOCTEST_CHECK(language::guessed_target(language::Sentence("a teddy bear"), "panda", said) == "bear");
 }
 
 DOCTEST_TEST_CASE("what the model learns of the scene carries the identifier, what it keeps does not") {
-    DOCTEST_CHECK(edit::instance_sentence(valid("bear", "a blue bear", "blue")) == "a photo of a bear");
-    DOCTEST_CHECK(edit::instance_sentence(valid("bear", "a blue * bear", "blue")) == "a photo of a * bear");
-    DOCTEST_CHECK(edit::instance_sentence(valid("* bear", "a blue * bear", "blue")) == "a photo of a * bear");
+    DOCTEST_CHECK(language::instance_prompt(edit::edit_sentence(valid("bear", "a blue bear", "blue"))) ==
+                  "a photo of a bear");
+    DOCTEST_CHECK(language::instance_prompt(edit::edit_sentence(valid("bear", "a blue * bear", "blue"))) ==
+                  "a photo of a * bear");
+    DOCTEST_CHECK(language::instance_prompt(edit::edit_sentence(valid("* bear", "a blue * bear", "blue"))) ==
+                  "a photo of a * bear");
 }
 
 DOCTEST_TEST_CASE("every word of a phrase must be known to a model with a fixed vocabulary") {
     const Words known{"a", "teddy", "bear", "hat", "wearing"};
-    DOCTEST_CHECK(edit::knows(known, "teddy bear"));
-    DOCTEST_CHECK(!edit::knows(known, "top hat"));
-    DOCTEST_CHECK(!edit::knows(known, ""));
-    DOCTEST_CHECK(edit::unknown_word(known, "top hat") == "top");
+    DOCTEST_CHECK(language::vocabulary_contains(known, "teddy bear"));
+    DOCTEST_CHECK(!language::vocabulary_contains(known, "top hat"));
+    DOCTEST_CHECK(!language::vocabulary_contains(known, ""));
+    DOCTEST_CHECK(language::unknown_word(known, "top hat") == "top");
     const auto refused = [&](const EditRequest& request) {
         try {
             edit::require_known_words(request, known, {}, false);
@@ -157,9 +168,9 @@ DOCTEST_TEST_CASE("recognition puts other words in the place of the whole phrase
 }
 
 DOCTEST_TEST_CASE("a phrase goes where its last word usually goes") {
-    DOCTEST_CHECK(edit::usual_place("long scarf") == "neck");
-    DOCTEST_CHECK(edit::has_usual_place("top hat"));
-    DOCTEST_CHECK(!edit::has_usual_place("hat stand"));
+    DOCTEST_CHECK(language::usual_place("long scarf") == "neck");
+    DOCTEST_CHECK(language::has_usual_place("top hat"));
+    DOCTEST_CHECK(!language::has_usual_place("hat stand"));
 }
 
 }  // namespace words_test

@@ -9,7 +9,6 @@
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/laboratory/starter/starter_stages.h"
-#include "engine/neural/api/known_sentence.h"
 #include "engine/neural/clip/clip_score.h"
 #include "engine/neural/weights/safetensors.h"
 #include "tests/test_paths.h"

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "engine/base/error.h"
-#include "engine/edit/request/words.h"
 #include "engine/io/project/load_scene.h"
+#include "engine/language/words.h"
 #include "engine/math/sh.h"
 #include "engine/pipeline/models/installed.h"
 #include "engine/pipeline/models/model_words.h"
@@ -56,8 +56,8 @@ DOCTEST_TEST_CASE("words that the model is not told take no room in what it read
     const auto read = [](const std::vector<std::string>& words) {
         return words_read(starter_model_path(), words);
     };
-    const auto long_sentence =
-        edit::words_of("a wonderful magnificent extraordinary little bear wearing a blue hat on the grass");
+    const auto long_sentence = language::words_of(
+        "a wonderful magnificent extraordinary little bear wearing a blue hat on the grass");
     DOCTEST_CHECK(read(long_sentence) == long_sentence.size());
     std::vector<std::string> bears(40, "bear");
     const auto most = read(bears);
@@ -114,9 +114,9 @@ DOCTEST_TEST_CASE(
     };
     std::vector<std::uint8_t> label;
     for (const auto* word : {"dark pink", "striped"}) {
-        EditJob job(
-            recipe_of("bear", "a " + std::string(word) + " bear on the grass", edit::words_of(word).back()),
-            EditJobInput{scene, {}, model, label}, JobControl{});
+        EditJob job(recipe_of("bear", "a " + std::string(word) + " bear on the grass",
+                              language::words_of(word).back()),
+                    EditJobInput{scene, {}, model, label}, JobControl{});
         job.locate();
         DOCTEST_REQUIRE(job.found());
         if (label.empty()) label = *job.located().label.bits;

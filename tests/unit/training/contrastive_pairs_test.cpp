@@ -4,8 +4,8 @@
 #include <set>
 #include <string>
 
-#include "engine/edit/request/words.h"
 #include "engine/laboratory/training/contrastive_pairs.h"
+#include "engine/language/words.h"
 
 namespace contrastive_pairs_test {
 
@@ -17,14 +17,14 @@ DOCTEST_TEST_CASE("false sentences of a twin differ from its true one, and are o
     for (std::uint64_t index = 0; index < 120; ++index) {
         const auto own = pairs->claim(index, index, true);
         DOCTEST_CHECK((own.facts & ~pairs->facts(index)) == 0);
-        const auto words = edit::words_of(own.text);
+        const auto words = language::words_of(own.text);
         const std::set<std::string> mine(words.begin(), words.end());
         for (const auto& text : pairs->false_claims(index, index, true)) {
             DOCTEST_CAPTURE(own.text);
             DOCTEST_CAPTURE(text);
             DOCTEST_CHECK(text != own.text);
             std::size_t other = 0;
-            for (const auto& word : edit::words_of(text)) other += mine.contains(word) ? 0 : 1;
+            for (const auto& word : language::words_of(text)) other += mine.contains(word) ? 0 : 1;
             // Of what replaces an accessory: its name, its colour, "wearing a" or "with"; of another thing
             // one word.
             DOCTEST_CHECK(other <= 4);

@@ -6,8 +6,9 @@
 
 #include "engine/base/check.h"
 #include "engine/base/random.h"
-#include "engine/edit/request/vocabulary.h"
-#include "engine/edit/request/words.h"
+#include "engine/language/grammar.h"
+#include "engine/language/vocabulary.h"
+#include "engine/language/words.h"
 #include "engine/math/sh.h"
 
 namespace gse::edit {
@@ -131,9 +132,9 @@ std::optional<ColourRemap> patterned(const std::vector<std::string>& words, std:
 
 /// Where the noun phrase begins of which the word at `index` is a part.
 std::size_t phrase_begin(const std::vector<std::string>& words, std::size_t index) {
-    static const std::vector<std::string> articles{"a",   "an",    "the",  "its",  "his",
-                                                   "her", "their", "some", "this", "that"};
-    while (index > 0 && !ends_phrase(words[index - 1]) && !contains(articles, words[index - 1])) --index;
+    while (index > 0 && !language::ends_phrase(words[index - 1]) &&
+           !language::is_a(words[index - 1], language::Determiner))
+        --index;
     return index;
 }
 
@@ -211,7 +212,7 @@ std::vector<std::string> dye_words(const std::vector<std::string>& known) {
 }
 
 std::vector<std::string> with_dyes(std::vector<std::string> drawn, const std::vector<std::string>& known) {
-    const auto dyes = dye_words(promptable_vocabulary(known, drawn));
+    const auto dyes = dye_words(language::promptable_vocabulary(known, drawn));
     drawn.insert(drawn.end(), dyes.begin(), dyes.end());
     return drawn;
 }
@@ -219,11 +220,11 @@ std::vector<std::string> with_dyes(std::vector<std::string> drawn, const std::ve
 std::optional<ColourRemap> dye_of(const EditRequest& request, EditMode mode,
                                   const std::vector<std::string>& known) {
     if (!contains(known, PlainBase)) return std::nullopt;
-    const auto words = words_of(request.prompt);
-    const std::size_t target = first_word(request.prompt, request.target);
+    const auto words = language::words_of(request.prompt);
+    const std::size_t target = language::position_of(request.prompt, request.target);
     if (target >= words.size()) return std::nullopt;
     const std::size_t begin = phrase_begin(words, target);
-    std::size_t end = target + words_of(request.target).size();
+    std::size_t end = target + language::words_of(request.target).size();
     if (mode != EditMode::Modify) --end;  // the thing itself, whatever it is called
     for (std::size_t i = begin; i < end; ++i)
         if (auto dye = contains(known, words[i]) ? std::nullopt : patterned(words, begin, i, end)) return dye;
@@ -243,13 +244,13 @@ std::optional<ColourRemap> dye_of(const EditRequest& request, EditMode mode,
 }
 
 std::string told_with(const ColourRemap& dye, const std::string& sentence) {
-    auto words = words_of(sentence);
+    auto words = language::words_of(sentence);
     for (auto at = words.begin();
          (at = std::search(at, words.end(), dye.words.begin(), dye.words.end())) != words.end();) {
         at = words.erase(at, at + static_cast<std::ptrdiff_t>(dye.words.size()));
         at = words.insert(at, dye.base) + 1;
     }
-    return joined(words);
+    return language::joined(words);
 }
 
 namespace {

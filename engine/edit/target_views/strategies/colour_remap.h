@@ -42,7 +42,8 @@ std::vector<std::string> with_dyes(std::vector<std::string> drawn, const std::ve
 std::optional<ColourRemap> dye_of(const EditRequest& request, EditMode mode,
                                   const std::vector<std::string>& known);
 
-/// The sentence (words as as_told() has them) with the dye's words replaced by its base, wherever they stand.
+/// The sentence (words as language::normalised_prompt() has them) with the dye's words replaced by its base,
+/// wherever they stand.
 std::string told_with(const ColourRemap& dye, const std::string& sentence);
 
 /// Dyes pictures [H,W,3] of one thing where `shares` [H,W,1] say how much: what has a colour of its own (a

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "engine/edit/request/colour_word.h"
-#include "engine/edit/request/words.h"
+#include "engine/language/description.h"
 
 namespace gse::edit {
 namespace {
@@ -35,7 +35,8 @@ float median_luminance(const std::vector<EditView>& views) {
 
 std::optional<std::array<float, 3>> usual_look(const EditRequest& request, EditMode mode,
                                                const ModelTraits& traits) {
-    if (mode != EditMode::Modify || is_described(request.prompt, request.target)) return std::nullopt;
+    if (mode != EditMode::Modify || language::is_described(request.prompt, request.target))
+        return std::nullopt;
     const auto found = traits.ground_colours.find(request.target);
     return found == traits.ground_colours.end() ? std::nullopt : std::optional(found->second);
 }

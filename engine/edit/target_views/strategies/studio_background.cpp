@@ -7,7 +7,7 @@
 
 #include "engine/base/log.h"
 #include "engine/edit/placement/ground_cover.h"
-#include "engine/edit/request/words.h"
+#include "engine/language/words.h"
 
 namespace gse::edit {
 namespace {
@@ -51,7 +51,7 @@ std::optional<StudioBackground> plain_ground(const std::string& sentence, const 
     if (!standing.found() || standing.height < LeastUpright * standing.width()) return std::nullopt;
     std::string ground = traits.plain_grounds.front();
     for (const auto& word : traits.plain_grounds)
-        if (has_word(sentence, word)) ground = word;
+        if (language::has_phrase(sentence, word)) ground = word;
     return StudioBackground{standing, normalized(up), traits.ground_colours.at(ground), traits.sky,
                             traits.ground_reach * figure_height(standing)};
 }

@@ -1,0 +1,27 @@
+// The news of a sentence: which of its words the scene does not show yet.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/language/sentence.h"
+
+namespace gse::language {
+
+/// The one word of the sentence that is new, guessed: what the source is "wearing", "with", "in" or "made of",
+/// else the word before it ("golden" statue), else, where the sentence does not name the source, the first
+/// thing it names. Words that the scene shows already (`said`) are no news: where the sentence has other ones,
+/// it is about those.
+std::string guessed_target(const Sentence& sentence, const std::string& source,
+                           const std::vector<std::string>& said = {});
+
+/// All that may be the news of the sentence: what describes the source, and the things it names,
+/// guessed_target() first; not what was `said` already, where there is something else.
+std::vector<std::string> possible_targets(const Sentence& sentence, const std::string& source,
+                                          const std::vector<std::string>& said = {});
+
+/// Words that hold for a scene after these edits, in the order in which they were applied: what their
+/// sentences say, less what a later one replaced ("blue" of a bear that was made red since).
+std::vector<std::string> words_said(const std::vector<EditSentence>& applied);
+
+}  // namespace gse::language
