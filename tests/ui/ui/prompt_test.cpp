@@ -45,7 +45,7 @@ DOCTEST_TEST_CASE("prompt: every setting of a recipe is found by a word of its n
     for (const auto& wanted :
          {std::pair{"GUIDANCE SC", "guidance.guidance_scale"}, std::pair{"img2img", "attention.method"},
           std::pair{"prior", "learning.prior_weight"}, std::pair{"shows its front", "model_settings.front"},
-          std::pair{"where the networks", "model_settings.device"},
+          std::pair{"device of the networks", "model_settings.device"},
           std::pair{"dbscan", "request.dbscan_eps"}}) {
         search(wanted.first);
         DOCTEST_CHECK_MESSAGE(harness.find(wanted.second) != nullptr, wanted.first);
