@@ -16,9 +16,9 @@ bool is_described(std::string_view sentence, const std::string& thing);
 /// sentence is a normalised prompt.
 std::string described_as(const std::string& sentence, const std::string& thing, const std::string& colour);
 
-/// The sentence of a thing that comes or is added, in the colour that such a thing mostly has where it tells
-/// none ("a frog": "a green frog"): what learned it in all colours draws it in any. The sentence is a
-/// normalised prompt; it is unchanged where no such colour is among `sayable`. `usual_colours`: by thing.
+/// Sentence of an object that replaces or is added, in its usual colour if the sentence tells none ("a frog":
+/// "a green frog"). A model that learned it in all colours draws it in any. The sentence is a normalised
+/// prompt; it is unchanged if no such colour is among `sayable`. `usual_colours`: by object.
 std::string with_usual_colour(const std::string& sentence, const std::string& thing,
                               const std::vector<std::string>& sayable,
                               const std::map<std::string, std::string>& usual_colours);

@@ -34,12 +34,12 @@ bool says_worn(const std::vector<std::string>& words, std::size_t i);
 /// Whether a noun phrase may begin with the term at `i`: the first one, and what follows a joint.
 bool begins_phrase(const std::vector<std::string>& terms, std::size_t i);
 
-/// Last word of the noun phrase that begins at `first`, behind articles and the "of" of "made of"; empty where
-/// none follows.
+/// Last word of the noun phrase that begins at `first`, behind articles and the "of" of "made of"; empty
+/// where none follows.
 std::string head_of_phrase(const std::vector<std::string>& terms, std::size_t first);
 
-/// Whether the term at `i` is the last of its noun phrase, but for what the thing does ("a ball bouncing
-/// beside"): "blue" in "a blue bear on the grass" is none.
+/// True when the term at `i` is the last of its noun phrase, apart from the object's action ("a ball bouncing
+/// beside"). "blue" in "a blue bear on the grass" is not.
 bool names_thing(const std::vector<std::string>& terms, std::size_t i);
 
 /// Grounds are what things stand on or are in, not things: one in the place of another changes no shape.

@@ -54,8 +54,9 @@ void add_phrase(const Terms& terms, std::size_t first, std::vector<Candidate>& l
     list.push_back({head, Terms(begin, std::find(begin, terms.end(), head) + 1)});
 }
 
-/// Of a sentence that does not name the source: all things. What takes its place is of its kind first: worn
-/// things for a worn one ("a bear wearing a crown" for the hat), a ground for a ground ("a robot on the snow").
+/// Candidates in a sentence that does not name the source: all objects. A replacement of the source's kind
+/// comes first. It is a worn object for a worn one ("a bear wearing a crown" for the hat), a ground for a
+/// ground ("a robot on the snow").
 std::vector<Candidate> candidates_without(const Terms& terms, const std::string& source) {
     std::vector<Candidate> list;
     add_phrase(terms, 0, list);

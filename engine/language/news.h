@@ -8,10 +8,10 @@
 
 namespace gse::language {
 
-/// The one word of the sentence that is new, guessed: what the source is "wearing", "with", "in" or "made of",
-/// else the word before it ("golden" statue), else, where the sentence does not name the source, the first
-/// thing it names. Words that the scene shows already (`said`) are no news: where the sentence has other ones,
-/// it is about those.
+/// Guess of the one new word of the sentence. It is the word that the source is "wearing", "with", "in" or
+/// "made of", else the word before it ("golden" statue). If the sentence does not name the source, it is the
+/// first object it names. Words that the scene shows already (`said`) are no news if the sentence has other
+/// ones.
 std::string guessed_target(const Sentence& sentence, const std::string& source,
                            const std::vector<std::string>& said = {});
 
@@ -20,8 +20,9 @@ std::string guessed_target(const Sentence& sentence, const std::string& source,
 std::vector<std::string> possible_targets(const Sentence& sentence, const std::string& source,
                                           const std::vector<std::string>& said = {});
 
-/// Words that hold for a scene after these edits, in the order in which they were applied: what their
-/// sentences say, less what a later one replaced ("blue" of a bear that was made red since).
+/// Words that hold for a scene after these edits, which are in the order of their application. They are the
+/// words of their sentences, less those that a later edit replaced ("blue" of a bear that was made red
+/// since).
 std::vector<std::string> words_said(const std::vector<EditSentence>& applied);
 
 }  // namespace gse::language

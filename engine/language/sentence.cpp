@@ -55,7 +55,7 @@ std::string replacement_in(const Sentence& sentence, const Terms& terms, const s
     return {};
 }
 
-/// Where the terms that bring the target begin and end: its description alone, or with what joins it to the
+/// Range of the terms that bring the target: its description alone, or with the words that join it to the
 /// source.
 std::pair<std::size_t, std::size_t> bringing(const Terms& terms, std::size_t source, std::size_t target) {
     const auto joins = [&](std::size_t i) { return ends_phrase(terms[i]); };
@@ -165,16 +165,15 @@ std::pair<EditMode, std::string> decide_mode(const EditSentence& words, std::opt
     const int first = std::min(from, to), last = std::max(from, to);
     bool worn = false;
     for (int i = first + 1; i < last; ++i) worn = worn || says_worn(terms, static_cast<std::size_t>(i));
-    const bool joined = words.relation() != Relation::None ||
-                        ((worn || any_between(terms, first, last, WordClass::Beside)) &&
-                         !any_between(terms, first, last, WordClass::Turning));
+    const bool joined =
+        words.relation() != Relation::None || ((worn || any_between(terms, first, last, WordClass::Beside)) &&
+                                               !any_between(terms, first, last, WordClass::Turning));
     if (joined) return {EditMode::Add, "the sentence puts \"" + target + "\" beside \"" + source + "\""};
     return {EditMode::Modify, "\"" + target + "\" describes \"" + source + "\""};
 }
 
 std::string instance_prompt(const EditSentence& words) {
-    const bool identified =
-        words.sentence().contains(Identifier) && !has_phrase(words.source(), Identifier);
+    const bool identified = words.sentence().contains(Identifier) && !has_phrase(words.source(), Identifier);
     return "a photo of a " + (identified ? Identifier + " " : std::string()) + words.source();
 }
 

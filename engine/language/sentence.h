@@ -38,8 +38,8 @@ public:
     std::vector<std::string> terms(const std::vector<std::string>& phrases) const;
     /// Noun phrases in their order; one of `phrases` ("teddy bear") counts as one word.
     std::vector<NounPhrase> noun_phrases(const std::vector<std::string>& phrases = {}) const;
-    /// The things that it names, each once: heads of noun phrases, without those that say what another is made
-    /// of, or becomes.
+    /// The things that it names, each once: heads of noun phrases, without those that say what another is
+    /// made of, or becomes.
     std::vector<std::string> things(const std::vector<std::string>& phrases = {}) const;
 
 private:
@@ -47,11 +47,11 @@ private:
     std::string prompt_;
 };
 
-/// What an edit does with what is there: changes its colour, material or style; puts something beside it; or
-/// puts something else in its place.
+/// Kind of an edit: change of colour, material or style; addition beside something; or replacement.
 enum class EditMode { Modify, Add, Replace };
 
-/// A sentence as it is read for an edit of `source`, in which `target` is new; both phrases are in lower case.
+/// A sentence as it is read for an edit of `source`, in which `target` is new; both phrases are in lower
+/// case.
 class EditSentence {
 public:
     EditSentence() = default;
@@ -60,14 +60,13 @@ public:
     const Sentence& sentence() const { return sentence_; }
     const std::string& source() const { return source_; }
     const std::string& target() const { return target_; }
-    /// The sentence as it was before the edit: without the target, or without the phrase that brings it
-    /// ("wearing a red hat"); where the target stands in the source's place ("into a panda"), with the source
-    /// instead.
+    /// Sentence before the edit: without the target, or without the phrase that brings it ("wearing a red
+    /// hat"). If the target stands in the source's place ("into a panda"), it has the source instead.
     const std::string& before() const { return before_; }
-    /// The thing that is to be in the source's place ("cat" of "a red cat on the grass" for a bear); empty
-    /// where the sentence keeps the source, or changes what things stand on.
+    /// Object that replaces the source ("cat" of "a red cat on the grass" for a bear). Empty if the sentence
+    /// keeps the source, or changes the ground.
     const std::string& replacement() const { return replacement_; }
-    /// Where the target is, seen from the source.
+    /// Direction of the target, seen from the source.
     Relation relation() const { return relation_; }
 
 private:
@@ -85,8 +84,8 @@ std::pair<EditMode, std::string> decide_mode(const EditSentence& words, std::opt
 /// the sentence has one ("a photo of a * bear").
 std::string instance_prompt(const EditSentence& words);
 
-/// The order for a model that edits pictures by instructions: "turn the <source> into <prompt without its
-/// article>", "make it <prompt without its article>" where no source is named (views.md 3).
+/// Instruction for a model that edits pictures by instructions: "turn the <source> into <prompt without its
+/// article>". Without a source: "make it <prompt without its article>".
 std::string instruction_for(const Sentence& sentence, const std::string& source);
 
 }  // namespace gse::language

@@ -6,7 +6,7 @@ import sys
 import tempfile
 
 ROOMS = ("app", "ui", "engine")
-NOT_YET = ("engine/edit/", "engine/language/", "engine/pipeline/run/", "engine/pipeline/select/")   # not rewritten yet
+NOT_YET = ("engine/edit/", "engine/pipeline/run/", "engine/pipeline/select/")   # not rewritten yet
 SUFFIXES = {".h", ".cpp", ".inl", ".cu", ".comp"}
 MOST_WORDS = 30
 BEGINNINGS = re.compile(r"(What|The same|Of|Where)\b")

@@ -1,4 +1,4 @@
-// What a round of view guidance shows an artist, and what the artist says about it.
+// Exchange between a round of view guidance and an artist: the redrawn views, and orders about them.
 #pragma once
 
 #include <cstddef>
@@ -39,8 +39,8 @@ struct TargetOrder {
     TargetChoice choice = TargetChoice::Accept;
 };
 
-/// What a round began with and came to: enough to go on fitting from a snapshot without asking the model
-/// again. Never changed once it is handed out.
+/// Inputs and outcome of a round: enough to go on fitting from a snapshot without asking the model again.
+/// Never changed once it is handed out.
 struct RoundState {
     int round = 0;
     std::string key;                                     // of the settings that the pictures follow from

@@ -1,4 +1,4 @@
-// Where a thing may lie that the sentence puts beside, behind, before or under the source.
+// Place of an object that the sentence puts beside, behind, before or under the source.
 #pragma once
 
 #include "engine/edit/placement/region_frame.h"
@@ -13,7 +13,7 @@ public:
     /// `source` and `others`: visible points of the source (at least one) and of the rest of the scene.
     RelatedPlace(language::Relation relation, const std::vector<Vec3>& source,
                  const std::vector<Vec3>& others);
-    /// Where the views vote.
+    /// Box in which the views vote.
     const Box& box() const { return box_; }
     /// Whether a point of it stands in the relation to the source.
     bool allows(const Vec3& p) const;

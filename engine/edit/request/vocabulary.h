@@ -8,9 +8,9 @@
 
 namespace gse::edit {
 
-/// Throws Error (InvalidArgument) with the nearest known words when the source of a validated request is not
-/// in `known`, or its target neither there nor in `drawn`, which can be made and not found. With a label made
-/// by hand the source may be anything: nothing is looked for.
+/// Checks the words of a validated request. Throws Error (InvalidArgument) with the nearest known words when
+/// the source is not in `known`. The target must be there or in `drawn`, whose words can be made and not
+/// found. With a label made by hand the source may be anything, since nothing is looked for.
 void require_known_words(const EditRequest& request, const std::vector<std::string>& known,
                          const std::vector<std::string>& drawn, bool labelled_by_hand);
 

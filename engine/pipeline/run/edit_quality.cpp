@@ -13,15 +13,12 @@
 namespace gse::pipeline {
 namespace {
 
-/// Below it the pictures count as not showing the edit: pictures in which something else has changed score
-/// about 0.2 with the starter's encoder, unchanged ones about 0, those of true edits 0.4 to 0.95 (`bench
-/// clip`).
+/// Score below which the pictures count as not showing the edit. It lies between those of other changes and
+/// those of true edits (`gseditpro-lab bench clip`).
 constexpr double LeastScore = 0.25;
 
-/// The same where it is the most of a dozen. Lumps that were drawn into a scan before nothing scored 0.06 to
-/// 0.17, a green one 0.34, and 0.26 to 0.35 what was drawn there on a plain ground. In the scenes that the
-/// starter learned from it is 0.45 to 0.67 in most edits, and below that another way does neither better nor
-/// worse: it only takes its time.
+/// Threshold for the largest of a dozen scores. It lies above those of lumps drawn into a scan and below
+/// those of most edits of synthetic scenes.
 constexpr double LeastLikeness = 0.4;
 
 /// Whether the sentence got a word that the model draws and its encoder does not know.
@@ -57,7 +54,7 @@ double mean_score(const std::vector<EncodedPair>& pairs, const std::vector<float
     return sum / static_cast<double>(pairs.size());
 }
 
-/// Of the known thing that the pictures of `thing` are most like; none where the model has no word for a
+/// Score of the known thing that the pictures of `thing` are most like. None if the model has no word for a
 /// thing.
 std::optional<double> likeness_of(const neural::TextToImage& model, edit::ImageTextEncoder& encoder,
                                   const std::string& said_before, const std::string& told,

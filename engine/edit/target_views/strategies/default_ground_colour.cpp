@@ -19,7 +19,7 @@ float luminance(const Image& picture, std::size_t pixel) {  // Rec. 709
            0.0722f * picture.data[pixel * 3 + 2];
 }
 
-/// Of what all masks hold; 0 where they hold nothing.
+/// Median over the pixels of all masks; 0 if they hold nothing.
 float median_luminance(const std::vector<EditView>& views) {
     std::vector<float> values;
     for (const auto& view : views)

@@ -28,7 +28,7 @@ void move_before(const Image& scene, const Image& shown, const Image& outline, I
     }
 }
 
-/// Of some of the pictures, as far as the scene is not before it.
+/// Share of the ground in some of the pictures, as far as the scene is not before it.
 double shown_share(const StudioBackground& plain, const GaussianSet& set, const std::vector<View>& views,
                    raster::Rasterizer& rasterizer) {
     double shown = 0, pixels = 0;
