@@ -204,8 +204,8 @@ DOCTEST_TEST_CASE("every step of the working set is that of its twin: anchors by
         double twin_loss = 0, worst = 0;  // steps are of the size of their rate
         for (std::size_t k = 0; k < attributes.size(); ++k) {
             const auto& [attribute, values] = attributes[k];
-            const auto twin =
-                twin_step(attribute, before, schedule, k < 4 ? request.geometry_share : 1, iteration + 1);
+            const auto twin = twin_step(attribute, before, schedule,
+                                        k < 4 ? double{request.geometry_share} : 1.0, iteration + 1);
             twin_loss += twin.anchor_loss;
             for (std::size_t i = 0; i < twin.values.size(); ++i) {
                 const double allowed = StepError * twin.rates[i] + ValueError * std::abs(twin.values[i]);
