@@ -15,12 +15,12 @@
 namespace gse::edit {
 namespace {
 
-constexpr float LabelCounts = 0.05f;              // A13: where the label's render counts at all
-constexpr double LabelReachPx = 8;                // A13, of a 512-pixel picture
-constexpr float Memory = 0.5f;                    // A13: weight of the mask before
-constexpr float TurnsOn = 0.6f, TurnsOff = 0.4f;  // F24: hysteresis
-constexpr double LargestGrowth = 3;               // A13: times the static area; beyond, the mask has run away
-constexpr double RestMemory = 0.98;               // X8
+constexpr float LabelCounts = 0.05f;              // where the label's render counts at all
+constexpr double LabelReachPx = 8;                // of a 512-pixel picture
+constexpr float Memory = 0.5f;                    // weight of the mask before
+constexpr float TurnsOn = 0.6f, TurnsOff = 0.4f;  // hysteresis
+constexpr double LargestGrowth = 3;               // times the static area; beyond, the mask has run away
+constexpr double RestMemory = 0.98;               // share of the mean change that stays, a step
 
 /// What replaces the word ("on the snow" that was "on the grass") is looked for once the edit shows it.
 std::string word_after(const EditRequest& request, std::string word) {
@@ -59,7 +59,7 @@ Mask DynamicMasks::found_in(const Image& shown, std::size_t view, int iteration)
         {word_},
         plan_.view_words.empty() ? std::string() : plan_.view_words[view],
         false,
-        1,  // A13: one repeat is enough for a mask that is averaged anyway
+        1,  // one repeat is enough for a mask that is averaged anyway
         Random::stream(request_.seed, 9000 + static_cast<std::uint64_t>(iteration)).next()};
     auto maps = attention_->locate(query);
     GSE_CHECK_EQ(maps.size(), std::size_t{1});

@@ -1,5 +1,5 @@
-// Masks that follow an edit as it grows, and the test whether it still changes (GSEditPro 3.4; method S7,
-// A13, F24, X8).
+// Masks that follow an edit as it grows, and the test whether it still changes (GSEditPro 3.4; METHOD.md,
+// Dynamic masks).
 #pragma once
 
 #include <cstdint>

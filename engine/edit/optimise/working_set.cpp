@@ -10,7 +10,7 @@
 namespace gse::edit {
 namespace {
 
-constexpr float LargestLogit = 12.0f;     // method F17
+constexpr float LargestLogit = 12.0f;     // METHOD.md, Optimiser
 constexpr double SmallestScale = 1e-6;    // of the extent
 constexpr double LargestScale = 0.5;      // of the extent
 constexpr double CommonRate = 2;          // times the colour's rate: makes both kinds of change equally fast

@@ -12,7 +12,7 @@ namespace gse::edit {
 namespace {
 
 constexpr int RoomCells = 24;        // along the longest side of the room
-constexpr double PlaceMargin = 0.3;  // of the longest side of a place (views.md 17)
+constexpr double PlaceMargin = 0.3;  // of the longest side of a place (METHOD.md, Visual hull)
 
 /// A cylinder on the ground, world units.
 struct Cylinder {

@@ -3,7 +3,7 @@
 
 namespace gse::edit {
 
-constexpr int ClusterGrid = 64;        // clustering happens on maps of this width (method 2.7)
+constexpr int ClusterGrid = 64;  // clustering happens on maps of this width (METHOD.md, Masks in a view)
 constexpr double ReferenceSide = 512;  // pictures for which lengths in pixels are stated
 
 }  // namespace gse::edit

@@ -92,7 +92,7 @@ void check_levels(const Reader& reader, const std::vector<std::int64_t>& channel
 }
 
 std::vector<std::int64_t> read_heads(const Reader& reader, std::size_t levels) {
-    // "attention_head_dim" is the number of heads (goldens.md trap 3); "num_attention_heads" is its later,
+    // "attention_head_dim" is the number of heads; "num_attention_heads" is its later,
     // right name.
     const char* key = reader.has("num_attention_heads") ? "num_attention_heads" : "attention_head_dim";
     std::vector<std::int64_t> heads(levels, 8);

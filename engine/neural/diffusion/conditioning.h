@@ -10,8 +10,8 @@ namespace gse::neural {
 struct Conditioning {
     torch::Tensor context;        // [B,2,T,D] negative, positive
     double guidance_scale = 7.5;  // 1 = the positive text alone
-    torch::Tensor picture =
-        {};  // [B,C,h,w] of a model that takes one: the posterior's mean, NOT scaled (views.md 3)
+    torch::Tensor picture = {};   // [B,C,h,w] of a model that takes one: the posterior's mean, NOT scaled
+                                  // (METHOD.md, InstructPix2Pix)
     double image_guidance_scale = 1.5;  // of such a model: 1 = two rows for each picture, others three
     SceneViews views = {};  // where the B pictures are of one scene, or of several with as many each
 };

@@ -33,8 +33,7 @@ std::vector<double> ascending(const SchedulerConfig& config, const std::string& 
         } else if (spacing == "leading") {
             t = static_cast<double>(i * (total / count) + config.steps_offset);
         } else {
-            // The reference steps down by the difference of its first two values, which decides ties
-            // (goldens.md trap 23).
+            // The reference steps down by the difference of its first two values, which decides ties.
             const double all = static_cast<double>(total);
             const double stride = (all - all / static_cast<double>(count)) - all;
             t = std::nearbyint(all + static_cast<double>(count - 1 - i) * stride) - 1;

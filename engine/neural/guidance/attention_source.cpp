@@ -17,14 +17,14 @@
 namespace gse::neural {
 namespace {
 
-// Noise levels as shares of the schedule, unless the model states its own (views.md 6: the best single one;
-// starter.md iv for absent things).
+// Noise levels as shares of the schedule, unless the model states its own (METHOD.md, Attention maps).
 const std::vector<double> PresentLevels{0.45};
 const std::vector<double> AbsentLevels{0.85};
 constexpr double AbsentStrength = 0.9;      // img2img must begin at least this noisy for an absent thing ...
 constexpr double AbsentLowestLevel = 0.75;  // ... and only steps above this level are looked at
-constexpr std::int64_t LargestAffinitySide = 32;  // 1024 x 1024 numbers per head and picture (views.md 6)
-constexpr int QueriesPerThread = 4;               // prepared together: a stop request waits for them
+constexpr std::int64_t LargestAffinitySide =
+    32;                              // 1024 x 1024 numbers per head and picture (METHOD.md, Attention maps)
+constexpr int QueriesPerThread = 4;  // prepared together: a stop request waits for them
 constexpr std::int64_t BatchPixels =
     64 * 64;  // latent cells per UNet call: one SD image, 16 of the starter's
 

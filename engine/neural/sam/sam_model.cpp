@@ -14,7 +14,7 @@ namespace {
 
 using Renaming = std::pair<const char*, const char*>;
 
-// goldens.md 3: segment-anything -> transformers, in the order in which they are applied.
+// Names of segment-anything -> transformers, in the order in which they are applied.
 constexpr Renaming EncoderNames[] = {{"image_encoder.", "vision_encoder."},
                                      {".patch_embed.proj.", ".patch_embed.projection."},
                                      {".blocks.", ".layers."},

@@ -13,8 +13,8 @@ namespace gse::pipeline {
 
 struct GateParameters {
     int views = 4;
-    double strength = 0.75;  // method 2.7: image to image at 0.75
-    int steps = 8;           // six are run: as telling as 23 (views.md 17), for a quarter of the passes
+    double strength = 0.75;  // of the image-to-image run
+    int steps = 8;           // six are run: as telling as 23, for a quarter of the passes
     double guidance_scale = 5;
 };
 

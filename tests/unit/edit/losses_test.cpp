@@ -93,7 +93,7 @@ DOCTEST_TEST_CASE("Adam's per-row factor scales the step and zero stops it") {
     DOCTEST_CHECK(parameters[2] == 0);
 }
 
-DOCTEST_TEST_CASE("the generation schedule is its closed form (method 2.3)") {
+DOCTEST_TEST_CASE("the generation schedule is its closed form (METHOD.md, Anchors)") {
     for (const auto& [g0, a0, m] :
          {std::array{0.05, 0.1, 1.3}, {1.0, 0.1, 2.0}, {0.0, 0.02, 1.3}, {0.01, 0.01, 1.3}}) {
         edit::EditRequest request;

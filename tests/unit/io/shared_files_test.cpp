@@ -154,7 +154,7 @@ DOCTEST_TEST_CASE("bytes after the last splat are ignored with a warning") {
 }
 
 DOCTEST_TEST_CASE("the biker in compressed PLY and in SPZ is the same biker") {
-    // Figures measured independently (formats.md, section 3) with a little room for float rounding.
+    // Figures measured independently with a little room for float rounding.
     constexpr double PositionTolerance = 1.3e-4 * 1.05;
     constexpr double ColourTolerance = 0.0037 * 1.05;
     constexpr double LogScaleP99 = 0.031 * 1.05;
