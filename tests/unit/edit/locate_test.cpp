@@ -604,7 +604,7 @@ DOCTEST_TEST_CASE("networks see a ground that is no part of the scene, and the v
         input.ground = ground;
         return edit::locate(input, fixture.tools());
     };
-    const edit::StudioBackground plain{{{0, 2, 0}, 1, 1, 1}, {0, -1, 0}, {0, 0, 0.2f}, {0, 0, 0.5f}};
+    const edit::StudioBackground plain{{{0, 2, 0}, 1, 1, 1}, {0, -1, 0}, {0, 0, 0.2f}, {0, 0, 0.5f}, 3};
     const auto before_black = seen({}), before_plain = seen(plain);
     DOCTEST_CHECK(*before_plain.label.bits == *before_black.label.bits);  // both are as red as black
     DOCTEST_CHECK(before_plain.on_ground);
