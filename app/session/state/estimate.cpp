@@ -6,6 +6,7 @@
 
 #include "engine/base/error.h"
 #include "engine/edit/request/colour_word.h"
+#include "engine/edit/request/decide_mode.h"
 #include "engine/edit/request/edit_method.h"
 #include "engine/edit/search/place_drawing.h"
 #include "engine/edit/target_views/view_round.h"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "engine/edit/optimise/row_table.h"
+#include "engine/scene/visit_attributes.h"
 
 namespace gse::edit {
 namespace {

@@ -1,7 +1,12 @@
 // What one view of a search says, as the vote that labels are fused from.
 #pragma once
 
-#include "engine/edit/search/locate.h"
+#include <cstddef>
+#include <vector>
+
+#include "engine/base/image.h"
+#include "engine/edit/masks/view_evidence.h"
+#include "engine/localize/back_projection.h"
 
 namespace gse::edit {
 

@@ -2,7 +2,6 @@
 // (GSEditPro 3.3, method S6).
 #pragma once
 
-#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -11,41 +10,11 @@
 
 #include "engine/base/error.h"
 #include "engine/base/memory.h"
-#include "engine/base/progress.h"
-#include "engine/edit/interfaces/interfaces.h"
-#include "engine/edit/interfaces/snapshot.h"
-#include "engine/edit/interfaces/view_targets.h"
-#include "engine/edit/placement/voxel_region.h"
+#include "engine/edit/interfaces/edit_plan.h"
+#include "engine/edit/interfaces/edit_tools.h"
 #include "engine/edit/request/request.h"
-#include "engine/raster/rasterizer.h"
 
 namespace gse::edit {
-
-/// What the loop works on.
-struct EditPlan {
-    std::vector<View> views;              // cameras at the size of the pictures
-    std::vector<std::string> view_words;  // per view, or empty
-    std::vector<double> azimuths;         // per view, as in EditView, or empty
-    std::vector<double> elevations;       // of as many views
-    std::vector<Mask> masks;              // per view, dilated: 1 = the picture may change here
-    std::vector<std::uint8_t> label;      // [N] 1 = the row may change
-    GaussianData seeds;                   // new rows (add mode), may be empty
-    raster::Settings settings;
-    EditMode mode = EditMode::Modify;
-    VoxelRegion room;  // replace mode: where the new thing may be
-    std::string
-        drawn_colour;  // add mode: that of what the search has drawn, where it did and the sentence says none
-};
-
-/// One line of the loss history.
-struct IterationRecord {
-    int iteration = 0;
-    std::size_t view = 0;
-    double preservation = 0, anchor = 0;
-    double guidance_norm = 0, preservation_norm = 0;  // norms of the gradients on the picture
-    std::map<std::string, double> guidance;           // what the guidance reports, where it is finite
-    bool skipped = false;                             // the guidance was not finite: the step changed nothing
-};
 
 struct EditResult {
     GaussianSet set;
@@ -77,41 +46,6 @@ struct EditResult {
     double guidance_scale = 0;            // factor the calibration gave the guidance's gradient
     std::map<std::string, double>
         seconds;  // per stage: "render", "preserve", "guidance", "backward", "optimise", ...
-};
-
-/// Receives every line of the loss history as it is written.
-using IterationCallback = std::function<void(const IterationRecord& record)>;
-
-/// The parts the loop calls.
-struct EditTools {
-    raster::Rasterizer& rasterizer;
-    Guidance* guidance;         // pulls at every step; may be null where `views` leads
-    SnapshotCallback snapshot;  // may be empty
-    JobControl job;
-    IterationCallback iteration = {};      // may be empty
-    AttentionSource* attention = nullptr;  // for the dynamic mask; null = the masks stay as they are
-    Segmenter* segmenter = nullptr;
-    std::string word = {};  // what the dynamic mask looks for, and what has a new shape
-    /// Asked before every iteration: another label ([N] 0 or 1) that the artist has drawn meanwhile, or
-    /// nothing.
-    std::function<std::optional<std::vector<std::uint8_t>>()> new_label = {};
-    /// Goes on from this state of an earlier run over the same base, at its iteration; what it says of rows
-    /// outside the label does not count. Null = from the base.
-    const EditSnapshot* start = nullptr;
-    MultiViewEditor* views = nullptr;  // leads the edit in place of `guidance`: redraws views to fit to
-    double snapshot_seconds = 0;  // above 0: a snapshot whenever this much time has passed (more where they
-                                  // take long), instead of by iterations
-    /// Of view guidance: shows the redrawn views, as soon as a round is redrawn and whenever something about
-    /// them changes.
-    std::function<void(const ViewTargets&)> targets = {};
-    /// Asked when a round was redrawn, before every iteration, and again after orders: what the artist says
-    /// meanwhile, or nothing. May wait for an answer; a stop request has to end that.
-    std::function<std::vector<TargetOrder>()> target_orders = {};
-    std::vector<std::string> known = {};  // words of the model; empty = it takes any
-    std::size_t view_bytes =
-        std::size_t{512}
-        << 20;  // memory that saves time where few rows are labelled; no result depends on it
-    std::string redraw_key = {};  // of what `views` is made from: a round begun with another key is redrawn
 };
 
 /// One edit, in steps that a caller can take apart. Rows outside the label come back bit-identical (checked

@@ -16,6 +16,9 @@ struct PreservationWeights {
     double multiplier = 10;
 };
 
+/// Of fits to redrawn views, which do not agree: the absolute difference alone is the median over them.
+constexpr PreservationWeights FitWeights{1, 0, 10};
+
 /// Computes value and gradient for one view; keeps its scratch memory.
 class PreservationLoss {
 public:

@@ -8,18 +8,9 @@
 
 #include "engine/edit/optimise/adam.h"
 #include "engine/scene/gaussian_set.h"
+#include "engine/scene/visit_attributes.h"
 
 namespace gse::edit {
-
-/// Calls f(stride, array) for each attribute of `data`, or f(stride, array, array of the next, ...) for
-/// several.
-template <class F, class Data, class... More> void visit_attributes(F&& f, Data& data, More&... more) {
-    f(std::size_t{3}, data.position, more.position...);
-    f(std::size_t{3}, data.log_scale, more.log_scale...);
-    f(std::size_t{4}, data.rotation, more.rotation...);
-    f(std::size_t{1}, data.opacity_logit, more.opacity_logit...);
-    f(data.sh_stride(), data.sh, more.sh...);
-}
 
 /// What a column holds for a row that is new, and for one that is carried over from a row of this or another
 /// table.

@@ -7,7 +7,7 @@
 
 #include "engine/base/check.h"
 #include "engine/edit/placement/region_frame.h"
-#include "engine/edit/search/place_drawing.h"
+#include "engine/edit/request/decide_mode.h"
 #include "engine/language/grammar.h"
 
 namespace gse::edit {

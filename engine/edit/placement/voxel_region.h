@@ -8,22 +8,12 @@
 
 #include "engine/base/image.h"
 #include "engine/base/thread_pool.h"
+#include "engine/edit/interfaces/voxels.h"
 #include "engine/edit/placement/upright_bounds.h"
 #include "engine/language/lexicon.h"
 #include "engine/scene/scene.h"
 
 namespace gse::edit {
-
-/// A set of equal cubes.
-struct VoxelRegion {
-    std::vector<Vec3> centres;  // world
-    std::vector<Vec3> shell;    // those with a free face, which alone are seen; empty = not known
-    double side = 0;            // of a cube, world units
-    double agreement = 0;       // mean share, of the views that see the cubes, whose mask covers them
-    std::string origin =
-        "none";  // "attention" or the place: "top", "front", "neck", "around", "beside", "left", ...
-    bool empty() const { return centres.empty(); }
-};
 
 /// What the search for a region looks at.
 struct RegionSearch {

@@ -1,8 +1,10 @@
 // Change what is there, put something else in its place, or add something: read off the sentence.
+#include "engine/edit/request/decide_mode.h"
+
 #include <algorithm>
 #include <array>
 
-#include "engine/edit/search/locate.h"
+#include "engine/language/grammar.h"
 #include "engine/language/sentence.h"
 
 namespace gse::edit {
@@ -27,6 +29,11 @@ std::optional<EditMode> mode_named(const std::string& name) {
 std::pair<EditMode, std::string> decide_mode(const EditRequest& request,
                                              std::optional<double> target_found_share) {
     return language::decide_mode(edit_sentence(request), mode_named(request.mode), target_found_share);
+}
+
+bool draws_place(const EditRequest& request, EditMode mode) {
+    return mode == EditMode::Add && request.place_views > 0 && request.source != request.target &&
+           language::place_name(edit_sentence(request).relation()).empty();
 }
 
 EditMode planned_mode(const EditRequest& request) { return decide_mode(request, std::nullopt).first; }

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "engine/base/error.h"
-#include "engine/edit/placement/voxel_region.h"
 #include "engine/edit/request/edit_method.h"
 #include "engine/edit/request/excluded_views.h"
 #include "engine/edit/request/scales.h"

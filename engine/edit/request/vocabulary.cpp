@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "engine/base/error.h"
-#include "engine/edit/target_views/strategies/colour_remap.h"
+#include "engine/edit/request/dye_words.h"
 #include "engine/language/vocabulary.h"
 
 namespace gse::edit {

@@ -1,5 +1,7 @@
 // Renders, asks for attention, makes masks and fuses them into labels.
 #include "engine/edit/search/locate.h"
+#include "engine/edit/placement/voxel_region.h"
+#include "engine/edit/request/decide_mode.h"
 
 #include <fmt/format.h>
 

@@ -12,9 +12,9 @@
 #include "engine/base/progress.h"
 #include "engine/base/thread_pool.h"
 #include "engine/edit/interfaces/interfaces.h"
+#include "engine/edit/interfaces/voxels.h"
 #include "engine/edit/masks/search_outcome.h"
-#include "engine/edit/optimise/edit_loop.h"
-#include "engine/edit/placement/voxel_region.h"
+#include "engine/edit/masks/view_evidence.h"
 #include "engine/edit/request/request.h"
 #include "engine/edit/search/place_drawing.h"
 #include "engine/edit/search/view_renders.h"
@@ -54,8 +54,6 @@ struct LocateCache : ViewRenders {
     std::map<ContentKey, DrawnViews> drawn = {};  // by drawing_key()
 };
 
-struct ViewEvidence;
-
 /// The parts it calls. Both segmenters may be null: then the attention regions themselves are the masks.
 struct LocateTools {
     raster::Rasterizer& rasterizer;
@@ -75,23 +73,6 @@ struct LocateTools {
     /// (TextToImage::supports_scene_conditioning()). Null: attention alone says where.
     MultiViewEditor* drawing = nullptr;
     bool plain_ground = true;  // what stands in nothing is shown to it on a plain ground
-};
-
-/// Everything one view contributed, for the window and the evidence pictures.
-struct ViewEvidence {
-    Image render;  // [H,W,3]
-    Image drawn;   // [H,W,3] where the new thing was drawn into it, to see where it goes; else empty
-    Image map;     // [H,W,1] attention of the word, maximum 1; 0 where a rival the user gave has more
-    Image lead;    // [H,W,1] how much more another named thing has, 0 = none; empty without rivals
-    Mask region;   // thresholded and cleaned attention
-    std::vector<PointPrompt> points;  // clicks handed to the segmenter
-    Mask mask;                        // the view's vote, not dilated
-    std::string
-        branch;  // what made the mask: "text", "points", "attention", "drawn", "anchor", "label" or "none"
-    double captured = 0;              // share of the region's attention inside the mask
-    bool trusted = false;             // the mask trims the attention: a segmenter made it that is trusted
-    bool failed = false;              // nothing was found: the view does not vote
-    ViewStep step = ViewStep::Found;  // where it failed
 };
 
 struct LocateResult {
@@ -122,14 +103,5 @@ LocateResult locate(const LocateInput& input, const LocateTools& tools);
 
 /// Throws Error (NotFound) with the message and the remedy of a search that came to nothing.
 void require_found(const LocateResult& located);
-
-/// Decides "auto" from the sentence and, when there is a text segmenter, from whether it finds the target
-/// word (A7). Returns the mode and the reason.
-std::pair<EditMode, std::string> decide_mode(const EditRequest& request,
-                                             std::optional<double> target_found_share);
-
-/// The plan of the edit loop from what was located: masks dilated as the request says and joined with the
-/// label's own render, so that a view whose mask missed part of the label does not pull it back.
-EditPlan make_plan(const LocateInput& input, const LocateResult& located, raster::Rasterizer& rasterizer);
 
 }  // namespace gse::edit

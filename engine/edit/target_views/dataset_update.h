@@ -8,9 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "engine/edit/interfaces/edit_plan.h"
+#include "engine/edit/interfaces/edit_tools.h"
 #include "engine/edit/interfaces/view_targets.h"
-#include "engine/edit/optimise/dynamic_mask.h"
-#include "engine/edit/optimise/edit_loop.h"
+#include "engine/edit/masks/dynamic_mask.h"
 #include "engine/edit/target_views/view_round.h"
 
 namespace gse::edit {

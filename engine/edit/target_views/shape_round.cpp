@@ -10,11 +10,11 @@
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/base/random.h"
+#include "engine/edit/masks/drawn_thing.h"
 #include "engine/edit/masks/neighbours.h"
 #include "engine/edit/masks/view_vote.h"
 #include "engine/edit/masks/word_mask.h"
 #include "engine/edit/request/colour_word.h"
-#include "engine/edit/search/place_drawing.h"
 #include "engine/language/words.h"
 
 namespace gse::edit {

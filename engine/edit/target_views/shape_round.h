@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/edit/interfaces/edit_plan.h"
 #include "engine/edit/interfaces/interfaces.h"
-#include "engine/edit/optimise/edit_loop.h"
 #include "engine/edit/placement/visual_hull.h"
 
 namespace gse::edit {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "engine/base/check.h"
 #include "engine/base/log.h"
@@ -28,8 +27,6 @@ Mask eroded(Mask mask, double radius_px) {
 constexpr double FeatherPx = 3;                // of a picture of ReferenceSide (views.md 8.6)
 constexpr std::uint64_t ColourStream = 39000;  // of the request's seed
 constexpr double StrengthRaise = 0.1;          // of redrawing that hardly changed anything (views.md 12)
-constexpr double LeastCover =
-    0.01;  // of the picture: smaller things are not worth a redrawn view (views.md 8)
 
 /// The pictures that the model draws, one per view; what is not finite in them is counted and stays as the
 /// scene is.
@@ -95,31 +92,6 @@ EditRequest loop_request(EditRequest request, EditMode mode, bool by_views,
     }
     request.densify_until = 1 - 0.5 / plan.rounds;
     return request;
-}
-
-std::vector<std::size_t> views_to_redraw(const std::vector<View>& views, const std::vector<double>& covered,
-                                         std::size_t count) {
-    GSE_CHECK_EQ(views.size(), covered.size());
-    const double most = covered.empty() ? 0 : *std::max_element(covered.begin(), covered.end());
-    if (!(most > 0)) return {};
-    const double least = std::min(LeastCover, most);
-    std::vector<std::size_t> chosen{
-        static_cast<std::size_t>(std::max_element(covered.begin(), covered.end()) - covered.begin())};
-    std::vector<double> distance(views.size(), std::numeric_limits<double>::infinity());
-    while (chosen.size() < count) {
-        const Vec3 last = views[chosen.back()].camera.centre();
-        distance[chosen.back()] = -1;
-        std::size_t farthest = views.size();
-        for (std::size_t v = 0; v < views.size(); ++v) {
-            distance[v] = std::min(distance[v], length(views[v].camera.centre() - last));
-            const bool counts = covered[v] >= least && distance[v] >= 0;
-            if (counts && (farthest == views.size() || distance[v] > distance[farthest])) farthest = v;
-        }
-        if (farthest == views.size()) break;
-        chosen.push_back(farthest);
-    }
-    std::sort(chosen.begin(), chosen.end());
-    return chosen;
 }
 
 Image blend_inside(const Image& edited, const Image& original, const Mask& mask, double feather_px) {

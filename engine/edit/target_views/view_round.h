@@ -7,18 +7,15 @@
 #include <string>
 #include <vector>
 
+#include "engine/edit/interfaces/edit_plan.h"
 #include "engine/edit/interfaces/interfaces.h"
 #include "engine/edit/interfaces/view_targets.h"
-#include "engine/edit/optimise/edit_loop.h"
-#include "engine/edit/optimise/preservation_loss.h"
+#include "engine/edit/masks/view_choice.h"
 #include "engine/edit/request/request.h"
 #include "engine/edit/target_views/shape_round.h"
 #include "engine/edit/target_views/view_agreement.h"
 
 namespace gse::edit {
-
-/// Of fits to redrawn views, which do not agree: the absolute difference alone is the median over them.
-constexpr PreservationWeights FitWeights{1, 0, 10};
 
 /// The request as the loop goes by it, with what suits the kind of edit. With view guidance the steps are
 /// those of the fits, what is fitted has no mask to follow, and growth comes once in the middle of each round
@@ -31,12 +28,6 @@ EditRequest loop_request(EditRequest request, EditMode mode, bool by_views,
 /// What of that follows from `supports_appearance_editing` alone: shapes are shown, so that views begin from
 /// noise alone, in steps of their own number.
 EditRequest restyling(EditRequest request, EditMode mode);
-
-/// Indices of the views to redraw, ascending: farthest-point sample of the cameras among those of which what
-/// may change covers a share of the picture, starting with the view that shows most of it. `covered`: share
-/// of each view's picture.
-std::vector<std::size_t> views_to_redraw(const std::vector<View>& views, const std::vector<double>& covered,
-                                         std::size_t count);
 
 /// F edited + (1 - F) original, where F is the mask, feathered inwards by `feather_px`: outside the mask the
 /// original stays bit by bit.

@@ -8,7 +8,7 @@
 #include "engine/base/file.h"
 #include "engine/base/json.h"
 #include "engine/base/log.h"
-#include "engine/edit/target_views/strategies/colour_remap.h"
+#include "engine/edit/request/dye_words.h"
 #ifdef GSE_NEURAL
 #include "engine/language/lexicon.h"
 #include "engine/language/vocabulary.h"

@@ -1,5 +1,6 @@
 // Puts guidance, masks and loop together.
 #include "engine/pipeline/run/loop.h"
+#include "engine/edit/search/make_plan.h"
 
 #include <utility>
 

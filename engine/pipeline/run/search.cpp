@@ -1,5 +1,6 @@
 // Reads the scene, looks, moves in, looks again.
 #include "engine/pipeline/run/search.h"
+#include "engine/edit/request/decide_mode.h"
 
 #include <fmt/format.h>
 
@@ -17,11 +18,11 @@
 #include "engine/edit/placement/head.h"
 #include "engine/edit/placement/placement_volume.h"
 #include "engine/edit/placement/upright_bounds.h"
+#include "engine/edit/request/dye_words.h"
 #include "engine/edit/request/excluded_views.h"
 #include "engine/edit/search/front_reading.h"
 #include "engine/edit/search/place_drawing.h"
 #include "engine/edit/search/scene_reading.h"
-#include "engine/edit/target_views/strategies/colour_remap.h"
 #include "engine/language/grammar.h"
 #include "engine/language/news.h"
 #include "engine/language/sentence.h"

@@ -13,6 +13,7 @@
 #include "engine/base/error.h"
 #include "engine/edit/optimise/edit_loop.h"
 #include "engine/edit/search/locate.h"
+#include "engine/edit/search/make_plan.h"
 #include "engine/evaluate/metrics.h"
 #include "engine/laboratory/synth/synth.h"
 #include "engine/localize/clusters.h"

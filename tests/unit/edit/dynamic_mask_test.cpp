@@ -3,7 +3,8 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
-#include "engine/edit/optimise/dynamic_mask.h"
+#include "engine/edit/masks/dynamic_mask.h"
+#include "engine/edit/optimise/convergence.h"
 #include "engine/edit/placement/voxel_region.h"
 #include "tests/unit/edit/edit_scenes.h"
 

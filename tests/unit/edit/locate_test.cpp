@@ -6,6 +6,7 @@
 #include "engine/base/log.h"
 #include "engine/edit/search/cached_attention.h"
 #include "engine/edit/search/grabcut_segmenter.h"
+#include "engine/edit/search/make_plan.h"
 #include "engine/language/words.h"
 #include "tests/unit/edit/edit_scenes.h"
 

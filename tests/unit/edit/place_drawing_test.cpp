@@ -9,6 +9,8 @@
 
 #include "engine/base/error.h"
 #include "engine/base/log.h"
+#include "engine/edit/masks/drawn_thing.h"
+#include "engine/edit/search/make_plan.h"
 #include "engine/edit/search/place_drawing.h"
 #include "tests/unit/edit/edit_scenes.h"
 

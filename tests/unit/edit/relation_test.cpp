@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "engine/edit/request/decide_mode.h"
 #include "engine/edit/request/request.h"
 #include "engine/edit/search/locate.h"
 #include "engine/language/lexicon.h"

@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "engine/edit/request/decide_mode.h"
 #include "engine/edit/request/edit_method.h"
 #include "engine/edit/request/request.h"
 #include "engine/edit/request/vocabulary.h"

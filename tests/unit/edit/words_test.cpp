@@ -5,6 +5,7 @@
 #include <string>
 
 #include "engine/base/error.h"
+#include "engine/edit/request/decide_mode.h"
 #include "engine/edit/request/request.h"
 #include "engine/edit/request/vocabulary.h"
 #include "engine/edit/search/locate.h"

@@ -16,52 +16,6 @@ namespace {
 
 using Rgb = std::array<float, 3>;
 
-struct Name {
-    const char* word;
-    unsigned rgb;
-};
-
-// Single words of CSS Color 4 (W3C), some of them as painters mean them, and painters' own.
-constexpr Name Names[] = {
-    {"red", 0xd91212},        {"blue", 0x1a38e0},      {"green", 0x088c29},       {"yellow", 0xfce014},
-    {"purple", 0x851fb8},     {"orange", 0xfa780a},    {"black", 0x17171a},       {"white", 0xf2f2f0},
-    {"pink", 0xfa73ad},       {"brown", 0x663314},     {"gray", 0x78787a},        {"grey", 0x78787a},
-    {"turquoise", 0x0fc2bd},  {"teal", 0x008080},      {"cyan", 0x00d5e0},        {"aqua", 0x20d8d8},
-    {"aquamarine", 0x70e8c4}, {"azure", 0x3f9fe8},     {"navy", 0x10185c},        {"indigo", 0x3c1a82},
-    {"violet", 0x8a4fe0},     {"magenta", 0xe0189c},   {"fuchsia", 0xf030b0},     {"crimson", 0xbe1236},
-    {"scarlet", 0xf0280c},    {"maroon", 0x6c1020},    {"burgundy", 0x6a0f2c},    {"coral", 0xff7050},
-    {"salmon", 0xfa8a78},     {"peach", 0xffbe98},     {"tan", 0xcaa472},         {"beige", 0xe6d8b8},
-    {"ivory", 0xf8f2da},      {"cream", 0xfaeec2},     {"khaki", 0xb4a468},       {"olive", 0x6c7018},
-    {"lime", 0x8ee010},       {"mint", 0x96ecbe},      {"emerald", 0x0c9c5e},     {"jade", 0x24a878},
-    {"lavender", 0xb8a4ec},   {"lilac", 0xc8a0d8},     {"plum", 0x80306c},        {"mauve", 0xb884b0},
-    {"ruby", 0xb80c40},       {"sapphire", 0x1040a8},  {"amber", 0xfaac10},       {"mustard", 0xd2a41c},
-    {"ochre", 0xc07c24},      {"chocolate", 0x4a240e}, {"caramel", 0xb8702c},     {"chestnut", 0x803a20},
-    {"sienna", 0x984824},     {"umber", 0x644a34},     {"charcoal", 0x38393e},    {"slate", 0x5c6a78},
-    {"ebony", 0x241c1a},      {"cobalt", 0x0c44ac},    {"ultramarine", 0x2018a0}, {"denim", 0x2c5c90},
-    {"chartreuse", 0xa8e810}, {"rust", 0xa0441a},      {"vermilion", 0xe64022},   {"periwinkle", 0x8c94ee}};
-
-struct Metal {
-    const char* word;
-    unsigned lit, shade;
-};
-
-constexpr Metal Metals[] = {{"silver", 0xf6f9ff, 0x1f2129},   {"bronze", 0xea9e66, 0x240f08},
-                            {"copper", 0xfa9468, 0x34100a},   {"brass", 0xf2dc7c, 0x3a2a08},
-                            {"chrome", 0xffffff, 0x101216},   {"steel", 0xc8d0dc, 0x22272e},
-                            {"platinum", 0xf4f2ec, 0x34342f}, {"pewter", 0xa8acac, 0x26282a},
-                            {"gold", 0xf8dc78, 0x3c2004},     {"golden", 0xf8dc78, 0x3c2004}};
-
-/// What "dark" and the like make of a colour: its share, and that of white.
-struct Modifier {
-    const char* word;
-    float own, white;
-};
-
-constexpr Modifier Modifiers[] = {
-    {"dark", 0.45f, 0}, {"light", 0.6f, 0.4f}, {"pale", 0.45f, 0.52f}, {"deep", 0.65f, 0}};
-
-constexpr const char* PlainBase = "red";
-constexpr const char* MetalBase = "golden";
 constexpr Rgb Red{0.85f, 0.07f, 0.07f};  // as models draw it where light falls on it
 // Degrees from the hue that most of a thing has which was drawn red: up to the first a pixel counts as that,
 // beyond the second it has a colour of its own. What cannot be called red is no thing's hue.
@@ -76,25 +30,15 @@ Rgb rgb_of(unsigned value) {
             static_cast<float>(value & 255) / 255};
 }
 
-template <class List> auto find_word(const List& list, const std::string& word) {
-    return std::find_if(std::begin(list), std::end(list),
-                        [&](const auto& entry) { return word == entry.word; });
-}
-
-template <class List> bool has(const List& list, const std::string& word) {
-    return find_word(list, word) != std::end(list);
-}
-
 bool contains(const std::vector<std::string>& words, const std::string& word) {
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
 std::optional<ColourRemap> dye_named(const std::string& word, const std::vector<std::string>& known) {
     ColourRemap dye{{word}, PlainBase, {}, {}, false};
-    if (const auto name = find_word(Names, word); name != std::end(Names)) {
+    if (const auto* name = colour_named(word); name != nullptr) {
         dye.colour = rgb_of(name->rgb);
-    } else if (const auto metal = find_word(Metals, word);
-               metal != std::end(Metals) && contains(known, MetalBase)) {
+    } else if (const auto* metal = metal_named(word); metal != nullptr && contains(known, MetalBase)) {
         dye.base = MetalBase, dye.metal = true;
         dye.colour = rgb_of(metal->lit), dye.shade = rgb_of(metal->shade);
     } else {
@@ -103,7 +47,7 @@ std::optional<ColourRemap> dye_named(const std::string& word, const std::vector<
     return dye;
 }
 
-void modify(const Modifier& modifier, ColourRemap& dye) {
+void modify(const ColourModifier& modifier, ColourRemap& dye) {
     for (auto* colour : {&dye.colour, &dye.shade})
         for (auto& channel : *colour) channel = modifier.own * channel + modifier.white;
 }
@@ -118,13 +62,13 @@ std::optional<ColourRemap> patterned(const std::vector<std::string>& words, std:
     ColourRemap dye{{words[index]}, PlainBase, {}, {}, false, pattern};
     if (!takes_colours(pattern->kind)) return dye;
     const auto colour_at_place = [&](std::size_t i) {
-        return i >= begin && i < end ? find_word(Names, words[i]) : std::end(Names);
+        return i >= begin && i < end ? colour_named(words[i]) : nullptr;
     };
-    const auto before = colour_at_place(index - 1),
-               after = colour_at_place(index + 1);  // begin is 0: the one before is beyond every end
-    const auto name = before != std::end(Names) ? before : after;
-    if (name == std::end(Names)) return dye;
-    dye.words.insert(before != std::end(Names) ? dye.words.begin() : dye.words.end(), name->word);
+    const auto *before = colour_at_place(index - 1),
+               *after = colour_at_place(index + 1);  // begin is 0: the one before is beyond every end
+    const auto* name = before != nullptr ? before : after;
+    if (name == nullptr) return dye;
+    dye.words.insert(before != nullptr ? dye.words.begin() : dye.words.end(), name->word);
     dye.pattern->first = vec_of(rgb_of(name->rgb));
     if (std::string(name->word) == "white") dye.pattern->second = {0.08, 0.08, 0.09};
     return dye;
@@ -196,27 +140,6 @@ Rgb dyed_gold(const Rgb& pixel, const ColourRemap& dye) {
 
 }  // namespace
 
-std::vector<std::string> dye_words(const std::vector<std::string>& known) {
-    std::vector<std::string> words;
-    if (!contains(known, PlainBase)) return words;
-    const auto add = [&](const auto& list) {
-        for (const auto& entry : list)
-            if (!contains(known, entry.word)) words.emplace_back(entry.word);
-    };
-    add(Names);
-    if (contains(known, MetalBase)) add(Metals);
-    add(Modifiers);
-    for (const auto& word : pattern_words())
-        if (!contains(known, word)) words.push_back(word);
-    return words;
-}
-
-std::vector<std::string> with_dyes(std::vector<std::string> drawn, const std::vector<std::string>& known) {
-    const auto dyes = dye_words(language::promptable_vocabulary(known, drawn));
-    drawn.insert(drawn.end(), dyes.begin(), dyes.end());
-    return drawn;
-}
-
 std::optional<ColourRemap> dye_of(const EditRequest& request, EditMode mode,
                                   const std::vector<std::string>& known) {
     if (!contains(known, PlainBase)) return std::nullopt;
@@ -231,8 +154,8 @@ std::optional<ColourRemap> dye_of(const EditRequest& request, EditMode mode,
     for (std::size_t i = end; i-- > begin;) {
         auto dye = dye_named(words[i], known);
         if (!dye) continue;
-        const auto modifier = i > begin ? find_word(Modifiers, words[i - 1]) : std::end(Modifiers);
-        if (modifier != std::end(Modifiers)) {
+        const auto* modifier = i > begin ? modifier_named(words[i - 1]) : nullptr;
+        if (modifier != nullptr) {
             modify(*modifier, *dye);
             dye->words.insert(dye->words.begin(), words[i - 1]);
         } else if (contains(known, words[i])) {

@@ -10,6 +10,7 @@
 
 #include "engine/edit/interfaces/interfaces.h"
 #include "engine/edit/placement/upright_bounds.h"
+#include "engine/edit/request/dye_words.h"
 #include "engine/edit/request/request.h"
 #include "engine/scene/surface_pattern.h"
 
@@ -27,14 +28,6 @@ struct ColourRemap {
     std::optional<SurfacePattern> pattern =
         {};  // instead of one colour; it is laid over what the edit has come to, by dye_rows()
 };
-
-/// Names of colours (CSS Color 4's that are one word, painters' names, metals), "dark", "light", "pale",
-/// "deep" that may stand before one, and pattern_words(), beside which one may stand. Empty where a model of
-/// the words `known` has none to draw them in, or takes any word.
-std::vector<std::string> dye_words(const std::vector<std::string>& known);
-
-/// `drawn`, words that a model of the words `known` draws besides, with the dyes behind it.
-std::vector<std::string> with_dyes(std::vector<std::string> drawn, const std::vector<std::string>& known);
 
 /// The dye for what a validated request makes: the name of a colour in its target, or right before it, that
 /// is not in `known`, or that "dark" or the like stands before. What is added or comes in a thing's place may

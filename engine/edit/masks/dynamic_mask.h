@@ -1,13 +1,12 @@
-// Masks that follow an edit as it grows, and the test whether it still changes (GSEditPro 3.4; METHOD.md,
-// Dynamic masks).
+// Masks that follow an edit as it grows (GSEditPro 3.4; METHOD.md, Dynamic masks).
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "engine/edit/interfaces/edit_plan.h"
 #include "engine/edit/interfaces/interfaces.h"
-#include "engine/edit/optimise/edit_loop.h"
 #include "engine/edit/request/request.h"
 
 namespace gse::edit {
@@ -47,25 +46,6 @@ private:
     std::vector<Image> soft_;               // [H,W,1] running mean of what was found
     std::vector<int> last_refresh_;         // iteration, -1 = never
     std::size_t refreshed_ = 0, kept_ = 0;
-};
-
-/// Tells when an edit has come to rest: the mean absolute change inside the mask between two visits of the
-/// same view, as an exponential mean (0.98 a step, corrected for its start), has been below
-/// `EditRequest::early_stop_change` for every view.
-class ConvergenceDetector {
-public:
-    ConvergenceDetector(std::size_t views, double least_change)
-        : last_(views), change_(views, -1), least_change_(least_change) {}
-    /// This view is never drawn.
-    void ignore(std::size_t view) { change_[view] = 0; }
-    /// A view was drawn. Returns true when the edit has come to rest.
-    bool visit(std::size_t view, const Image& shown, const Mask& mask);
-
-private:
-    std::vector<Image> last_;
-    std::vector<double> change_;  // of the last two visits, -1 = not visited twice yet
-    double mean_ = 0, weight_ = 0;
-    double least_change_;
 };
 
 }  // namespace gse::edit

@@ -1,6 +1,6 @@
 // From a finished edit to a weaker or stronger one: its delta at a strength, and what every row of that came
 // from.
-#include "engine/edit/request/edit_strength.h"
+#include "engine/edit/optimise/edit_strength.h"
 
 #include <numeric>
 

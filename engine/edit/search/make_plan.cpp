@@ -1,11 +1,12 @@
-// From what was located to what the edit loop works on.
+// Masks grown and joined with the label, the room of what is new, its colour.
+#include "engine/edit/search/make_plan.h"
+
 #include <algorithm>
 
 #include "engine/base/check.h"
 #include "engine/edit/masks/view_vote.h"
 #include "engine/edit/placement/placement_volume.h"
 #include "engine/edit/request/colour_word.h"
-#include "engine/edit/search/locate.h"
 #include "engine/language/description.h"
 #include "engine/language/words.h"
 #include "engine/localize/clusters.h"

@@ -1,5 +1,5 @@
-// Refreshing, joining and smoothing of masks; the detector of rest.
-#include "engine/edit/optimise/dynamic_mask.h"
+// Refreshing, joining and smoothing of masks.
+#include "engine/edit/masks/dynamic_mask.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,6 @@ constexpr double LabelReachPx = 8;                // of a 512-pixel picture
 constexpr float Memory = 0.5f;                    // weight of the mask before
 constexpr float TurnsOn = 0.6f, TurnsOff = 0.4f;  // hysteresis
 constexpr double LargestGrowth = 3;               // times the static area; beyond, the mask has run away
-constexpr double RestMemory = 0.98;               // share of the mean change that stays, a step
 
 /// What replaces the word ("on the snow" that was "on the grass") is looked for once the edit shows it.
 std::string word_after(const EditRequest& request, std::string word) {
@@ -90,27 +89,6 @@ void DynamicMasks::refresh(std::size_t view, int iteration, const Image& shown, 
         auto& bit = masks_[view].data[i];
         bit = soft > TurnsOn ? 1 : soft < TurnsOff ? 0 : bit;
     }
-}
-
-bool ConvergenceDetector::visit(std::size_t view, const Image& shown, const Mask& mask) {
-    Image& last = last_[view];
-    if (last.data.size() == shown.data.size()) {
-        double sum = 0;
-        std::size_t count = 0;
-        for (std::size_t i = 0; i < mask.data.size(); ++i) {
-            if (mask.data[i] == 0) continue;
-            ++count;
-            for (std::size_t c = 0; c < 3; ++c) sum += std::abs(shown.data[i * 3 + c] - last.data[i * 3 + c]);
-        }
-        change_[view] = count > 0 ? sum / (3.0 * static_cast<double>(count)) : 0;
-        mean_ = RestMemory * mean_ + (1 - RestMemory) * change_[view];
-        weight_ = RestMemory * weight_ + (1 - RestMemory);
-    }
-    last = shown;
-    const bool all_seen = std::all_of(change_.begin(), change_.end(), [this](double change) {
-        return change >= 0 && change < least_change_;
-    });
-    return all_seen && mean_ / weight_ < least_change_;
 }
 
 }  // namespace gse::edit

@@ -1,0 +1,21 @@
+// Which kind of edit a sentence asks for.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "engine/edit/request/request.h"
+
+namespace gse::edit {
+
+/// Decides "auto" from the sentence and, when there is a text segmenter, from whether it finds the target
+/// word. Returns the mode and the reason.
+std::pair<EditMode, std::string> decide_mode(const EditRequest& request,
+                                             std::optional<double> target_found_share);
+
+/// Whether something is added whose place no word names ("beside the bear" does): then it can be seen by
+/// drawing it.
+bool draws_place(const EditRequest& request, EditMode mode);
+
+}  // namespace gse::edit

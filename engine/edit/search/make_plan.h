@@ -1,0 +1,13 @@
+// From what was located to what the edit loop works on.
+#pragma once
+
+#include "engine/edit/interfaces/edit_plan.h"
+#include "engine/edit/search/locate.h"
+
+namespace gse::edit {
+
+/// The plan of the edit loop from what was located: masks dilated as the request says and joined with the
+/// label's own render, so that a view whose mask missed part of the label does not pull it back.
+EditPlan make_plan(const LocateInput& input, const LocateResult& located, raster::Rasterizer& rasterizer);
+
+}  // namespace gse::edit
