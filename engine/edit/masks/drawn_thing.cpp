@@ -21,7 +21,8 @@ constexpr float LeastDifference =
 // attention is certain (a black hat before the dark). What has little attention counts little, but counts:
 // the attention often leaves out one of two wings.
 constexpr float LeastChange = 0.1f, CertainChange = 0.03f, AttentionFloor = 0.5f;
-constexpr double RimPx = 3;  // of a told outline: beyond it what is covered in part belongs to something else
+constexpr double OutlineRimPx =
+    3;  // of a told outline: beyond it what is covered in part belongs to something else
 constexpr double LeastPart = 0.2;  // attention of a part beside that of the largest: a pair of wings has two
 constexpr double LeastArea = 0.002;  // of the picture
 
@@ -53,7 +54,7 @@ Image told_thing(const Image& outline, const Mask& inside) {
     for (std::size_t i = 0; i < share.data.size(); ++i)
         if (inside.data[i] == 0 || !(share.data[i] > 0)) share.data[i] = 0;  // also what is not a number
     const Mask half = covered_pixels(share), whole = cleaned(half, share),
-               near = localize::dilate(whole, RimPx);
+               near = localize::dilate(whole, OutlineRimPx);
     for (std::size_t i = 0; i < share.data.size(); ++i) {
         if (near.data[i] == 0) share.data[i] = 0;
         if (whole.data[i] != 0 && half.data[i] == 0)

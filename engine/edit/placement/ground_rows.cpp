@@ -13,7 +13,7 @@
 namespace gse::edit {
 namespace {
 
-using Colour = std::array<float, 3>;
+using RowColour = std::array<float, 3>;
 
 constexpr double Thickness = 0.04;  // of the thing's height, up and down: the ground's rows
 constexpr double Around = 1.5;      // of the thing's half width: ground so far out is compared with
@@ -21,19 +21,19 @@ constexpr double MostLow = 0.5;     // of the label: more of it is a ground itse
 constexpr double Nearer = 0.5;      // distance to the ground's colour, over that to the thing's
 constexpr double Apart =
     0.1;  // of a coefficient, 0.03 of a channel: colours of a thing nearer to a row are its own
-constexpr std::size_t LeastGround = 20;  // rows that make a ground
+constexpr std::size_t LeastGroundRows = 20;  // rows that make a ground
 constexpr std::size_t LeastBeside =
     5;  // of them beyond the thing's half width, in each of four quarters: a ground reaches out on all sides
 constexpr std::size_t MostColours = 600;  // of each that a row is compared with
 
 /// Evenly chosen ones of many.
-void thin_out(std::vector<Colour>& colours) {
+void thin_out(std::vector<RowColour>& colours) {
     if (colours.size() <= MostColours) return;
     for (std::size_t i = 0; i < MostColours; ++i) colours[i] = colours[i * colours.size() / MostColours];
     colours.resize(MostColours);
 }
 
-float nearest(const std::vector<Colour>& colours, const Colour& to) {
+float nearest(const std::vector<RowColour>& colours, const RowColour& to) {
     float least = std::numeric_limits<float>::infinity();
     for (const auto& colour : colours) {
         float squared = 0;
@@ -56,9 +56,9 @@ std::vector<std::size_t> ground_rows(const GaussianSet& set, const std::vector<s
     const auto stride = static_cast<std::size_t>(sh_coefficient_count(set.sh_degree())) * 3;
     const auto colour = [&](std::size_t row) {
         const auto sh = set.sh().subspan(row * stride, 3);
-        return Colour{sh[0], sh[1], sh[2]};
+        return RowColour{sh[0], sh[1], sh[2]};
     };
-    std::vector<Colour> ground, thing;
+    std::vector<RowColour> ground, thing;
     std::vector<std::size_t> low;
     std::array<std::size_t, 4> beside{};
     for (std::size_t row = 0; row < bits.size(); ++row) {
@@ -77,7 +77,7 @@ std::vector<std::size_t> ground_rows(const GaussianSet& set, const std::vector<s
             thing.push_back(colour(row));
         }
     }
-    if (ground.size() < LeastGround || *std::min_element(beside.begin(), beside.end()) < LeastBeside)
+    if (ground.size() < LeastGroundRows || *std::min_element(beside.begin(), beside.end()) < LeastBeside)
         return {};
     if (static_cast<double>(low.size()) > MostLow * static_cast<double>(low.size() + thing.size())) return {};
     thin_out(ground);

@@ -11,7 +11,7 @@ namespace gse::edit {
 namespace {
 
 // Single words of CSS Color 4 (W3C), some of them as painters mean them, and painters' own.
-constexpr NamedColour Names[] = {
+constexpr NamedColour ColourNames[] = {
     {"red", 0xd91212},        {"blue", 0x1a38e0},      {"green", 0x088c29},       {"yellow", 0xfce014},
     {"purple", 0x851fb8},     {"orange", 0xfa780a},    {"black", 0x17171a},       {"white", 0xf2f2f0},
     {"pink", 0xfa73ad},       {"brown", 0x663314},     {"gray", 0x78787a},        {"grey", 0x78787a},
@@ -50,7 +50,7 @@ bool lists_word(const std::vector<std::string>& words, const std::string& word) 
 
 }  // namespace
 
-const NamedColour* colour_named(const std::string& word) { return entry_of(Names, word); }
+const NamedColour* colour_named(const std::string& word) { return entry_of(ColourNames, word); }
 const NamedMetal* metal_named(const std::string& word) { return entry_of(Metals, word); }
 const ColourModifier* modifier_named(const std::string& word) { return entry_of(Modifiers, word); }
 
@@ -61,7 +61,7 @@ std::vector<std::string> dye_words(const std::vector<std::string>& known) {
         for (const auto& entry : list)
             if (!lists_word(known, entry.word)) words.emplace_back(entry.word);
     };
-    add(Names);
+    add(ColourNames);
     if (lists_word(known, MetalBase)) add(Metals);
     add(Modifiers);
     for (const auto& word : pattern_words())

@@ -17,7 +17,7 @@ constexpr double Pi = std::numbers::pi;
 constexpr int Fronts = 72;  // that are tried
 constexpr double FrontLimit = 50 * Pi / 180,
                  BackLimit = 130 * Pi / 180;  // as far as one says "front view", from where "back view"
-const std::array<std::string, 3> Sides{"front view", "side view", "back view"};
+const std::array<std::string, 3> SideWords{"front view", "side view", "back view"};
 
 std::size_t side_at(double azimuth) {
     const double turned = std::abs(std::remainder(azimuth, 2 * Pi));
@@ -31,12 +31,12 @@ std::vector<std::array<double, 3>> centred_fits(VocabularyRanker& recognition, c
     std::array<double, 3> of_side{};
     for (std::size_t i = 0; i < pictures.size(); ++i) {
         double mean = 0;
-        for (std::size_t s = 0; s < Sides.size(); ++s)
-            mean += fits[i][s] = recognition.fit(sentence + ", " + Sides[s], {&pictures[i]});
-        for (std::size_t s = 0; s < Sides.size(); ++s) of_side[s] += fits[i][s] -= mean / 3;
+        for (std::size_t s = 0; s < SideWords.size(); ++s)
+            mean += fits[i][s] = recognition.fit(sentence + ", " + SideWords[s], {&pictures[i]});
+        for (std::size_t s = 0; s < SideWords.size(); ++s) of_side[s] += fits[i][s] -= mean / 3;
     }
     for (auto& fit : fits)
-        for (std::size_t s = 0; s < Sides.size(); ++s)
+        for (std::size_t s = 0; s < SideWords.size(); ++s)
             fit[s] -= of_side[s] / static_cast<double>(pictures.size());
     return fits;
 }
@@ -78,7 +78,7 @@ const std::string& sector(long index) {
 
 std::string view_words(double azimuth, bool sided) {
     return sided ? sector(std::lround(std::remainder(azimuth, 2 * Pi) / SectorWidth))
-                 : Sides[side_at(azimuth)];
+                 : SideWords[side_at(azimuth)];
 }
 
 SideBlend side_blend(double azimuth) {

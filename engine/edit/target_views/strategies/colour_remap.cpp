@@ -1,4 +1,4 @@
-// Names of colours, and pixels of one colour in another.
+// Pixels of one colour in another.
 #include "engine/edit/target_views/strategies/colour_remap.h"
 
 #include <algorithm>
@@ -30,7 +30,7 @@ Rgb rgb_of(unsigned value) {
             static_cast<float>(value & 255) / 255};
 }
 
-bool contains(const std::vector<std::string>& words, const std::string& word) {
+bool lists_dye(const std::vector<std::string>& words, const std::string& word) {
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
@@ -38,7 +38,7 @@ std::optional<ColourRemap> dye_named(const std::string& word, const std::vector<
     ColourRemap dye{{word}, PlainBase, {}, {}, false};
     if (const auto* name = colour_named(word); name != nullptr) {
         dye.colour = rgb_of(name->rgb);
-    } else if (const auto* metal = metal_named(word); metal != nullptr && contains(known, MetalBase)) {
+    } else if (const auto* metal = metal_named(word); metal != nullptr && lists_dye(known, MetalBase)) {
         dye.base = MetalBase, dye.metal = true;
         dye.colour = rgb_of(metal->lit), dye.shade = rgb_of(metal->shade);
     } else {
@@ -142,7 +142,7 @@ Rgb dyed_gold(const Rgb& pixel, const ColourRemap& dye) {
 
 std::optional<ColourRemap> dye_of(const EditRequest& request, EditMode mode,
                                   const std::vector<std::string>& known) {
-    if (!contains(known, PlainBase)) return std::nullopt;
+    if (!lists_dye(known, PlainBase)) return std::nullopt;
     const auto words = language::words_of(request.prompt);
     const std::size_t target = language::position_of(request.prompt, request.target);
     if (target >= words.size()) return std::nullopt;
@@ -150,7 +150,8 @@ std::optional<ColourRemap> dye_of(const EditRequest& request, EditMode mode,
     std::size_t end = target + language::words_of(request.target).size();
     if (mode != EditMode::Modify) --end;  // the thing itself, whatever it is called
     for (std::size_t i = begin; i < end; ++i)
-        if (auto dye = contains(known, words[i]) ? std::nullopt : patterned(words, begin, i, end)) return dye;
+        if (auto dye = lists_dye(known, words[i]) ? std::nullopt : patterned(words, begin, i, end))
+            return dye;
     for (std::size_t i = end; i-- > begin;) {
         auto dye = dye_named(words[i], known);
         if (!dye) continue;
@@ -158,7 +159,7 @@ std::optional<ColourRemap> dye_of(const EditRequest& request, EditMode mode,
         if (modifier != nullptr) {
             modify(*modifier, *dye);
             dye->words.insert(dye->words.begin(), words[i - 1]);
-        } else if (contains(known, words[i])) {
+        } else if (lists_dye(known, words[i])) {
             return std::nullopt;  // the model's own word
         }
         return dye;
