@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "app/session/state/located_label.h"
 #include "engine/language/grammar.h"
 #include "engine/pipeline/models/segmenters.h"
 #include "engine/pipeline/run/scene_tools.h"
@@ -21,6 +22,9 @@ namespace gse::app {
 namespace {
 
 namespace command = ui::command;
+
+// Splats: of more, a label is decided when its threshold is let go.
+constexpr std::size_t MostDecidedWhileDragging = 200000;
 
 ScreenArea screen_area(const ui::ScreenRegion& region) {
     return {region.polygon, region.circles, region.radius_px};
@@ -79,9 +83,12 @@ template <> void LabelController::on(const command::SetLabelThreshold& one) {
     change_label(
         fmt::format("Threshold {:.2f}", one.value),
         [&](NamedLabel label) {
-            if (label.attention_threshold >= 0)
-                search_.set_label_threshold(std::stod(fmt::format("{:.4f}", one.value)));
-            return with_threshold(std::move(label), one.value);
+            const double threshold = std::stod(fmt::format("{:.4f}", one.value));
+            if (label.attention_threshold >= 0) search_.set_label_threshold(threshold);
+            const auto& set = state().current;
+            return one.drag_ends || set.size() <= MostDecidedWhileDragging
+                       ? at_threshold(std::move(label), set, threshold)
+                       : with_threshold(std::move(label), static_cast<float>(threshold));
         },
         fmt::format("threshold{}", workspace_.stroke));
     if (one.drag_ends) ++workspace_.stroke;

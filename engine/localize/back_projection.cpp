@@ -22,15 +22,15 @@ void require_votes(std::span<const MaskedView> views) {
             "name something the scene shows and the model knows, or lower the attention threshold");
 }
 
-LabelWeights weights_of(const std::vector<double>& masked, std::vector<double> total, int views_used) {
+LabelField field_of(const std::vector<double>& masked, std::vector<double> total, int views_used) {
     constexpr double least_total = 1e-8;
-    LabelWeights result;
+    LabelField result;
     result.views_used = views_used;
-    result.weight.resize(total.size());
+    result.probability.resize(total.size());
     for (std::size_t row = 0; row < total.size(); ++row)
-        result.weight[row] =
+        result.probability[row] =
             static_cast<float>(std::clamp(masked[row] / std::max(total[row], least_total), 0.0, 1.0));
-    result.evidence = std::move(total);
+    result.coverage = std::move(total);
     return result;
 }
 
@@ -78,8 +78,8 @@ void VoteCache::keep(const MaskedView& view, std::size_t shown, Vote* old) {
     else if (!vote.mask.data.empty()) votes_.push_back(std::move(vote));
 }
 
-LabelWeights VoteCache::back_project(const GaussianSpans& gaussians, std::span<const MaskedView> views,
-                                     const raster::Settings& settings, raster::Rasterizer& rasterizer) {
+LabelField VoteCache::back_project(const GaussianSpans& gaussians, std::span<const MaskedView> views,
+                                   const raster::Settings& settings, raster::Rasterizer& rasterizer) {
     require_votes(views);
     std::vector<double> masked(gaussians.size), total(gaussians.size);
     int used = 0;
@@ -101,11 +101,11 @@ LabelWeights VoteCache::back_project(const GaussianSpans& gaussians, std::span<c
         }
         keep(view, shown, known);
     }
-    return weights_of(masked, std::move(total), used);
+    return field_of(masked, std::move(total), used);
 }
 
-LabelWeights back_project(const GaussianSpans& gaussians, std::span<const MaskedView> views,
-                          const raster::Settings& settings, raster::Rasterizer& rasterizer) {
+LabelField back_project(const GaussianSpans& gaussians, std::span<const MaskedView> views,
+                        const raster::Settings& settings, raster::Rasterizer& rasterizer) {
     require_votes(views);
     std::vector<double> masked(gaussians.size), total(gaussians.size);
     int used = 0;
@@ -114,22 +114,17 @@ LabelWeights back_project(const GaussianSpans& gaussians, std::span<const Masked
         rasterizer.contributions(gaussians, view.camera, settings, view.mask, masked, total);
         ++used;
     }
-    return weights_of(masked, std::move(total), used);
+    return field_of(masked, std::move(total), used);
 }
 
-Label label_from_weights(const std::string& name, const LabelWeights& weights, double tau,
-                         double least_evidence_px) {
-    std::vector<std::uint8_t> bits(weights.weight.size());
-    for (std::size_t row = 0; row < bits.size(); ++row) {
-        const bool known = weights.evidence[row] > least_evidence_px ||
-                           (!weights.inferred.empty() && weights.inferred[row] != 0);
-        bits[row] = weights.weight[row] > tau && known ? 1 : 0;
+std::vector<std::uint8_t> bits(const LabelField& field, double threshold, double least_coverage) {
+    std::vector<std::uint8_t> result(field.probability.size());
+    for (std::size_t row = 0; row < result.size(); ++row) {
+        const bool known =
+            field.coverage[row] > least_coverage || (!field.inferred.empty() && field.inferred[row] != 0);
+        result[row] = field.probability[row] > threshold && known ? 1 : 0;
     }
-    Label label;
-    label.name = name;
-    label.weight = std::make_shared<const std::vector<float>>(weights.weight);
-    label.bits = std::make_shared<const std::vector<std::uint8_t>>(std::move(bits));
-    return label;
+    return result;
 }
 
 }  // namespace gse::localize

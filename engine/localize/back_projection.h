@@ -1,4 +1,4 @@
-// From one mask per view to one weight per Gaussian (METHOD.md, Label voting).
+// From one mask per view to one probability per Gaussian (METHOD.md, Label voting).
 #pragma once
 
 #include <cstddef>
@@ -8,18 +8,10 @@
 #include <vector>
 
 #include "engine/raster/rasterizer.h"
+#include "engine/scene/label_field.h"
 #include "engine/scene/scene.h"
 
 namespace gse::localize {
-
-/// Votes of the views on every row.
-struct LabelWeights {
-    std::vector<float> weight;     // [N] sum(alpha T M) / sum(alpha T) over the views used, in [0,1]
-    std::vector<double> evidence;  // [N] sum(alpha T) in pixels
-    std::vector<std::uint8_t>
-        inferred;  // [N] or empty: 1 = no view saw the row, its neighbours decided (spread.h)
-    int views_used = 0;
-};
 
 /// One view's vote. A failed view (nothing found in it) does not vote.
 struct MaskedView {
@@ -29,15 +21,15 @@ struct MaskedView {
 };
 
 /// Votes of views, kept for as long as scene and settings stay, as far as their memory allows. A view that
-/// comes again with an equal mask is not rendered again. Weights are equal to the last bit.
+/// comes again with an equal mask is not rendered again. Fields are equal to the last bit.
 class VoteCache {
 public:
     static constexpr std::size_t MostBytes = std::size_t{512} << 20;
     explicit VoteCache(std::size_t most_bytes = MostBytes) : most_bytes_(most_bytes) {}
 
     /// Throws Error when more than half of the views failed or none is left.
-    LabelWeights back_project(const GaussianSpans& gaussians, std::span<const MaskedView> views,
-                              const raster::Settings& settings, raster::Rasterizer& rasterizer);
+    LabelField back_project(const GaussianSpans& gaussians, std::span<const MaskedView> views,
+                            const raster::Settings& settings, raster::Rasterizer& rasterizer);
 
 private:
     struct Vote {
@@ -58,13 +50,12 @@ private:
     std::vector<double> masked_, total_;  // of one view
 };
 
-/// Weights from a single call. Throws Error when more than half of the views failed or none is left.
-LabelWeights back_project(const GaussianSpans& gaussians, std::span<const MaskedView> views,
-                          const raster::Settings& settings, raster::Rasterizer& rasterizer);
+/// Field from a single call. Throws Error when more than half of the views failed or none is left.
+LabelField back_project(const GaussianSpans& gaussians, std::span<const MaskedView> views,
+                        const raster::Settings& settings, raster::Rasterizer& rasterizer);
 
-/// Rows with weight > tau become the label if they were seen (evidence > least_evidence_px) or their
-/// neighbours decided. The weights stay for display.
-Label label_from_weights(const std::string& name, const LabelWeights& weights, double tau,
-                         double least_evidence_px);
+/// Label [N]: 1 where the probability is above the threshold, if the row is known. A row is known by a
+/// coverage above `least_coverage` (pixels), or by its neighbours.
+std::vector<std::uint8_t> bits(const LabelField& field, double threshold, double least_coverage);
 
 }  // namespace gse::localize

@@ -22,19 +22,19 @@ constexpr double SurestProbability = 0.95;  // of a row all views agree on: syst
 constexpr double HalfTrust = 0.25;          // of the mean evidence: a row with this much counts half
 constexpr double InferredTrust = 0.25;      // of a row no view saw
 constexpr double LeastDifference = 1e-12;   // scenes of one colour
-constexpr float BeyondTau = 0.02f;          // a row that changes sides lies at least this far beyond
+constexpr float BeyondThreshold = 0.02f;    // a row that changes sides lies this far beyond
 
 struct Box {
     std::array<double, 3> low, high;
 };
 
 /// Box of the labelled rows with its margin. Nothing when none is labelled.
-bool labelled_box(const GaussianSpans& gaussians, const CutParameters& parameters,
-                  const LabelWeights& weights, Box& box) {
+bool labelled_box(const GaussianSpans& gaussians, const CutParameters& parameters, const LabelField& field,
+                  Box& box) {
     box.low.fill(std::numeric_limits<double>::max());
     box.high.fill(std::numeric_limits<double>::lowest());
     for (std::size_t row = 0; row < gaussians.size; ++row) {
-        if (weights.weight[row] <= parameters.tau || !finite_position(gaussians, row)) continue;
+        if (field.probability[row] <= parameters.threshold || !finite_position(gaussians, row)) continue;
         for (std::size_t axis = 0; axis < 3; ++axis) {
             box.low[axis] = std::min<double>(box.low[axis], gaussians.position[row * 3 + axis]);
             box.high[axis] = std::max<double>(box.high[axis], gaussians.position[row * 3 + axis]);
@@ -51,18 +51,18 @@ bool labelled_box(const GaussianSpans& gaussians, const CutParameters& parameter
     return true;
 }
 
-bool known(const LabelWeights& weights, const CutParameters& parameters, std::size_t row) {
-    return weights.evidence[row] > parameters.least_evidence_px ||
-           (!weights.inferred.empty() && weights.inferred[row] != 0);
+bool known(const LabelField& field, const CutParameters& parameters, std::size_t row) {
+    return field.coverage[row] > parameters.least_coverage ||
+           (!field.inferred.empty() && field.inferred[row] != 0);
 }
 
 /// Rows inside the box that have an opinion and a colour.
 RowPoints taking_part(const GaussianSpans& gaussians, const CutParameters& parameters,
-                      const LabelWeights& weights, const Box& box) {
+                      const LabelField& field, const Box& box) {
     RowPoints rows;
     const auto stride = static_cast<std::size_t>(sh_coefficient_count(gaussians.sh_degree)) * 3;
     for (std::size_t row = 0; row < gaussians.size; ++row) {
-        bool inside = known(weights, parameters, row) && std::isfinite(weights.weight[row]);
+        bool inside = known(field, parameters, row) && std::isfinite(field.probability[row]);
         for (std::size_t axis = 0; axis < 3 && inside; ++axis) {
             const double place = gaussians.position[row * 3 + axis];
             inside = place >= box.low[axis] && place <= box.high[axis] &&
@@ -84,14 +84,14 @@ std::vector<float> colours_of(const GaussianSpans& gaussians, const RowPoints& r
 }
 
 /// Costs -log p for "labelled" and "not labelled", each times the trust in the row.
-std::pair<double, double> row_costs(const LabelWeights& weights, const CutParameters& parameters,
+std::pair<double, double> row_costs(const LabelField& field, const CutParameters& parameters,
                                     double mean_evidence, std::size_t row) {
-    const double w = weights.weight[row], tau = std::clamp(parameters.tau, 1e-3, 1 - 1e-3);
-    const double even = w < tau ? 0.5 * w / tau : 0.5 + 0.5 * (w - tau) / (1 - tau);
+    const double w = field.probability[row], even_at = std::clamp(parameters.threshold, 1e-3, 1 - 1e-3);
+    const double even = w < even_at ? 0.5 * w / even_at : 0.5 + 0.5 * (w - even_at) / (1 - even_at);
     const double p = std::clamp(even, 1 - SurestProbability, SurestProbability);
-    const bool seen = weights.evidence[row] > parameters.least_evidence_px;
+    const bool seen = field.coverage[row] > parameters.least_coverage;
     const double trust =
-        seen ? weights.evidence[row] / (weights.evidence[row] + HalfTrust * mean_evidence) : InferredTrust;
+        seen ? field.coverage[row] / (field.coverage[row] + HalfTrust * mean_evidence) : InferredTrust;
     return {-trust * std::log(p), -trust * std::log(1 - p)};
 }
 
@@ -188,32 +188,31 @@ void find_nearest(Problem& problem, const Box& box, ThreadPool* threads) {
         pairs > 0 ? std::accumulate(difference.begin(), difference.end(), 0.0) / pairs : 0;
 }
 
-Problem make_problem(const GaussianSpans& gaussians, const CutParameters& parameters,
-                     const LabelWeights& weights, ThreadPool* threads) {
+Problem make_problem(const GaussianSpans& gaussians, const CutParameters& parameters, const LabelField& field,
+                     ThreadPool* threads) {
     Problem problem;
     Box box;
-    if (parameters.neighbours <= 0 || !labelled_box(gaussians, parameters, weights, box)) return problem;
-    problem.rows = along_curve(gaussians, taking_part(gaussians, parameters, weights, box));
+    if (parameters.neighbours <= 0 || !labelled_box(gaussians, parameters, field, box)) return problem;
+    problem.rows = along_curve(gaussians, taking_part(gaussians, parameters, field, box));
     problem.colours = colours_of(gaussians, problem.rows);
     problem.neighbours = static_cast<std::size_t>(parameters.neighbours);
     problem.smoothness = parameters.smoothness;
     const auto& rows = problem.rows.row;
     const double share = 1.0 / static_cast<double>(std::max<std::size_t>(rows.size(), 1));
     double mean_evidence = 0;
-    for (const auto row : rows) mean_evidence += weights.evidence[row] * share;
+    for (const auto row : rows) mean_evidence += field.coverage[row] * share;
     problem.row_costs.reserve(rows.size());
-    for (const auto row : rows)
-        problem.row_costs.push_back(row_costs(weights, parameters, mean_evidence, row));
+    for (const auto row : rows) problem.row_costs.push_back(row_costs(field, parameters, mean_evidence, row));
     if (!rows.empty()) find_nearest(problem, box, threads);
     return problem;
 }
 
 }  // namespace
 
-double label_energy(const GaussianSpans& gaussians, const CutParameters& parameters,
-                    const LabelWeights& weights, std::span<const std::uint8_t> label) {
+double label_energy(const GaussianSpans& gaussians, const CutParameters& parameters, const LabelField& field,
+                    std::span<const std::uint8_t> label) {
     GSE_CHECK_EQ(label.size(), gaussians.size);
-    Problem problem = make_problem(gaussians, parameters, weights, nullptr);
+    Problem problem = make_problem(gaussians, parameters, field, nullptr);
     const auto& rows = problem.rows.row;
     set_edge_costs(problem, std::vector<std::uint8_t>(rows.size(), 1), nullptr);
     double energy = 0;
@@ -354,31 +353,37 @@ void label_islands(const Problem& problem, double share, std::vector<std::uint8_
 
 }  // namespace
 
-std::size_t cut_label(const GaussianSpans& gaussians, const CutParameters& parameters, LabelWeights& weights,
-                      ThreadPool* threads) {
-    GSE_CHECK_EQ(weights.weight.size(), gaussians.size);
-    if (parameters.smoothness <= 0) return 0;
-    Problem problem = make_problem(gaussians, parameters, weights, threads);
+std::vector<std::uint8_t> cut_label(const GaussianSpans& gaussians, const CutParameters& parameters,
+                                    const LabelField& field, ThreadPool* threads) {
+    GSE_CHECK_EQ(field.probability.size(), gaussians.size);
+    auto result = bits(field, parameters.threshold, parameters.least_coverage);
+    if (parameters.smoothness <= 0) return result;
+    Problem problem = make_problem(gaussians, parameters, field, threads);
     const auto& rows = problem.rows.row;
-    if (rows.size() < 2) return 0;
+    if (rows.size() < 2) return result;
     auto label = cut_around_preferring(problem, parameters.reach, threads);
     if (parameters.island_share > 0) label_islands(problem, parameters.island_share, label);
-    std::size_t changed = 0;
-    const auto tau = static_cast<float>(parameters.tau);
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        float& weight = weights.weight[rows[i]];
-        const bool labelled = label[i] != 0;
-        if (labelled == (weight > tau)) continue;
-        weight = labelled ? std::min(1.0f, tau + BeyondTau) : std::max(0.0f, tau - BeyondTau);
-        ++changed;
+        const float decided =
+            decided_probability(field.probability[rows[i]], label[i] != 0, parameters.threshold);
+        result[rows[i]] = decided > parameters.threshold ? 1 : 0;
     }
-    return changed;
+    return result;
 }
 
 #else
 
-std::size_t cut_label(const GaussianSpans&, const CutParameters&, LabelWeights&, ThreadPool*) { return 0; }
+std::vector<std::uint8_t> cut_label(const GaussianSpans&, const CutParameters& parameters,
+                                    const LabelField& field, ThreadPool*) {
+    return bits(field, parameters.threshold, parameters.least_coverage);
+}
 
 #endif
+
+float decided_probability(float probability, bool labelled, double threshold) {
+    const auto level = static_cast<float>(threshold);
+    if (labelled == (probability > level)) return probability;
+    return labelled ? std::min(1.0f, level + BeyondThreshold) : std::max(0.0f, level - BeyondThreshold);
+}
 
 }  // namespace gse::localize

@@ -2,7 +2,9 @@
 // unlike colours. It closes holes and removes the crumbs of coarse maps.
 #pragma once
 
+#include <cstdint>
 #include <span>
+#include <vector>
 
 #include "engine/base/thread_pool.h"
 #include "engine/localize/back_projection.h"
@@ -12,8 +14,8 @@ namespace gse::localize {
 struct CutParameters {
     int neighbours = 8;       // nearest rows an edge goes to
     double smoothness = 1.5;  // cost of a cut between two rows of one colour, in nats; 0 = nothing is done
-    double tau = 0.5;         // weight at which a row is undecided
-    double least_evidence_px = 0.5;
+    double threshold = 0.5;   // probability at which a row is undecided
+    double least_coverage = 0.5;  // pixels: rows with no more are unseen
     double margin_share =
         0.1;  // of the diagonal: rows farther than this outside the box of the labelled ones stay out
     int reach =
@@ -21,25 +23,27 @@ struct CutParameters {
     double island_share = 0;  // of the labelled rows: islands of no more take the label; 0 = none does
 };
 
-/// Moves the weight of rows to the other side of `tau` so that label_energy() becomes least, exactly. The
-/// graph cut is that of Boykov and Jolly (2001) with the contrast term of GrabCut, on splats in place of
-/// pixels. Rows with no vote of a view or a neighbour keep theirs.
+/// Label [N] of the least label_energy(), exactly. The graph cut is that of Boykov and Jolly (2001) with the
+/// contrast term of GrabCut, on splats in place of pixels. Rows with no vote of a view or a neighbour, and
+/// those far from the label, are as bits() has them.
 ///
 /// Then islands take the label, if asked for. An island is a group of rows without it that no pair of mutual
 /// neighbours joins to other such rows. It would hang in the air without the labelled rows.
 ///
-/// Returns how many rows changed sides. Independent of the number of threads (null = one). Does nothing
-/// without OpenCV.
-std::size_t cut_label(const GaussianSpans& gaussians, const CutParameters& parameters, LabelWeights& weights,
-                      ThreadPool* threads = nullptr);
+/// Independent of the number of threads (null = one). Equal to bits() without OpenCV.
+std::vector<std::uint8_t> cut_label(const GaussianSpans& gaussians, const CutParameters& parameters,
+                                    const LabelField& field, ThreadPool* threads = nullptr);
+
+/// Probability on the label's side of the threshold: itself, or a little beyond the threshold.
+float decided_probability(float probability, bool labelled, double threshold);
 
 /// Energy of a label [N], in nats, over the rows that take part:
 ///
-///   E(label) = sum over rows of -log p(label | weight) * trust
+///   E(label) = sum over rows of -log p(label | probability) * trust
 ///              + smoothness * sum over pairs of neighbours with different labels of exp(-d^2 / mean d^2)
 ///
 /// d is the colour difference of a pair.
-double label_energy(const GaussianSpans& gaussians, const CutParameters& parameters,
-                    const LabelWeights& weights, std::span<const std::uint8_t> label);
+double label_energy(const GaussianSpans& gaussians, const CutParameters& parameters, const LabelField& field,
+                    std::span<const std::uint8_t> label);
 
 }  // namespace gse::localize

@@ -146,6 +146,7 @@ public:
         if (label.manual != nullptr || !manual.empty())
             label.manual = std::make_shared<const std::vector<std::int8_t>>(std::move(manual));
         label.absent = pack(absent);
+        label.found = nullptr;
         label.bits = nullptr;
         return with_bits(std::move(label));
     }

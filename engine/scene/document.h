@@ -9,6 +9,7 @@
 
 #include "engine/base/image.h"
 #include "engine/scene/delta.h"
+#include "engine/scene/label_field.h"
 #include "engine/scene/scene.h"
 
 namespace gse {
@@ -32,11 +33,15 @@ struct NamedLabel {
     std::string left_out;     // views of that search that did not vote, as numbers: "3, 17"
     std::string looked_from;  // azimuth of the view in which its thing was marked by hand, or looked for,
                               // degrees; empty = not known
-    std::shared_ptr<const std::vector<float>> weight;  // [N] in [0,1], from the views; never changed by hand
+    std::shared_ptr<const std::vector<float>>
+        weight;  // [N] in [0,1] as decided at the threshold, not by hand
     std::shared_ptr<const std::vector<std::int8_t>>
         manual;  // [N] +1 added, -1 removed by hand, 0 = as the weight says
     std::shared_ptr<const std::vector<std::uint8_t>> bits;  // [N] 0 or 1, what the others give
     std::shared_ptr<const AbsentRows> absent;               // may be null
+    /// What the views of its search said; the weights follow from it and the threshold. Null for a label that
+    /// was not searched for, and once its rows are others.
+    std::shared_ptr<const FoundField> found = {};
 };
 
 /// Fills `bits` from weight, manual and threshold. A channel that is null counts as zeros.
@@ -91,6 +96,9 @@ template <class F> void visit_arrays(const DocumentState& state, F&& visit) {
         visit_vector(label.weight);
         visit_vector(label.manual);
         visit_vector(label.bits);
+        if (label.found != nullptr)
+            visit(static_cast<const void*>(label.found.get()),
+                  label.found->field.probability.size() * (sizeof(float) + sizeof(double)));
         if (label.absent != nullptr)
             visit(static_cast<const void*>(label.absent.get()),
                   label.absent->ids.size() * (sizeof(RowId) + sizeof(float) + 1));

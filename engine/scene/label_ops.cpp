@@ -306,6 +306,7 @@ NamedLabel with_added(NamedLabel label, std::span<const std::uint8_t> added) {
     for (std::size_t row = 0; row < added.size(); ++row)
         if (added[row] != 0) weight[row] = 1;
     label.weight = std::make_shared<const std::vector<float>>(std::move(weight));
+    label.found = nullptr;
     return with_bits(std::move(label));
 }
 
@@ -330,6 +331,11 @@ NamedLabel without_corrections(NamedLabel label) {
 NamedLabel with_threshold(NamedLabel label, float threshold) {
     label.threshold = threshold;
     return with_bits(std::move(label));
+}
+
+std::shared_ptr<const std::vector<float>> view_probability(const NamedLabel& label) {
+    if (label.found == nullptr) return label.weight;
+    return {label.found, &label.found->field.probability};
 }
 
 double growth_radius(const GaussianSet& set, std::span<const std::uint8_t> bits) {

@@ -54,8 +54,13 @@ NamedLabel invert(NamedLabel label);
 NamedLabel clear(NamedLabel label);
 /// Drops every correction by hand: the weights decide.
 NamedLabel without_corrections(NamedLabel label);
-/// Sets another threshold. Corrections by hand stay.
+/// Sets another threshold for the weights as they are. Corrections by hand stay. A label with a field is
+/// decided anew instead: app::at_threshold().
 NamedLabel with_threshold(NamedLabel label, float threshold);
+
+/// Probability [N] in [0,1] by the label's views, whatever its threshold. Its weights where that is not
+/// known. May be null.
+std::shared_ptr<const std::vector<float>> view_probability(const NamedLabel& label);
 
 /// Radius within which rows count as neighbours of a label's rows. Median of the distance to the 8th nearest
 /// row over a sample of labelled rows. 0 when nothing is labelled.

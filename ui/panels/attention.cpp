@@ -243,14 +243,9 @@ void draw_confidence(Context& context) {
     flow(ImGui::CalcTextSize(text.c_str()).x + context.em);
     badge(context, text, unsure ? palette::Warning : palette::Good);
     note(context, "attention.confidence");
-    std::string parts = fmt::format(
-        "How sure the search is.\nThe views agree to {}.\n{} of the attention is inside the masks.\n{} "
-        "of what the views see is labelled.",
-        percent_text(search.confidence.agreement), percent_text(search.confidence.attention),
-        percent_text(search.confidence.share));
-    if (search.confidence.recognition >= 0)
-        parts += fmt::format("\nThe pictures fit the word better than {} of the others the model knows.",
-                             percent_text(search.confidence.recognition));
+    std::string parts = "How sure the search is.";
+    for (const auto& part : search.confidence.parts)
+        parts += "\n" + fmt::format(fmt::runtime(part.sentence), percent_text(part.value));
     tooltip(parts);
 }
 

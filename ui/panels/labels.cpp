@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "engine/scene/label_ops.h"
 #include "ui/commands/guarded.h"
 #include "ui/panels/panels.h"
 #include "ui/state.h"
@@ -82,7 +83,7 @@ void draw_threshold(Context& context, const NamedLabel& label) {
         property(context, "Threshold", "none");
         tooltip("A search gives every splat a weight; what was made by hand, or by an edit, has none.");
     } else {
-        labels.histogram.update(label.weight);
+        labels.histogram.update(view_probability(label));
         float threshold = labels.threshold >= 0 ? labels.threshold : label.threshold;
         const auto drag = histogram(context, "labels.threshold", labels.histogram, context.em * 4, threshold);
         tooltip(

@@ -12,4 +12,9 @@ namespace gse::app {
 /// stay, and so does the threshold. The job must be of the state's splats.
 DocumentState with_located_label(DocumentState state, const EditJob& job, bool fresh);
 
+/// The label at another threshold, as a search with that threshold makes it of the same votes; corrections by
+/// hand stay. `set` has the label's rows. A label without a field compares its weights with the threshold.
+NamedLabel at_threshold(NamedLabel label, const GaussianSet& set, double threshold,
+                        ThreadPool* threads = nullptr);
+
 }  // namespace gse::app

@@ -1,22 +1,9 @@
 // Sentences about searches, the same for window, command line and report.
 #include "engine/edit/masks/search_outcome.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 namespace gse::edit {
-
-std::string confidence_text(const Confidence& confidence) {
-    if (confidence.value < 0) return "nothing was looked for: the label says where";
-    const std::string figures = fmt::format(
-        "confidence {:.2f}: the views agree to {:.2f}, {:.2f} of the attention is inside, {:.2f} of what "
-        "they see is labelled",
-        confidence.value, confidence.agreement, confidence.attention, confidence.share);
-    if (confidence.recognition < 0) return figures;
-    return fmt::format("{}, the word fits better than {:.2f} of those the model knows", figures,
-                       confidence.recognition);
-}
 
 std::string step_text(ViewStep step) {
     switch (step) {

@@ -14,9 +14,9 @@ namespace gse::edit {
 struct ViewEvidence {
     Image render;  // [H,W,3]
     Image drawn;   // [H,W,3] where the new thing was drawn into it, to see where it goes; else empty
-    Image map;     // [H,W,1] attention of the word, maximum 1; 0 where a rival the user gave has more
-    Image lead;    // [H,W,1] how much more another named thing has, 0 = none; empty without rivals
-    Mask region;   // thresholded and cleaned attention
+    Image map;  // [H,W,1] attention of the word, maximum 1; 0 where a competing word the user gave has more
+    Image competitor_margin;  // [H,W,1] how much more another named thing has, 0 = none; empty without one
+    Mask region;              // thresholded and cleaned attention
     std::vector<PointPrompt> points;  // clicks handed to the segmenter
     Mask mask;                        // the view's vote, not dilated
     std::string

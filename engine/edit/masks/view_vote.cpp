@@ -14,14 +14,14 @@ namespace {
 constexpr double AttentionShare = 0.5;      // of a vote: the attention itself, beside the mask cut out of it
 constexpr double AttentionLevel = 0.85;     // of the threshold: attention that counts half
 constexpr double AttentionSoftness = 0.05;  // how far from there it counts a quarter more or less
-constexpr double LeastEvidenceShare = 0.2;  // of the mean evidence of the rows that are seen at all
+constexpr double LeastCoverageShare = 0.2;  // of the mean coverage of the rows that are seen at all
 // Of the attention that the word draws at most in most of the views that show it. Sunglasses from behind had
 // 0.2 to 0.65, hats and scarves from any side 0.8 and more. Of ten things worn (`gseditpro-lab synth --object
 // bear --material red`, and `dog`, `white`, with every accessory in blue on seeds 81 to 90; a splat's colour
 // tells whose it is) two pairs of sunglasses were labelled with an IoU of 0.88 and 0.83 at 0.6, where ears
 // were taken for them before, the other eight as before; at 0.5 only one of the two, at 0.7 none.
 constexpr double FaintShare = 0.6;
-constexpr double RivalLead = 0.5;  // another thing that has so much more takes the pixel from the mask
+constexpr double DecidingMargin = 0.5;  // another thing that has so much more takes the pixel from the mask
 
 /// Whether the attention is above a level, in [0,1].
 double above(double attention, double level) {
@@ -60,20 +60,22 @@ Image vote_of(const ViewEvidence& view, double threshold) {
     if (view.failed || view.trusted) return vote;
     for (std::size_t i = 0; i < vote.data.size(); ++i) {
         const double attention = above(view.map.data[i], AttentionLevel * threshold);
-        const double lost = view.lead.data.empty() ? 0 : above(view.lead.data[i], RivalLead);
+        const double lost =
+            view.competitor_margin.data.empty() ? 0 : above(view.competitor_margin.data[i], DecidingMargin);
         vote.data[i] =
             static_cast<float>((1 - AttentionShare) * (1 - lost) * vote.data[i] + AttentionShare * attention);
     }
     return vote;
 }
 
-void compete(ViewEvidence& view, const std::vector<Image>& maps, bool strict) {
+void suppress_competitors(ViewEvidence& view, const std::vector<Image>& maps, bool strict) {
     if (maps.size() < 2) return;
-    view.lead = Image(view.map.width, view.map.height, 1);
+    view.competitor_margin = Image(view.map.width, view.map.height, 1);
     for (std::size_t i = 0; i < view.map.data.size(); ++i) {
         for (std::size_t rival = 1; rival < maps.size(); ++rival)
-            view.lead.data[i] = std::max(view.lead.data[i], maps[rival].data[i] - view.map.data[i]);
-        if (strict && view.lead.data[i] > 0) view.map.data[i] = 0;
+            view.competitor_margin.data[i] =
+                std::max(view.competitor_margin.data[i], maps[rival].data[i] - view.map.data[i]);
+        if (strict && view.competitor_margin.data[i] > 0) view.map.data[i] = 0;
     }
 }
 
@@ -93,14 +95,14 @@ void leave_out(std::vector<ViewEvidence>& views, const std::vector<std::size_t>&
     }
 }
 
-double least_evidence(const localize::LabelWeights& weights, double asked) {
+double least_coverage(const LabelField& field, double asked) {
     double sum = 0;
     std::size_t seen = 0;
-    for (const double evidence : weights.evidence) {
-        sum += evidence;
-        seen += evidence > 0 ? 1 : 0;
+    for (const double coverage : field.coverage) {
+        sum += coverage;
+        seen += coverage > 0 ? 1 : 0;
     }
-    return seen == 0 ? 0 : std::min(asked, LeastEvidenceShare * sum / static_cast<double>(seen));
+    return seen == 0 ? 0 : std::min(asked, LeastCoverageShare * sum / static_cast<double>(seen));
 }
 
 }  // namespace gse::edit

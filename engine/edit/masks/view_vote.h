@@ -6,7 +6,7 @@
 
 #include "engine/base/image.h"
 #include "engine/edit/masks/view_evidence.h"
-#include "engine/localize/back_projection.h"
+#include "engine/scene/label_field.h"
 
 namespace gse::edit {
 
@@ -20,10 +20,10 @@ Image mask_image(const Mask& mask);
 /// segmenter that is trusted is believed as it is.
 Image vote_of(const ViewEvidence& view, double threshold);
 
-/// How far ahead the others are (`lead`); maps[0] is the view's own. Those that the user gave (`strict`) take
-/// every pixel they have more of, those of the sentence only count in vote_of(): the attention of a wide
-/// ground is strong under the feet of what stands on it.
-void compete(ViewEvidence& view, const std::vector<Image>& maps, bool strict);
+/// How far ahead the others are (`competitor_margin`); maps[0] is the view's own. Those that the user gave
+/// (`strict`) take every pixel they have more of, those of the sentence only count in vote_of(): the
+/// attention of a wide ground is strong under the feet of what stands on it.
+void suppress_competitors(ViewEvidence& view, const std::vector<Image>& maps, bool strict);
 
 /// The largest of its values; those that are not finite do not count.
 float largest_value(const Image& map);
@@ -39,8 +39,8 @@ void require_views(const std::vector<std::size_t>& left_out, std::size_t count);
 /// not there.
 void leave_out(std::vector<ViewEvidence>& views, const std::vector<std::size_t>& left_out);
 
-/// Evidence from which a row counts as seen, in pixels: `asked` is meant for scenes whose splats cover a few
+/// Coverage from which a row counts as seen, in pixels: `asked` is meant for scenes whose splats cover a few
 /// pixels; in denser ones no splat has that much.
-double least_evidence(const localize::LabelWeights& weights, double asked);
+double least_coverage(const LabelField& field, double asked);
 
 }  // namespace gse::edit

@@ -1,31 +1,40 @@
 // Agreement of the views, attention inside the masks, share of the scene, and one figure of them.
 #include "engine/edit/search/confidence.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 namespace gse::edit {
 namespace {
 
+constexpr std::size_t LeastSplats =
+    4;  // of a thing; what views at odds have in common by chance are one or two
+constexpr double LargestLabelShare =
+    0.97;  // of what the views see, where the sentence names other things too
+
 /// Share of what is seen that all views have one opinion of: 1 when every splat is always or never inside the
 /// masks, 0 when all are half the time. The ground that is no part of the scene counts as one splat, as that
 /// of other scenes does, which is never what was looked for.
-double agreement_of(const localize::LabelWeights& weights, const GroundEvidence& ground) {
+double agreement_of(const LabelField& field, const std::vector<float>& weights,
+                    const GroundEvidence& ground) {
     double decided = std::max(0.0, ground.seen - 2 * ground.inside), all = ground.seen;
-    for (std::size_t row = 0; row < weights.weight.size(); ++row) {
-        decided += weights.evidence[row] * std::abs(2.0 * weights.weight[row] - 1);
-        all += weights.evidence[row];
+    for (std::size_t row = 0; row < weights.size(); ++row) {
+        decided += field.coverage[row] * std::abs(2.0 * weights[row] - 1);
+        all += field.coverage[row];
     }
     return all > 0 ? decided / all : 0;
 }
 
-double share_of(const localize::LabelWeights& weights, const std::vector<std::uint8_t>& bits,
+double share_of(const LabelField& field, const std::vector<std::uint8_t>& bits,
                 const GroundEvidence& ground) {
     double labelled = 0, all = ground.seen;
     for (std::size_t row = 0; row < bits.size(); ++row) {
-        labelled += bits[row] != 0 ? weights.evidence[row] : 0;
-        all += weights.evidence[row];
+        labelled += bits[row] != 0 ? field.coverage[row] : 0;
+        all += field.coverage[row];
     }
     return all > 0 ? labelled / all : 0;
 }
@@ -63,6 +72,23 @@ Attention attention_of(const std::vector<ViewEvidence>& views) {
 /// 0 at one half, where nothing is said, to 1.
 double above_half(double value) { return std::clamp(2 * value - 1, 0.0, 1.0); }
 
+std::vector<ConfidencePart> parts_of(double agreement, double inside, double share, double recognition) {
+    std::vector<ConfidencePart> parts{
+        {"agreement", agreement, "the views agree to {}", "The views agree to {}."},
+        {"attention_inside", inside, "{} of the attention is inside",
+         "{} of the attention is inside the masks."},
+        {"labelled_share", share, "{} of what they see is labelled",
+         "{} of what the views see is labelled."}};
+    if (recognition >= 0)
+        parts.push_back({"recognition", recognition, "the word fits better than {} of those the model knows",
+                         "The pictures fit the word better than {} of the others the model knows."});
+    return parts;
+}
+
+SearchVerdict refusal(SearchProblem problem, std::string message, std::string remedy) {
+    return {{0, parts_of(0, 0, 0, -1)}, problem, std::move(message), std::move(remedy)};
+}
+
 }  // namespace
 
 GroundEvidence ground_seen(const std::vector<ViewEvidence>& views, const std::vector<Image>& grounds) {
@@ -75,18 +101,68 @@ GroundEvidence ground_seen(const std::vector<ViewEvidence>& views, const std::ve
     return ground;
 }
 
-Confidence confidence_of(const std::vector<ViewEvidence>& views, const localize::LabelWeights& weights,
-                         const Label& label, double recognition, const GroundEvidence& ground) {
-    Confidence confidence;
-    const Attention attention = attention_of(views);
-    confidence.agreement = agreement_of(weights, ground);
-    confidence.attention = attention.inside;
-    confidence.share = share_of(weights, *label.bits, ground);
-    confidence.recognition = recognition;
+double Confidence::part(const std::string& key) const {
+    const auto found =
+        std::find_if(parts.begin(), parts.end(), [&](const auto& one) { return key == one.key; });
+    return found == parts.end() ? -1 : found->value;
+}
+
+std::string confidence_text(const Confidence& confidence) {
+    if (confidence.value < 0) return "nothing was looked for: the label says where";
+    std::string text = fmt::format("confidence {:.2f}", confidence.value);
+    for (const auto& part : confidence.parts)
+        text += (&part == &confidence.parts.front() ? ": " : ", ") +
+                fmt::format(fmt::runtime(part.phrase), fmt::format("{:.2f}", part.value));
+    return text;
+}
+
+std::optional<SearchVerdict> refuse_views(const std::string& word, const std::vector<ViewEvidence>& views) {
+    std::ptrdiff_t asked = 0, voting = 0;
+    std::vector<ViewStep> steps;
+    for (const auto& view : views) {
+        steps.push_back(view.step);
+        if (view.step == ViewStep::LeftOut) continue;
+        ++asked;
+        voting += view.failed ? 0 : 1;
+    }
+    if (voting >= LeastVotingViews && voting * 2 >= asked) return std::nullopt;
+    return refusal(SearchProblem::FewViews,
+                   fmt::format("\"{}\" was found in only {} of {} views", word, voting, asked),
+                   voting * 2 < asked ? search_remedy(steps) : "look from more views");
+}
+
+std::optional<SearchVerdict> refuse_label(const std::string& word, const Label& label) {
+    const auto labelled =
+        static_cast<std::size_t>(std::count(label.bits->begin(), label.bits->end(), std::uint8_t{1}));
+    if (labelled >= LeastSplats || labelled * 2 >= label.bits->size()) return std::nullopt;
+    return refusal(
+        SearchProblem::NothingLabelled,
+        fmt::format("the views agree on {} splat for \"{}\"", labelled == 0 ? "no" : "hardly a", word),
+        "name something the scene shows and the model knows, or lower tau");
+}
+
+SearchVerdict judge(const SearchEvidence& evidence, double least) {
+    const Attention attention = attention_of(evidence.views);
+    const double agreement = agreement_of(evidence.field, *evidence.label.weight, evidence.ground),
+                 share = share_of(evidence.field, *evidence.label.bits, evidence.ground),
+                 recognition = evidence.recognition;
+    SearchVerdict verdict;
+    Confidence& confidence = verdict.confidence;
+    confidence.parts = parts_of(agreement, attention.inside, share, recognition);
     // Each part can refuse: views at odds, attention all over the picture, a word that others fit better.
     confidence.value =
-        above_half(confidence.agreement) * above_half(attention.focus) * (recognition < 0 ? 1 : recognition);
-    return confidence;
+        above_half(agreement) * above_half(attention.focus) * (recognition < 0 ? 1 : recognition);
+    // A word that is found everywhere leaves nothing of the scene to the other things that the sentence
+    // names.
+    if (evidence.names_others && share > LargestLabelShare) confidence.value = 0;
+    if (confidence.value < least) {
+        verdict.problem = SearchProblem::Unsure;
+        verdict.message =
+            fmt::format("it is not sure that \"{}\" was found (confidence {:.2f}, at least {:.2f} is needed)",
+                        evidence.word, confidence.value, least);
+        verdict.remedy = "name something the scene shows, look at what was found, or label it by hand";
+    }
+    return verdict;
 }
 
 }  // namespace gse::edit

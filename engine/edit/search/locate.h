@@ -16,12 +16,13 @@
 #include "engine/edit/masks/search_outcome.h"
 #include "engine/edit/masks/view_evidence.h"
 #include "engine/edit/request/request.h"
+#include "engine/edit/search/confidence.h"
 #include "engine/edit/search/place_drawing.h"
 #include "engine/edit/search/view_renders.h"
 #include "engine/edit/search/vocabulary_ranker.h"
 #include "engine/edit/target_views/strategies/studio_background.h"
-#include "engine/localize/back_projection.h"
 #include "engine/raster/rasterizer.h"
+#include "engine/scene/label_field.h"
 #include "engine/scene/scene.h"
 
 namespace gse::edit {
@@ -80,11 +81,11 @@ struct LocateResult {
     std::string reason;  // why this mode, for the log and the report
     std::string word;    // the word that was looked for
     std::vector<ViewEvidence> views;
-    localize::LabelWeights weights;  // of the thing the edit is about (in add mode: of the source)
-    Label label;                     // modify, replace: rows that may change; add: all zero
-    Label source_label;              // rows of the source word
-    VoxelRegion region;              // add mode: where the new thing goes
-    GaussianData seeds;              // add mode: new rows
+    FoundField found;    // what the views said of the thing the edit is about (in add mode: of the source)
+    Label label;         // modify, replace: rows that may change; add: all zero
+    Label source_label;  // rows of the source word
+    VoxelRegion region;  // add mode: where the new thing goes
+    GaussianData seeds;  // add mode: new rows
     VoxelRegion room;  // of what comes in the place of something else worn, elsewhere on its wearer (head.h);
                        // empty otherwise
     int failed_views = 0;

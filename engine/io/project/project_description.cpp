@@ -217,15 +217,42 @@ ProjectDescription::Edit read_edit(const Json& json, const std::string& name) {
 }
 
 Json to_json(const ProjectDescription::LabelEntry& entry) {
-    return {{"name", entry.label.name},
-            {"threshold", any_number(static_cast<double>(entry.label.threshold))},
-            {"attention_threshold", any_number(entry.label.attention_threshold)},
-            {"found_for", entry.label.found_for},
-            {"left_out", entry.label.left_out},
-            {"looked_from", entry.label.looked_from},
-            {"weight", entry.weight},
-            {"manual", entry.manual},
-            {"absent", entry.absent}};
+    Json json{{"name", entry.label.name},
+              {"threshold", any_number(static_cast<double>(entry.label.threshold))},
+              {"attention_threshold", any_number(entry.label.attention_threshold)},
+              {"found_for", entry.label.found_for},
+              {"left_out", entry.label.left_out},
+              {"looked_from", entry.label.looked_from},
+              {"weight", entry.weight},
+              {"manual", entry.manual},
+              {"absent", entry.absent}};
+    if (!entry.probability.empty())
+        json["views"] = {{"probability", entry.probability},
+                         {"coverage", entry.coverage},
+                         {"least_coverage", entry.rule.least_coverage},
+                         {"smoothness", entry.rule.smoothness},
+                         {"island_share", entry.rule.island_share},
+                         {"up", to_json(entry.rule.up)},
+                         {"front", to_json(entry.rule.front)}};
+    return json;
+}
+
+/// What the views of a label's search said; older projects do not have it.
+void read_views(const Json& json, const std::string& name, ProjectDescription::LabelEntry& entry) {
+    const Fields fields(json, name);
+    fields.text("probability", entry.probability);
+    fields.text("coverage", entry.coverage);
+    if (entry.probability.empty() != entry.coverage.empty())
+        throw_field(fields.full("coverage"), "is there without the other");
+    fields.number("least_coverage", entry.rule.least_coverage);
+    fields.number("smoothness", entry.rule.smoothness);
+    fields.number("island_share", entry.rule.island_share);
+    for (const auto& [key, axis] : {std::pair{"up", &entry.rule.up}, std::pair{"front", &entry.rule.front}}) {
+        std::array<double, 3> values{axis->x, axis->y, axis->z};
+        fields.numbers(key, values);
+        *axis = {values[0], values[1], values[2]};
+        if (!(length(*axis) > 0)) throw_field(fields.full(key), "is no direction");
+    }
 }
 
 ProjectDescription::LabelEntry read_label(const Json& json, const std::string& name) {
@@ -246,6 +273,7 @@ ProjectDescription::LabelEntry read_label(const Json& json, const std::string& n
     fields.text("weight", entry.weight);
     fields.text("manual", entry.manual);
     fields.text("absent", entry.absent);
+    if (const Json* views = fields.object("views")) read_views(*views, fields.full("views"), entry);
     return entry;
 }
 

@@ -40,6 +40,8 @@ struct ProjectDescription {
     struct LabelEntry {
         NamedLabel label;
         std::string weight, manual, absent;
+        std::string probability, coverage;  // of what the views said
+        LabelRule rule;
     };
     std::vector<Edit> stack;
     std::vector<LabelEntry> labels;

@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 
@@ -169,7 +170,21 @@ private:
             hold_weights(absent.weight, what);
             label.absent = std::make_shared<const AbsentRows>(std::move(absent));
         }
+        label.found = read_found(entry, count, what);
         return with_bits(std::move(label));
+    }
+
+    std::shared_ptr<const FoundField> read_found(const io::ProjectDescription::LabelEntry& entry,
+                                                 std::size_t count, const std::string& what) {
+        if (entry.probability.empty()) return nullptr;
+        FoundField found;
+        found.rule = entry.rule;
+        found.field.probability = read_array<float>(entry.probability, count, what);
+        hold_weights(found.field.probability, what);
+        found.field.coverage = read_array<double>(entry.coverage, count, what);
+        for (double& pixels : found.field.coverage)
+            if (!(pixels >= 0 && std::isfinite(pixels))) pixels = 0;
+        return std::make_shared<const FoundField>(std::move(found));
     }
 
     io::ZipReader zip_;

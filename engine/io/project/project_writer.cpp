@@ -72,7 +72,7 @@ private:
         return add(std::move(name), "array", values, [&] {
             const std::string_view bytes(reinterpret_cast<const char*>(values->data()),
                                          values->size() * sizeof(T));
-            return io::pack_member(bytes, sizeof(T));
+            return io::pack_member(bytes, sizeof(T) == 1 ? 1 : 4);
         });
     }
 
@@ -112,6 +112,14 @@ private:
         if (label.absent != nullptr)
             entry.absent = add(fmt::format("labels/{}.absent", index), "absent", label.absent,
                                [&] { return io::pack_member(io::encode_absent(*label.absent), 1); });
+        if (label.found != nullptr) {
+            const auto& field = label.found->field;
+            entry.probability =
+                array<float>(fmt::format("labels/{}.probability", index), {label.found, &field.probability});
+            entry.coverage =
+                array<double>(fmt::format("labels/{}.coverage", index), {label.found, &field.coverage});
+            entry.rule = label.found->rule;
+        }
         description_.labels.push_back(std::move(entry));
     }
 

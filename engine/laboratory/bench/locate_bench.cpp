@@ -124,7 +124,7 @@ private:
         job.locate();
         const double took = processor_seconds() - start;
         const auto& label = job.located().label.bits;
-        const auto& evidence = job.located().weights.evidence;
+        const auto& evidence = job.located().found.field.coverage;
         const bool labelled =
             label && label->size() == scene.parts.size() && evidence.size() == scene.parts.size();
         const auto overlap = labelled ? evaluate::row_overlap(*label, rows_of(scene, edit.part), evidence)

@@ -137,14 +137,12 @@ private:
         const auto& found = job.located();
         const auto& confidence = found.confidence;
         entry["confidence"] = confidence.value;
-        entry["agreement"] = confidence.agreement;
-        entry["attention_inside"] = confidence.attention;
-        entry["labelled_share"] = confidence.share;
-        entry["recognition"] = confidence.recognition;
+        for (const char* key : {"agreement", "attention_inside", "labelled_share", "recognition"})
+            entry[key] = confidence.part(key);
         entry["networks"] = job.times().networks_json()["total"];
         if (question.present)
             entry["overlap"] = evaluate::row_overlap(*found.label.bits, rows_of(scene, question.part),
-                                                     found.weights.evidence)
+                                                     found.found.field.coverage)
                                    .iou;
         return entry;
     }

@@ -325,9 +325,9 @@ void add_existing(const EvalSetting& setting, const edit::LocateResult& located,
     json["iou"] = plain.iou;
     json["precision"] = plain.precision;
     json["recall"] = plain.recall;
-    const bool weighted = located.weights.evidence.size() == truth.size();
+    const bool weighted = located.found.field.coverage.size() == truth.size();
     json["weighted_iou"] =
-        weighted ? evaluate::row_overlap(bits, truth, located.weights.evidence).iou : plain.iou;
+        weighted ? evaluate::row_overlap(bits, truth, located.found.field.coverage).iou : plain.iou;
     double mask_iou = 0, mask_outline = 0, label_iou = 0, label_outline = 0;
     const auto count = static_cast<double>(setting.seen.views.size());
     for (std::size_t v = 0; v < setting.seen.views.size(); ++v) {
@@ -365,8 +365,8 @@ void add_place(const EvalSetting& setting, const edit::LocateResult& located, pi
     json["place_origin"] = located.region.origin;
     const auto truth = rows_of(setting.source, synth::Part::Object);
     json["source_weighted_iou"] =
-        located.source_label.bits && located.weights.evidence.size() == truth.size()
-            ? Json(evaluate::row_overlap(*located.source_label.bits, truth, located.weights.evidence).iou)
+        located.source_label.bits && located.found.field.coverage.size() == truth.size()
+            ? Json(evaluate::row_overlap(*located.source_label.bits, truth, located.found.field.coverage).iou)
             : Json(nullptr);
 }
 

@@ -187,10 +187,7 @@ void add_search(nlohmann::ordered_json& report, const EditJob& job) {
     report["confidence"] = nullptr;  // nothing was looked for
     if (confidence.value >= 0) {
         report["confidence"] = confidence.value;
-        report["confidence_of"] = {{"agreement", confidence.agreement},
-                                   {"attention_inside", confidence.attention},
-                                   {"labelled_share", confidence.share}};
-        if (confidence.recognition >= 0) report["confidence_of"]["recognition"] = confidence.recognition;
+        for (const auto& part : confidence.parts) report["confidence_of"][part.key] = part.value;
     }
     report["confidence_text"] = edit::confidence_text(confidence);
     if (located.problem != edit::SearchProblem::None) {

@@ -219,20 +219,20 @@ std::vector<std::uint8_t> seen_rows(const GaussianSet& set, const Camera& camera
     std::vector<std::uint32_t> inside;
     double all = 0;
     for (std::size_t row = 0; row < set.size(); ++row) {
-        if (!(static_cast<double>(votes.weight[row]) > mostly) || !(votes.evidence[row] > 0) ||
+        if (!(static_cast<double>(votes.probability[row]) > mostly) || !(votes.coverage[row] > 0) ||
             !centred(set, row, camera, mask))
             continue;
         inside.push_back(static_cast<std::uint32_t>(row));
-        all += votes.evidence[row];
+        all += votes.coverage[row];
     }
     std::sort(inside.begin(), inside.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return votes.evidence[a] != votes.evidence[b] ? votes.evidence[a] > votes.evidence[b] : a < b;
+        return votes.coverage[a] != votes.coverage[b] ? votes.coverage[a] > votes.coverage[b] : a < b;
     });
     std::vector<std::uint8_t> rows(set.size(), 0);
     double sum = 0;
     for (std::size_t i = 0; i < inside.size() && sum < nearly_all * all; ++i) {
         rows[inside[i]] = 1;
-        sum += votes.evidence[inside[i]];
+        sum += votes.coverage[inside[i]];
     }
     return rows;
 }

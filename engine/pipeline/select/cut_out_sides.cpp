@@ -256,13 +256,13 @@ public:
         for (std::size_t row = 0; row < values.size(); ++row)
             if (candidates_[row] != 0) values[row] = known(row) ? (inside(row) ? 1.0f : 0.0f) : unseen;
     }
-    localize::LabelWeights weights() const {
-        localize::LabelWeights result;
-        result.weight.resize(masked_.size());
-        result.evidence = total_;
+    LabelField field() const {
+        LabelField result;
+        result.probability.resize(masked_.size());
+        result.coverage = total_;
         for (std::size_t row = 0; row < masked_.size(); ++row)
             if (total_[row] > 0)
-                result.weight[row] =
+                result.probability[row] =
                     candidates_[row] != 0 ? static_cast<float>(masked_[row] / total_[row]) : 0.0f;
         return result;
     }
@@ -380,11 +380,10 @@ std::vector<std::uint8_t> follow_around(const GaussianSet& set, const SeenThing&
                        static_cast<int>(cameras.size()));
         follower.look(cameras[i], knowledge);
     }
-    auto weights = knowledge.weights();
-    localize::propagate_labels_knn(set.spans(), {}, weights, &painter.pool());
+    const auto field = localize::propagate_labels_knn(set.spans(), {}, knowledge.field(), &painter.pool());
     std::vector<std::uint8_t> rows(set.size(), 0);
     for (std::size_t row = 0; row < rows.size(); ++row)
-        rows[row] = candidates[row] != 0 && static_cast<double>(weights.weight[row]) > Half ? 1 : 0;
+        rows[row] = candidates[row] != 0 && static_cast<double>(field.probability[row]) > Half ? 1 : 0;
     take_in_crumbs(set, candidates, *bounds, rows);
     return rows;
 }

@@ -53,10 +53,10 @@ DOCTEST_TEST_CASE("a label of a scene that nobody sees is empty") {
     std::vector<localize::MaskedView> views;
     for (const auto& view : orbit_views(orbit, 4, 16, 16))
         views.push_back({view.camera, Image(16, 16, 1, 1), false});
-    const auto weights = localize::back_project(set.spans(), views, {}, *rasterizer);
-    const auto label = localize::label_from_weights("x", weights, 0.5, 0);
-    for (const auto bit : *label.bits) DOCTEST_CHECK(bit == 0);
-    for (const float weight : *label.weight) DOCTEST_CHECK(weight == 0);
+    const auto field = localize::back_project(set.spans(), views, {}, *rasterizer);
+    const auto label = localize::bits(field, 0.5, 0);
+    for (const auto bit : label) DOCTEST_CHECK(bit == 0);
+    for (const float share : field.probability) DOCTEST_CHECK(share == 0);
 }
 
 }  // namespace hostile_maps_test

@@ -90,7 +90,7 @@ DOCTEST_TEST_CASE("a view that is left out has no say: the label is that of a se
     const auto misled = search.run();
     search.request.left_out = std::to_string(Wrong);
     const auto without = search.run();
-    DOCTEST_CHECK(without.weights.weight != misled.weights.weight);
+    DOCTEST_CHECK(without.found.field.probability != misled.found.field.probability);
     DOCTEST_CHECK(without.views.size() == search.views.size());
     for (std::size_t v = 0; v < without.views.size(); ++v) {
         DOCTEST_CHECK((without.views[v].step == edit::ViewStep::LeftOut) == (v == Wrong));
@@ -102,7 +102,7 @@ DOCTEST_TEST_CASE("a view that is left out has no say: the label is that of a se
     fewer.attention.wrong = {};
     fewer.views.erase(fewer.views.begin() + Wrong);
     const auto expected = fewer.run();
-    DOCTEST_CHECK(without.weights.weight == expected.weights.weight);
+    DOCTEST_CHECK(without.found.field.probability == expected.found.field.probability);
     DOCTEST_CHECK(*without.label.bits == *expected.label.bits);
     DOCTEST_CHECK(without.confidence.value == doctest::Approx(expected.confidence.value));
 }

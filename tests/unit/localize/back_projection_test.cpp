@@ -124,8 +124,8 @@ DOCTEST_TEST_CASE(
             counting.rendered = 0;
             const auto found = votes.back_project(scene.set.spans(), views, {}, counting);
             const auto expected = localize::back_project(scene.set.spans(), views, {}, *fast);
-            DOCTEST_CHECK(found.weight == expected.weight);
-            DOCTEST_CHECK(found.evidence == expected.evidence);
+            DOCTEST_CHECK(found.probability == expected.probability);
+            DOCTEST_CHECK(found.coverage == expected.coverage);
             DOCTEST_CHECK(found.views_used == expected.views_used);
             if (room == localize::VoteCache::MostBytes) DOCTEST_CHECK(counting.rendered == most);
             if (room == 0) DOCTEST_CHECK(counting.rendered == expected.views_used);
@@ -149,11 +149,11 @@ DOCTEST_TEST_CASE("true masks give true labels") {
     const auto scene = two_balls();
     const auto rasterizer = raster::make_plain_rasterizer();
     const auto views = true_views(scene, *rasterizer, 12);
-    const auto weights = localize::back_project(scene.set.spans(), views, {}, *rasterizer);
-    DOCTEST_CHECK(weights.views_used == 12);
-    const auto label = localize::label_from_weights("ball", weights, 0.5, 0.2);
-    DOCTEST_CHECK(iou(*label.bits, scene.first) > LeastIou);
-    for (const float weight : *label.weight) DOCTEST_CHECK((weight >= 0 && weight <= 1));
+    const auto field = localize::back_project(scene.set.spans(), views, {}, *rasterizer);
+    DOCTEST_CHECK(field.views_used == 12);
+    const auto label = localize::bits(field, 0.5, 0.2);
+    DOCTEST_CHECK(iou(label, scene.first) > LeastIou);
+    for (const float share : field.probability) DOCTEST_CHECK((share >= 0 && share <= 1));
 }
 
 DOCTEST_TEST_CASE("failed views do not vote, and too many of them end the search") {
@@ -167,8 +167,8 @@ DOCTEST_TEST_CASE("failed views do not vote, and too many of them end the search
     }
     const auto some = localize::back_project(scene.set.spans(), views, {}, *rasterizer);
     DOCTEST_CHECK(some.views_used == 5);
-    DOCTEST_CHECK(some.weight == good.weight);
-    DOCTEST_CHECK(some.evidence == good.evidence);
+    DOCTEST_CHECK(some.probability == good.probability);
+    DOCTEST_CHECK(some.coverage == good.coverage);
     for (std::size_t v = 3; v < 5; ++v) views[v].failed = true;
     DOCTEST_CHECK_THROWS_AS(localize::back_project(scene.set.spans(), views, {}, *rasterizer), Error);
     DOCTEST_CHECK_THROWS_AS(localize::back_project(scene.set.spans(), {}, {}, *rasterizer), Error);
@@ -179,7 +179,7 @@ DOCTEST_TEST_CASE("the weights are the colour gradient of the masked picture (S5
     const auto scene = two_balls();
     const auto rasterizer = raster::make_plain_rasterizer();
     const auto views = true_views(scene, *rasterizer, 1);
-    const auto weights = localize::back_project(scene.set.spans(), views, {}, *rasterizer);
+    const auto field = localize::back_project(scene.set.spans(), views, {}, *rasterizer);
     raster::Settings settings;
     settings.negative_colour_slope = 1;  // every row's colour counts, also those clamped at zero
     raster::ForwardOutput output;
@@ -191,19 +191,18 @@ DOCTEST_TEST_CASE("the weights are the colour gradient of the masked picture (S5
     rasterizer->backward(d_colour, {}, 0, gradients);
     constexpr double FloatGradient = 1e-4;  // gradients are handed out as float
     for (std::size_t row = 0; row < scene.set.size(); ++row) {
-        const double masked = weights.weight[row] * std::max(weights.evidence[row], 1e-8);
+        const double masked = field.probability[row] * std::max(field.coverage[row], 1e-8);
         DOCTEST_CHECK(gradients.sh[row * 3 + 1] / ShC0 ==
                       doctest::Approx(masked).epsilon(FloatGradient).scale(1));
     }
 }
 
 DOCTEST_TEST_CASE("rows nobody sees are not labelled") {
-    localize::LabelWeights weights;
-    weights.weight = {1, 1, 0.5f, 0.6f};
-    weights.evidence = {0.1, 3, 3, 3};
-    const auto label = localize::label_from_weights("x", weights, 0.5, 0.5);
-    DOCTEST_CHECK(*label.bits == std::vector<std::uint8_t>{0, 1, 0, 1});
-    DOCTEST_CHECK((*label.weight)[0] == 1);
+    LabelField field;
+    field.probability = {1, 1, 0.5f, 0.6f};
+    field.coverage = {0.1, 3, 3, 3};
+    const auto label = localize::bits(field, 0.5, 0.5);
+    DOCTEST_CHECK(label == std::vector<std::uint8_t>{0, 1, 0, 1});
 }
 
 }  // namespace back_projection_test

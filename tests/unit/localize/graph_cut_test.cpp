@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <numeric>
 #include <tuple>
 #include <vector>
 
@@ -25,19 +27,26 @@ constexpr double EnergyTolerance = 1e-9;  // sums of a few dozen doubles
 
 struct Rows {
     GaussianData data;
-    localize::LabelWeights weights;
+    LabelField field;
     explicit Rows(std::size_t count) {
         data.resize(count);
-        weights.weight.assign(count, 0);
-        weights.evidence.assign(count, 5);
+        field.probability.assign(count, 0);
+        field.coverage.assign(count, 5);
     }
     void colour(std::size_t row, float red, float green, float blue) {
         data.sh[row * 3] = red;
         data.sh[row * 3 + 1] = green;
         data.sh[row * 3 + 2] = blue;
     }
-    std::vector<std::uint8_t> label(double tau = 0.5) const {
-        return *localize::label_from_weights("thing", weights, tau, 0.5).bits;
+    std::vector<std::uint8_t> bits() const { return localize::bits(field, 0.5, 0.5); }
+    std::vector<std::uint8_t> cut(const localize::CutParameters& parameters = {}) const {
+        return localize::cut_label(spans(data), parameters, field);
+    }
+    /// How many rows the cut decides otherwise than their own probability does.
+    std::ptrdiff_t changed(const localize::CutParameters& parameters = {}) const {
+        const auto own = bits(), common = cut(parameters);
+        return std::inner_product(own.begin(), own.end(), common.begin(), std::ptrdiff_t{0}, std::plus{},
+                                  std::not_equal_to{});
     }
 };
 
@@ -54,7 +63,7 @@ struct Sheets : Rows {
             const auto tint = static_cast<float>(random.uniform(-0.1, 0.1));
             if (red(row)) colour(row, 1 + tint, 0, 0);
             else colour(row, 0, 0, 1 + tint);
-            weights.weight[row] = red(row) ? 0.8f : 0.2f;
+            field.probability[row] = red(row) ? 0.8f : 0.2f;
         }
     }
     static bool red(std::size_t row) { return row / Side < Side; }
@@ -69,19 +78,18 @@ DOCTEST_TEST_CASE("the cut has the least energy of all labels") {
         Rows rows(count);
         for (auto& value : rows.data.position) value = static_cast<float>(random.uniform(0, 1));
         for (auto& value : rows.data.sh) value = static_cast<float>(random.uniform(0, 1));
-        for (auto& value : rows.weights.weight) value = static_cast<float>(random.uniform(0, 1));
-        for (auto& value : rows.weights.evidence) value = random.uniform(0.6, 5);
-        rows.weights.weight[0] = 0.9f;
+        for (auto& value : rows.field.probability) value = static_cast<float>(random.uniform(0, 1));
+        for (auto& value : rows.field.coverage) value = random.uniform(0.6, 5);
+        rows.field.probability[0] = 0.9f;
         localize::CutParameters parameters;
         parameters.neighbours = 3;
-        const auto before = rows.weights;
-        localize::cut_label(spans(rows.data), parameters, rows.weights);
-        const double found = localize::label_energy(spans(rows.data), parameters, before, rows.label());
+        const double found =
+            localize::label_energy(spans(rows.data), parameters, rows.field, rows.cut(parameters));
         std::vector<std::uint8_t> label(count);
         double least = std::numeric_limits<double>::max();
         for (unsigned bits = 0; bits < 1u << count; ++bits) {
             for (std::size_t row = 0; row < count; ++row) label[row] = bits >> row & 1u;
-            least = std::min(least, localize::label_energy(spans(rows.data), parameters, before, label));
+            least = std::min(least, localize::label_energy(spans(rows.data), parameters, rows.field, label));
         }
         DOCTEST_CHECK(found == doctest::Approx(least).epsilon(EnergyTolerance));
     }
@@ -93,7 +101,7 @@ DOCTEST_TEST_CASE("the energy is what its definition says, with every distance m
     Rows rows(count);
     for (auto& value : rows.data.position) value = static_cast<float>(random.uniform(0, 1));
     for (auto& value : rows.data.sh) value = static_cast<float>(random.uniform(0, 1));
-    rows.weights.weight.assign(count, 0.9f);  // all take part, and have one opinion
+    rows.field.probability.assign(count, 0.9f);  // all take part, and have one opinion
     localize::CutParameters parameters;
     parameters.neighbours = neighbours;
     const auto squared = [&](const std::vector<float>& values, std::size_t a, std::size_t b) {
@@ -120,7 +128,7 @@ DOCTEST_TEST_CASE("the energy is what its definition says, with every distance m
         if (some[a] != some[b])
             cut += 0.5 * parameters.smoothness * std::exp(-squared(rows.data.sh, a, b) / mean);
     const auto energy = [&](const std::vector<std::uint8_t>& label) {
-        return localize::label_energy(spans(rows.data), parameters, rows.weights, label);
+        return localize::label_energy(spans(rows.data), parameters, rows.field, label);
     };
     const std::vector<std::uint8_t> all(count, 1);
     const double labelled = static_cast<double>(std::count(some.begin(), some.end(), 1)) / count;
@@ -134,11 +142,10 @@ DOCTEST_TEST_CASE("a hole is closed and a crumb goes, but the other colour stays
     Sheets sheets;
     for (std::size_t x = 0; x < 6; ++x)
         for (std::size_t y = 0; y < 6; ++y)
-            sheets.weights.weight[x * Sheets::Side + y] = 0.35f;  // a corner is missed
-    sheets.weights.weight[(Sheets::Side + 9) * Sheets::Side + 9] = 0.7f;
-    const auto changed = localize::cut_label(spans(sheets.data), {}, sheets.weights);
-    DOCTEST_CHECK(changed == 37);
-    const auto label = sheets.label();
+            sheets.field.probability[x * Sheets::Side + y] = 0.35f;  // a corner is missed
+    sheets.field.probability[(Sheets::Side + 9) * Sheets::Side + 9] = 0.7f;
+    DOCTEST_CHECK(sheets.changed() == 37);
+    const auto label = sheets.cut();
     for (std::size_t row = 0; row < label.size(); ++row)
         DOCTEST_CHECK(label[row] == (Sheets::red(row) ? 1 : 0));
 }
@@ -147,8 +154,7 @@ DOCTEST_TEST_CASE("a part of another colour that the views are sure of is kept")
     Sheets sheets;
     for (std::size_t x = 8; x < 11; ++x)
         for (std::size_t y = 8; y < 11; ++y) sheets.colour(x * Sheets::Side + y, 0, 1, 0);
-    localize::cut_label(spans(sheets.data), {}, sheets.weights);
-    const auto label = sheets.label();
+    const auto label = sheets.cut();
     for (std::size_t row = 0; row < label.size(); ++row)
         DOCTEST_CHECK(label[row] == (Sheets::red(row) ? 1 : 0));
 }
@@ -160,19 +166,18 @@ DOCTEST_TEST_CASE("any number of threads gives the same bits") {
     for (auto& value : rows.data.position) value = static_cast<float>(random.uniform(0, 1));
     for (auto& value : rows.data.sh) value = static_cast<float>(random.uniform(0, 1));
     for (std::size_t row = 0; row < count; ++row) {
-        rows.weights.weight[row] = rows.data.position[row * 3] > 0.5f ? 0.7f : 0.3f;
-        rows.weights.evidence[row] = random.uniform(0, 1) < 0.4 ? 0 : random.uniform(0.6, 5);
-        if (random.uniform(0, 1) < 0.2) rows.weights.weight[row] = 1 - rows.weights.weight[row];
+        rows.field.probability[row] = rows.data.position[row * 3] > 0.5f ? 0.7f : 0.3f;
+        rows.field.coverage[row] = random.uniform(0, 1) < 0.4 ? 0 : random.uniform(0.6, 5);
+        if (random.uniform(0, 1) < 0.2) rows.field.probability[row] = 1 - rows.field.probability[row];
     }
-    auto one = rows.weights, three = rows.weights;
-    localize::propagate_labels_knn(spans(rows.data), {}, one);
-    const auto changed = localize::cut_label(spans(rows.data), {}, one);
     ThreadPool pool(3);
-    localize::propagate_labels_knn(spans(rows.data), {}, three, &pool);
-    DOCTEST_CHECK(localize::cut_label(spans(rows.data), {}, three, &pool) == changed);
-    DOCTEST_CHECK(changed > count / 20);
-    DOCTEST_CHECK(three.weight == one.weight);
+    const auto one = localize::propagate_labels_knn(spans(rows.data), {}, rows.field),
+               three = localize::propagate_labels_knn(spans(rows.data), {}, rows.field, &pool);
+    DOCTEST_CHECK(three.probability == one.probability);
     DOCTEST_CHECK(three.inferred == one.inferred);
+    rows.field = one;
+    DOCTEST_CHECK(localize::cut_label(spans(rows.data), {}, one, &pool) == rows.cut());
+    DOCTEST_CHECK(rows.changed() > static_cast<std::ptrdiff_t>(count / 20));
 }
 
 DOCTEST_TEST_CASE("a part is cut as it is in the cut of everything") {
@@ -187,9 +192,9 @@ DOCTEST_TEST_CASE("a part is cut as it is in the cut of everything") {
         for (std::size_t row = 0; row < count; ++row) {
             const float* p = &rows.data.position[row * 3];
             const bool thing = std::hypot(p[0] - 0.5, p[1] - 0.5, p[2] - 0.5) < size;
-            rows.weights.weight[row] =
+            rows.field.probability[row] =
                 static_cast<float>(random.uniform(0, 1) < 0.9 ? (thing ? 0.8 : 0.2) : random.uniform(0, 1));
-            rows.weights.evidence[row] = random.uniform(0.6, 5);
+            rows.field.coverage[row] = random.uniform(0.6, 5);
         }
         for (const double smoothness : {0.5, 1.5, 6.0}) {
             DOCTEST_CAPTURE(smoothness);
@@ -197,17 +202,13 @@ DOCTEST_TEST_CASE("a part is cut as it is in the cut of everything") {
             parameters.smoothness = smoothness;
             parameters.margin_share = 1;
             parameters.reach = 0;
-            auto everything = rows.weights;
-            localize::cut_label(spans(rows.data), parameters, everything);
-            const auto label = *localize::label_from_weights("thing", everything, parameters.tau, 0.5).bits;
-            const double least = localize::label_energy(spans(rows.data), parameters, rows.weights, label);
+            const auto label = rows.cut(parameters);
+            const double least = localize::label_energy(spans(rows.data), parameters, rows.field, label);
             for (const int reach : {1, 3}) {
                 DOCTEST_CAPTURE(reach);
                 parameters.reach = reach;
-                auto part = rows.weights;
-                localize::cut_label(spans(rows.data), parameters, part);
-                const auto found = *localize::label_from_weights("thing", part, parameters.tau, 0.5).bits;
-                DOCTEST_CHECK(localize::label_energy(spans(rows.data), parameters, rows.weights, found) ==
+                const auto found = rows.cut(parameters);
+                DOCTEST_CHECK(localize::label_energy(spans(rows.data), parameters, rows.field, found) ==
                               doctest::Approx(least).epsilon(EnergyTolerance));
                 DOCTEST_CHECK(found == label);
             }
@@ -240,15 +241,14 @@ DOCTEST_TEST_CASE(
             for (std::size_t axis = 0; axis < 3; ++axis)
                 rows.data.position[row * 3 + axis] = static_cast<float>(places[row][axis]);
             rows.colour(row, row < block ? 1 : 0, row >= bumper ? 1 : 0, 0);
-            rows.weights.weight[row] = row < block ? 0.9f : 0.05f;
+            rows.field.probability[row] = row < block ? 0.9f : 0.05f;
         }
         return std::tuple(rows, block, bumper);
     };
     const auto labelled = [](Rows& rows, double share, std::size_t begin, std::size_t end) {
         localize::CutParameters parameters;
         parameters.island_share = share;
-        localize::cut_label(spans(rows.data), parameters, rows.weights);
-        const auto bits = rows.label();
+        const auto bits = rows.cut(parameters);
         return std::count(bits.begin() + static_cast<std::ptrdiff_t>(begin),
                           bits.begin() + static_cast<std::ptrdiff_t>(end), 1);
     };
@@ -259,33 +259,43 @@ DOCTEST_TEST_CASE(
         auto [rows, block, bumper] = scene(2, 0, High);
         DOCTEST_CHECK_EQ(labelled(rows, share, block, bumper), share >= 0.2 ? 20 : 0);
         DOCTEST_CHECK_EQ(labelled(rows, share, 0, block), static_cast<std::ptrdiff_t>(block));
-        DOCTEST_CHECK_EQ(labelled(rows, share, bumper, rows.weights.weight.size()), 0);  // the ground
+        DOCTEST_CHECK_EQ(labelled(rows, share, bumper, rows.field.probability.size()), 0);  // the ground
     }
     auto [held, block, bumper] = scene(2, 22, High);  // it stands on the ground by itself
-    DOCTEST_CHECK_EQ(labelled(held, 0.2, block, held.weights.weight.size()), 0);
+    DOCTEST_CHECK_EQ(labelled(held, 0.2, block, held.field.probability.size()), 0);
     auto [low, low_block, low_bumper] = scene(2, 0, 0.3);  // the ground is near it, but it has nearer ones
-    DOCTEST_CHECK_EQ(labelled(low, 0.2, low_block, low.weights.weight.size()), 20);
+    DOCTEST_CHECK_EQ(labelled(low, 0.2, low_block, low.field.probability.size()), 20);
     auto [far, far_block, far_bumper] =
         scene(2, 0, High + 40);  // between two parts of the label, away from both, it is not its affair
     for (std::size_t row = 0; row < far_block / 2; ++row) far.data.position[row * 3 + 1] += 80;
     DOCTEST_CHECK_EQ(labelled(far, 0.2, far_block, far_bumper), 0);
 }
 
-DOCTEST_TEST_CASE("rows without a place, a colour or a view keep their weight; no smoothness does nothing") {
+DOCTEST_TEST_CASE("rows without a place, a colour or a view have no neighbours; no smoothness means no cut") {
     Sheets sheets;
     constexpr std::size_t lost = 5 * Sheets::Side + 5, colourless = lost + 1, unseen = lost + 2;
     sheets.data.position[lost * 3] = std::numeric_limits<float>::quiet_NaN();
     sheets.data.sh[colourless * 3] = std::numeric_limits<float>::infinity();
-    sheets.weights.evidence[unseen] = 0;
-    for (const auto row : {lost, colourless, unseen}) sheets.weights.weight[row] = 0.4f;
-    auto alone = sheets;
-    DOCTEST_CHECK(localize::cut_label(spans(sheets.data), {}, sheets.weights) == 0);
-    for (const auto row : {lost, colourless, unseen}) DOCTEST_CHECK(sheets.weights.weight[row] == 0.4f);
-    alone.weights.weight[0] = 0.3f;
+    sheets.field.coverage[unseen] = 0;
+    for (const auto row : {lost, colourless, unseen}) sheets.field.probability[row] = 0.4f;
+    DOCTEST_CHECK(sheets.changed() == 0);
+    sheets.field.probability[0] = 0.3f;
+    DOCTEST_CHECK(sheets.changed() == 1);
     localize::CutParameters off;
     off.smoothness = 0;
-    DOCTEST_CHECK(localize::cut_label(spans(alone.data), off, alone.weights) == 0);
-    DOCTEST_CHECK(alone.weights.weight[0] == 0.3f);
+    DOCTEST_CHECK(sheets.changed(off) == 0);
+}
+
+DOCTEST_TEST_CASE(
+    "a cut leaves the field alone, and a probability is moved only where the label says otherwise") {
+    Sheets sheets;
+    sheets.field.probability[0] = 0.3f;
+    const auto before = sheets.field.probability;
+    DOCTEST_CHECK(sheets.cut()[0] == 1);
+    DOCTEST_CHECK(sheets.field.probability == before);
+    DOCTEST_CHECK(localize::decided_probability(0.3f, false, 0.5) == 0.3f);
+    DOCTEST_CHECK(localize::decided_probability(0.3f, true, 0.5) > 0.5f);
+    DOCTEST_CHECK(localize::decided_probability(0.8f, false, 0.5) < 0.5f);
 }
 
 #endif

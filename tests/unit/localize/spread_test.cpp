@@ -22,19 +22,19 @@ constexpr std::size_t PerBall = 400;
 /// Two balls of rows, the first labelled; every third row is unseen.
 struct Balls {
     GaussianData data;
-    localize::LabelWeights weights;
+    LabelField field;
     Balls() {
         Random random(3);
         data.resize(2 * PerBall);
-        weights.weight.assign(2 * PerBall, 0);
-        weights.evidence.assign(2 * PerBall, 0);
+        field.probability.assign(2 * PerBall, 0);
+        field.coverage.assign(2 * PerBall, 0);
         for (std::size_t row = 0; row < 2 * PerBall; ++row) {
             for (std::size_t axis = 0; axis < 3; ++axis)
                 data.position[row * 3 + axis] = static_cast<float>(random.uniform(-1, 1));
             data.position[row * 3] += row < PerBall ? -2.0f : 2.0f;
             if (row % 3 == 0) continue;
-            weights.evidence[row] = 5;
-            weights.weight[row] = row < PerBall ? 0.9f : 0.1f;
+            field.coverage[row] = 5;
+            field.probability[row] = row < PerBall ? 0.9f : 0.1f;
         }
     }
 };
@@ -46,14 +46,14 @@ double distance_of(const GaussianData& data, std::size_t a, std::size_t b) {
     return std::sqrt(sum);
 }
 
-double plain_reach(const GaussianData& data, const localize::LabelWeights& weights,
+double plain_reach(const GaussianData& data, const LabelField& field,
                    const localize::SpreadParameters& parameters) {
     double squared = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         double low = 1e9, high = -1e9;
-        for (std::size_t row = 0; row < weights.weight.size(); ++row) {
-            if (weights.evidence[row] <= parameters.least_evidence_px ||
-                weights.weight[row] <= parameters.tau)
+        for (std::size_t row = 0; row < field.probability.size(); ++row) {
+            if (field.coverage[row] <= parameters.least_coverage ||
+                field.probability[row] <= parameters.threshold)
                 continue;
             low = std::min<double>(low, data.position[row * 3 + axis]);
             high = std::max<double>(high, data.position[row * 3 + axis]);
@@ -67,25 +67,26 @@ double plain_reach(const GaussianData& data, const localize::LabelWeights& weigh
 
 DOCTEST_TEST_CASE("unseen rows take the opinion of their own ball") {
     Balls balls;
-    const auto before = balls.weights;
-    localize::propagate_labels_knn(spans(balls.data), {}, balls.weights);
-    const auto label = localize::label_from_weights("ball", balls.weights, 0.5, 0.5);
+    const auto before = balls.field;
+    balls.field = localize::propagate_labels_knn(spans(balls.data), {}, balls.field);
+    const auto label = localize::bits(balls.field, 0.5, 0.5);
     for (std::size_t row = 0; row < 2 * PerBall; ++row) {
-        DOCTEST_CHECK((*label.bits)[row] == (row < PerBall ? 1 : 0));
+        DOCTEST_CHECK(label[row] == (row < PerBall ? 1 : 0));
         if (row % 3 != 0)
-            DOCTEST_CHECK(balls.weights.weight[row] == before.weight[row]);  // seen rows keep their own
+            DOCTEST_CHECK(balls.field.probability[row] ==
+                          before.probability[row]);  // seen rows keep their own
     }
-    DOCTEST_CHECK(balls.weights.evidence == before.evidence);
+    DOCTEST_CHECK(balls.field.coverage == before.coverage);
 }
 
 DOCTEST_TEST_CASE("no opinion comes from out of reach, and broken rows ask nobody") {
     Balls balls;
     balls.data.position[0] = 500;
     balls.data.position[3 * 3] = std::numeric_limits<float>::quiet_NaN();
-    localize::propagate_labels_knn(spans(balls.data), {}, balls.weights);
-    DOCTEST_CHECK(balls.weights.inferred[0] == 0);
-    DOCTEST_CHECK(balls.weights.inferred[3] == 0);
-    DOCTEST_CHECK(balls.weights.inferred[6] == 1);
+    balls.field = localize::propagate_labels_knn(spans(balls.data), {}, balls.field);
+    DOCTEST_CHECK(balls.field.inferred[0] == 0);
+    DOCTEST_CHECK(balls.field.inferred[3] == 0);
+    DOCTEST_CHECK(balls.field.inferred[6] == 1);
 }
 
 DOCTEST_TEST_CASE("the opinion is that of the nearest within reach, as measuring all distances tells") {
@@ -95,26 +96,26 @@ DOCTEST_TEST_CASE("the opinion is that of the nearest within reach, as measuring
         Balls balls;
         localize::SpreadParameters parameters;
         parameters.reach_share = share;
-        const auto before = balls.weights;
-        localize::propagate_labels_knn(spans(balls.data), parameters, balls.weights);
+        const auto before = balls.field;
+        balls.field = localize::propagate_labels_knn(spans(balls.data), parameters, balls.field);
         const double reach = plain_reach(balls.data, before, parameters);
         for (std::size_t row = 0; row < 2 * PerBall; row += 3) {
             std::vector<std::pair<double, std::size_t>> seen;
             for (std::size_t other = 0; other < 2 * PerBall; ++other)
                 if (const double far = distance_of(balls.data, row, other);
-                    before.evidence[other] > 0 && far <= reach)
+                    before.coverage[other] > 0 && far <= reach)
                     seen.emplace_back(far, other);
             std::sort(seen.begin(), seen.end());
             of_kind[seen.empty() ? 0 : seen.size() < 8 ? 1 : 2] += 1;
             seen.resize(std::min<std::size_t>(8, seen.size()));
             double opinion = 0, voices = 0;
             for (const auto& [far, other] : seen) {
-                opinion += before.evidence[other] * before.weight[other] / (far + 1e-3 * reach);
-                voices += before.evidence[other] / (far + 1e-3 * reach);
+                opinion += before.coverage[other] * before.probability[other] / (far + 1e-3 * reach);
+                voices += before.coverage[other] / (far + 1e-3 * reach);
             }
-            DOCTEST_CHECK(balls.weights.inferred[row] == (seen.empty() ? 0 : 1));
+            DOCTEST_CHECK(balls.field.inferred[row] == (seen.empty() ? 0 : 1));
             if (!seen.empty())
-                DOCTEST_CHECK(balls.weights.weight[row] ==
+                DOCTEST_CHECK(balls.field.probability[row] ==
                               doctest::Approx(opinion / voices).epsilon(FloatWeight));
         }
     }
@@ -123,10 +124,10 @@ DOCTEST_TEST_CASE("the opinion is that of the nearest within reach, as measuring
 
 DOCTEST_TEST_CASE("without a labelled or without a seen row nothing changes") {
     Balls balls;
-    for (auto& evidence : balls.weights.evidence) evidence = 0;
-    const auto before = balls.weights.weight;
-    localize::propagate_labels_knn(spans(balls.data), {}, balls.weights);
-    DOCTEST_CHECK(balls.weights.weight == before);
+    for (auto& evidence : balls.field.coverage) evidence = 0;
+    const auto before = balls.field.probability;
+    balls.field = localize::propagate_labels_knn(spans(balls.data), {}, balls.field);
+    DOCTEST_CHECK(balls.field.probability == before);
 }
 
 }  // namespace spread_test

@@ -1,0 +1,53 @@
+// Each step returns a value of its own; the field stays what the views said.
+#include "engine/edit/search/decide_label.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/base/log.h"
+#include "engine/edit/placement/ground_rows.h"
+#include "engine/localize/graph_cut.h"
+#include "engine/localize/propagate_labels.h"
+
+namespace gse::edit {
+namespace {
+
+constexpr float GroundWeight = 0.5f;  // of the threshold: the most that ground below a thing keeps
+
+/// Weights on the side of the threshold where the bits are; of Gaussians that nobody knows they stay.
+std::vector<float> decided_weights(const LabelField& field, const std::vector<std::uint8_t>& bits,
+                                   double threshold, double least_coverage) {
+    std::vector<float> weights = field.probability;
+    for (std::size_t row = 0; row < weights.size(); ++row) {
+        const bool known = field.coverage[row] > least_coverage || field.inferred[row] != 0;
+        if (known && (bits[row] != 0) != (weights[row] > threshold))
+            weights[row] = localize::decided_probability(weights[row], bits[row] != 0, threshold);
+    }
+    return weights;
+}
+
+}  // namespace
+
+Label decide_label(std::string name, const GaussianSet& set, const FoundField& found, double threshold,
+                   ThreadPool* threads) {
+    const LabelRule& rule = found.rule;
+    const localize::SpreadParameters spread{.least_coverage = rule.least_coverage, .threshold = threshold};
+    const LabelField field = localize::propagate_labels_knn(set.spans(), spread, found.field, threads);
+    const localize::CutParameters cut{.smoothness = rule.smoothness,
+                                      .threshold = threshold,
+                                      .least_coverage = rule.least_coverage,
+                                      .island_share = rule.island_share};
+    auto bits = localize::cut_label(set.spans(), cut, field, threads);
+    auto weights = decided_weights(field, bits, threshold, rule.least_coverage);
+    const auto ground = ground_rows(set, bits, rule.up, rule.front);
+    for (const auto row : ground) {
+        bits[row] = 0;
+        weights[row] = std::min(weights[row], static_cast<float>(GroundWeight * threshold));
+    }
+    if (!ground.empty())
+        log::debug("{} splats of the ground below \"{}\" are left to it", ground.size(), name);
+    return {std::move(name), std::make_shared<const std::vector<float>>(std::move(weights)),
+            std::make_shared<const std::vector<std::uint8_t>>(std::move(bits))};
+}
+
+}  // namespace gse::edit
