@@ -8,158 +8,17 @@
 #include "engine/edit/search/grabcut_segmenter.h"
 #include "engine/edit/search/make_plan.h"
 #include "engine/language/words.h"
-#include "tests/unit/edit/edit_scenes.h"
+#include "tests/unit/edit/locate_scenes.h"
 
 namespace locate_test {
-namespace {
 
-using namespace gse;
+using namespace locate_scenes;
+
+namespace {
 
 constexpr double LeastIou = 0.9;            // blurred attention, clicks and twelve views at 48 px
 constexpr double LeastIouUnrefined = 0.65;  // a blurred map above one half covers less than the thing
-constexpr int Side = 48;
 
-double iou(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b) {
-    double both = 0, either = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        both += a[i] != 0 && b[i] != 0 ? 1 : 0;
-        either += a[i] != 0 || b[i] != 0 ? 1 : 0;
-    }
-    return either > 0 ? both / either : 0;
-}
-
-/// Attention from colours: "ball" is drawn to red pixels, "hat" to a spot above the red ball.
-class ColourAttention : public edit::AttentionSource {
-public:
-    std::vector<Image> locate(const edit::AttentionQuery& query) override {
-        if (query.words.size() > most_words)
-            throw Error(ErrorCode::NotFound, "a word stands beyond what the model reads");
-        queries.push_back({query.prompt, query.words.front(), query.absent, query.seed, query.words});
-        Image map(query.image.width, query.image.height, 1);
-        const bool blind = calls++ % 12 < blind_views;
-        for (int y = 0; y < map.height && !blind; ++y)
-            for (int x = 0; x < map.width; ++x) {
-                const int source = query.absent ? y + hat_shift : y;  // absent things are drawn above the red
-                if (source < map.height) map.at(x, y, 0) = redness(query.image, x, source);
-            }
-        std::vector<Image> maps{
-            localize::resize_image(localize::resize_image(map, 16, 16), map.width, map.height)};
-        for (std::size_t rival = 1; rival < query.words.size(); ++rival) {  // all other words: the lower half
-            maps.emplace_back(map.width, map.height, 1);
-            for (int y = map.height / 2; y < map.height; ++y)
-                for (int x = 0; x < map.width; ++x) maps.back().at(x, y, 0) = 1;
-        }
-        return maps;
-    }
-    int image_size() const override { return Side; }
-
-    struct Query {
-        std::string prompt, word;
-        bool absent;
-        std::uint64_t seed;
-        std::vector<std::string> words;
-    };
-    std::vector<Query> queries;
-    std::size_t most_words = 9;
-    int blind_views = 0;
-    int hat_shift = 10;
-
-private:
-    static float redness(const Image& image, int x, int y) {
-        return std::max(0.0f, image.at(x, y, 0) - image.at(x, y, 1));
-    }
-    int calls = 0;
-};
-
-/// One view has much attention beside the thing: at a low threshold its mask is at odds with the others'.
-class DistractedAttention : public ColourAttention {
-public:
-    std::vector<Image> locate(const edit::AttentionQuery& query) override {
-        auto maps = ColourAttention::locate(query);
-        if (queries.size() % 12 == 1)
-            for (int y = 0; y < maps[0].height; ++y)
-                for (int x = 0; x < maps[0].width / 3; ++x)
-                    maps[0].at(x, y, 0) = std::max(maps[0].at(x, y, 0), Beside * maximum(maps[0]));
-        return maps;
-    }
-
-private:
-    static constexpr float Beside = 0.45f;
-    static float maximum(const Image& map) { return *std::max_element(map.data.begin(), map.data.end()); }
-};
-
-/// Finds red things when asked for a ball, nothing else.
-class RedDetector : public edit::TextSegmenter {
-public:
-    std::pair<Mask, double> segment(const Image& image, const std::string& noun) override {
-        Mask mask(image.width, image.height);
-        if (noun != "ball") return {mask, 0.0};
-        for (int y = 0; y < image.height; ++y)
-            for (int x = 0; x < image.width; ++x)
-                mask.at(x, y) = image.at(x, y, 0) - image.at(x, y, 1) > 0.2f ? 1 : 0;
-        return {mask, 0.9};
-    }
-};
-
-/// Leaves out the lower part of what is red, as if it had another colour.
-class TopSegmenter : public edit::Segmenter {
-public:
-    Mask segment(const Image& image, const std::vector<edit::PointPrompt>&,
-                 const std::optional<edit::BoxPrompt>&, const Image&) override {
-        Mask mask(image.width, image.height);
-        for (int y = 0; y < image.height / 2 + 2; ++y)
-            for (int x = 0; x < image.width; ++x)
-                mask.at(x, y) = image.at(x, y, 0) - image.at(x, y, 1) > 0.2f ? 1 : 0;
-        return mask;
-    }
-    bool trusted() const override { return trusted_; }
-    std::string name() const override { return "top"; }
-    bool trusted_ = false;
-};
-
-/// Takes whatever is not black.
-class GreedySegmenter : public edit::Segmenter {
-public:
-    Mask segment(const Image& image, const std::vector<edit::PointPrompt>&,
-                 const std::optional<edit::BoxPrompt>&, const Image&) override {
-        Mask mask(image.width, image.height);
-        for (int y = 0; y < image.height; ++y)
-            for (int x = 0; x < image.width; ++x)
-                mask.at(x, y) = image.at(x, y, 0) + image.at(x, y, 1) + image.at(x, y, 2) > 0.2f ? 1 : 0;
-        return mask;
-    }
-    std::string name() const override { return "greedy"; }
-};
-
-edit::EditRequest request_for(const std::string& prompt, const std::string& target) {
-    edit::EditRequest request;
-    request.source = "ball";
-    request.prompt = prompt;
-    request.target = target;
-    request.seed = 3;
-    return edit::validated(request);
-}
-
-struct Fixture {
-    test::BallScene scene = test::ball_scene(200);
-    std::vector<View> views = test::ball_views(12, Side);
-    std::vector<std::string> words;
-    ThreadPool pool{1};
-    std::unique_ptr<raster::Rasterizer> rasterizer = raster::make_fast_rasterizer(pool);
-    ColourAttention attention;
-
-    edit::LocateInput input(const edit::EditRequest& request) const {
-        return {scene.set, views, words, request, {}, {0, -1, 0}};
-    }
-    edit::LocateTools tools(edit::Segmenter* segmenter = nullptr, edit::TextSegmenter* text = nullptr) {
-        return {*rasterizer, attention, segmenter, text, {}};
-    }
-};
-
-struct Quiet {
-    Quiet() { log::set_level(log::Level::Off); }
-    ~Quiet() { log::set_level(log::Level::Info); }
-};
 }  // namespace
 
 DOCTEST_TEST_CASE("an object word labels its splats, with every segmenter and without") {
@@ -251,74 +110,6 @@ DOCTEST_TEST_CASE("a view says in which step it failed") {
     for (const auto step :
          {edit::ViewStep::NoAttention, edit::ViewStep::TooLittle, edit::ViewStep::Everything})
         DOCTEST_CHECK((!edit::step_text(step).empty() && !edit::step_remedy(step).empty()));
-}
-
-DOCTEST_TEST_CASE("a search that is less sure than asked for is marked, with what it found") {
-    const Quiet quiet;
-    Fixture fixture;
-    auto request = request_for("a blue ball", "blue");
-    request.least_confidence = 0;
-    const auto found = edit::locate(fixture.input(request), fixture.tools());
-    DOCTEST_CHECK(found.problem == edit::SearchProblem::None);
-    DOCTEST_CHECK(found.confidence.value > 0);
-    DOCTEST_CHECK(found.confidence.value <= 1);
-    for (const double part : {found.confidence.agreement, found.confidence.attention, found.confidence.share})
-        DOCTEST_CHECK((part > 0 && part <= 1));
-    edit::require_found(found);
-    request.least_confidence = 1;
-    const auto unsure = edit::locate(fixture.input(request), fixture.tools());
-    DOCTEST_CHECK(unsure.problem == edit::SearchProblem::Unsure);
-    DOCTEST_CHECK(*unsure.label.bits == *found.label.bits);
-    DOCTEST_CHECK(unsure.confidence.value == found.confidence.value);
-    DOCTEST_CHECK_THROWS_AS(edit::require_found(unsure), Error);
-    // What is added belongs to something that must be found, too.
-    request = request_for("a ball with a hat", "hat");
-    request.least_confidence = 1;
-    const auto nowhere = edit::locate(fixture.input(request), fixture.tools());
-    DOCTEST_CHECK(nowhere.mode == edit::EditMode::Add);
-    DOCTEST_CHECK(nowhere.problem == edit::SearchProblem::Unsure);
-    DOCTEST_CHECK(nowhere.word == "ball");
-    DOCTEST_CHECK(nowhere.seeds.size() == 0);
-}
-
-DOCTEST_TEST_CASE("one or two splats are no thing") {
-    const Quiet quiet;
-    Fixture fixture;
-    auto request = request_for("a blue ball", "blue");
-    request.label_smoothness = 0;
-    request.least_confidence = 0;
-    const auto whole = fixture.scene;
-    for (const std::size_t red : {2, 12}) {
-        auto keep = whole.first;
-        for (std::size_t row = 0, left = red; row < keep.size(); ++row)
-            keep[row] = keep[row] == 0 || (left > 0 && left-- > 0) ? 1 : 0;
-        fixture.scene.set = whole.set.filtered(keep);
-        const auto found = edit::locate(fixture.input(request), fixture.tools());
-        const auto labelled = std::count(found.label.bits->begin(), found.label.bits->end(), std::uint8_t{1});
-        DOCTEST_CHECK((found.problem == edit::SearchProblem::None) == (red > 2));
-        DOCTEST_CHECK((labelled > 3) == (red > 2));
-        if (red == 2) DOCTEST_CHECK(found.problem == edit::SearchProblem::NothingLabelled);
-    }
-}
-
-DOCTEST_TEST_CASE(
-    "a word that is found in everything is not found where the sentence names other things too") {
-    const Quiet quiet;
-    Fixture fixture;
-    fixture.scene.set = fixture.scene.set.filtered(fixture.scene.first);  // the red ball alone
-    auto request = request_for("a blue ball", "blue");
-    request.least_confidence = 0.05;
-    const auto alone = edit::locate(fixture.input(request), fixture.tools());
-    DOCTEST_CHECK(alone.problem == edit::SearchProblem::None);
-    DOCTEST_CHECK(alone.confidence.share > 0.99);
-    request = request_for("a blue ball on the grass", "blue");
-    request.least_confidence = 0.05;
-    const auto all = edit::locate(fixture.input(request), fixture.tools());
-    DOCTEST_CHECK(all.confidence.share > 0.97);
-    DOCTEST_CHECK(all.confidence.value == 0);
-    DOCTEST_CHECK(all.problem == edit::SearchProblem::Unsure);
-    request.rivals = "none";  // whoever knows better may say so
-    DOCTEST_CHECK(edit::locate(fixture.input(request), fixture.tools()).problem == edit::SearchProblem::None);
 }
 
 DOCTEST_TEST_CASE("a label made by hand is taken as it is, and nothing is looked for") {
@@ -544,7 +335,7 @@ DOCTEST_TEST_CASE("another threshold asks no network, and remembered views and t
         request.attention_threshold = threshold;
         const auto quick = find(true), plain = find(false);
         DOCTEST_CHECK(*quick.label.bits == *plain.label.bits);
-        DOCTEST_CHECK(test::same_bytes(quick.weights.weight, plain.weights.weight));
+        DOCTEST_CHECK(test::same_bytes(*quick.label.weight, *plain.label.weight));
         for (std::size_t v = 0; v < quick.views.size(); ++v) {
             DOCTEST_CHECK(quick.views[v].mask.data == plain.views[v].mask.data);
             DOCTEST_CHECK(quick.views[v].points.size() == plain.views[v].points.size());
@@ -612,7 +403,9 @@ DOCTEST_TEST_CASE("networks see a ground that is no part of the scene, and the v
     DOCTEST_CHECK_FALSE(before_black.on_ground);
     DOCTEST_CHECK(before_plain.views[0].render.at(0, 0, 2) == doctest::Approx(plain.sky[2]));
     DOCTEST_CHECK(before_black.views[0].render.at(0, 0, 2) == 0);
-    DOCTEST_CHECK(before_plain.confidence.agreement > before_black.confidence.agreement);
-    DOCTEST_CHECK(before_plain.confidence.share < before_black.confidence.share);
+    DOCTEST_CHECK(before_plain.confidence.part("agreement") > before_black.confidence.part("agreement"));
+    DOCTEST_CHECK(before_plain.confidence.part("labelled_share") <
+                  before_black.confidence.part("labelled_share"));
 }
+
 }  // namespace locate_test

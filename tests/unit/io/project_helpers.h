@@ -23,6 +23,17 @@ inline View random_view(std::uint64_t seed) {
             random.below(2) == 0};
 }
 
+inline std::shared_ptr<const FoundField> random_field(std::size_t count, std::uint64_t seed) {
+    Random random(seed);
+    FoundField found;
+    for (std::size_t row = 0; row < count; ++row) {
+        found.field.probability.push_back(static_cast<float>(random.uniform(0, 1)));
+        found.field.coverage.push_back(random.uniform(0, 30));
+    }
+    found.rule = {0.3, 1.25, 0.05, {0.1, -0.7, 0.3}, {0, 0.2, 0.9}};
+    return std::make_shared<const FoundField>(std::move(found));
+}
+
 /// A project over `source` with some edits (one switched off), labels that remember absent rows, views and
 /// more.
 inline ProjectData random_project(const SceneSource& source, std::uint64_t seed) {
@@ -54,6 +65,7 @@ inline ProjectData random_project(const SceneSource& source, std::uint64_t seed)
     stack[1].enabled = false;
     stack[2].strength = 0.625;
     project.state = with_stack(project.state, std::move(stack));
+    project.state.labels[0].found = random_field(project.state.current.size(), seed);
     project.thumbnail = random_picture(16, 12, seed + 5);
     project.ui = {{"mode", 3}, {"panels", {1, 2, 3}}};
     project.jobs = {{"step", 412}};
@@ -74,6 +86,18 @@ inline bool same_picture(const std::shared_ptr<const Image>& a, const std::share
     return a->width == b->width && a->height == b->height && a->data == b->data;
 }
 
+inline bool same_field(const std::shared_ptr<const FoundField>& a,
+                       const std::shared_ptr<const FoundField>& b) {
+    if (a == nullptr || b == nullptr) return a == b;
+    const auto same_direction = [](const Vec3& one, const Vec3& other) {
+        return one.x == other.x && one.y == other.y && one.z == other.z;
+    };
+    return a->field.probability == b->field.probability && a->field.coverage == b->field.coverage &&
+           a->rule.least_coverage == b->rule.least_coverage && a->rule.smoothness == b->rule.smoothness &&
+           a->rule.island_share == b->rule.island_share && same_direction(a->rule.up, b->rule.up) &&
+           same_direction(a->rule.front, b->rule.front);
+}
+
 inline bool same_label(const NamedLabel& a, const NamedLabel& b) {
     const bool absent = a.absent == nullptr || b.absent == nullptr
                             ? a.absent == b.absent
@@ -82,7 +106,7 @@ inline bool same_label(const NamedLabel& a, const NamedLabel& b) {
     return absent && a.name == b.name && a.threshold == b.threshold &&
            a.attention_threshold == b.attention_threshold && a.left_out == b.left_out &&
            a.looked_from == b.looked_from && same_array(a.weight, b.weight) &&
-           same_array(a.manual, b.manual) && same_array(a.bits, b.bits);
+           same_array(a.manual, b.manual) && same_array(a.bits, b.bits) && same_field(a.found, b.found);
 }
 
 inline bool same_view(const View& a, const View& b) {

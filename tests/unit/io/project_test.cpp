@@ -197,12 +197,15 @@ DOCTEST_TEST_CASE("unknown fields are kept, absent ones have defaults, newer for
             json.erase(key);
         json["stack"][0].erase("recipe");
         json["labels"][0].erase("attention_threshold");
+        json["labels"][0].erase("views");
     });
     const ProjectData sparse = parse_project(as_bytes(older));
     DOCTEST_CHECK(bits_equal(sparse.state.current, project.state.current));
     DOCTEST_CHECK(sparse.state.views.empty());
     DOCTEST_CHECK(sparse.state.stack[0].recipe.empty());
     DOCTEST_CHECK(sparse.state.labels[0].attention_threshold == NamedLabel().attention_threshold);
+    DOCTEST_CHECK(sparse.state.labels[0].found == nullptr);
+    DOCTEST_CHECK(*sparse.state.labels[0].bits == *project.state.labels[0].bits);
     const auto future = with_description(packed, [](auto& json) { json["version"] = 2; });
     const auto refused = error_of([&] { parse_project(as_bytes(future)); });
     DOCTEST_REQUIRE(refused);
@@ -247,6 +250,10 @@ DOCTEST_TEST_CASE("damaged descriptions and members are one sentence each") {
         [](Json& json) { json["stack"][0]["delta"] = json["labels"][0]["weight"]; },
         [](Json& json) { json["labels"][0]["weight"] = json["labels"][0]["manual"]; },
         [](Json& json) { json["labels"][0]["threshold"] = "nan"; },
+        [](Json& json) { json["labels"][0]["views"] = 3; },
+        [](Json& json) { json["labels"][0]["views"].erase("coverage"); },
+        [](Json& json) { json["labels"][0]["views"]["coverage"] = json["labels"][0]["weight"]; },
+        [](Json& json) { json["labels"][0]["views"]["up"] = std::vector<double>(3, 0.0); },
         [](Json& json) { json["active_label"] = 2; },
         [](Json& json) {
             json["views"][0]["lens"] = {1, 2, 3};
