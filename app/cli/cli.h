@@ -71,12 +71,18 @@ template <class P> void bind_retired_fields(CLI::App& command) {
                 ->group("");
 }
 
-/// One option per field; a prefix ("--dreambooth-") where the names are those of other settings too.
+/// One option per field, and a hidden one for every name that it had before; a prefix ("--dreambooth-") where
+/// the names are those of other settings too.
 template <class P>
 void bind_fields(CLI::App& command, P& parameters, const std::string& group,
                  const std::string& prefix = "--") {
     P::visit_fields(parameters, [&](const char* name, auto& value, const char* help, const auto&... range) {
         add_field_option(command, prefix + option_name(name).substr(2), value, help, range...)->group(group);
+        for (const auto& renamed : renamed_fields<P>())
+            if (std::string(name) == renamed.now)
+                add_field_option(command, prefix + option_name(renamed.before).substr(2), value, help,
+                                 range...)
+                    ->group("");  // read, not shown
     });
     bind_retired_fields<P>(command);
 }
@@ -86,8 +92,14 @@ template <class P>
 void note_given(const CLI::App& command, const P& parameters, const std::string& part,
                 std::set<std::string>& given, const std::string& prefix = "--") {
     P::visit_fields(parameters, [&](const char* name, const auto&, const char*, const auto&...) {
-        const auto* option = command.get_option_no_throw(prefix + option_name(name).substr(2));
-        if (option != nullptr && option->count() > 0) given.insert(part + "." + name);
+        const auto stands = [&](const char* field) {
+            const auto* option = command.get_option_no_throw(prefix + option_name(field).substr(2));
+            return option != nullptr && option->count() > 0;
+        };
+        bool found = stands(name);
+        for (const auto& renamed : renamed_fields<P>())
+            found = found || (std::string(name) == renamed.now && stands(renamed.before));
+        if (found) given.insert(part + "." + name);
     });
 }
 

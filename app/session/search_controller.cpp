@@ -54,7 +54,7 @@ SearchController::SearchController(Workspace& workspace, ViewController& view, M
 void SearchController::set_request(const edit::EditRequest& request) {
     const bool told_else = request.source != request_.source || request.prompt != request_.prompt;
     request_ = request;
-    if (told_else) request_.left_out.clear();  // they were views of another search
+    if (told_else) request_.excluded_views.clear();  // they were views of another search
     // A word that was clicked in another sentence is no target of this one.
     auto& target = request_.target;
     if (!target.empty() && !language::has_phrase(request.prompt, target)) target.clear();
@@ -120,7 +120,7 @@ std::shared_ptr<EditJob> SearchController::fitting_job() const {
 
 void SearchController::begin_edit() {
     const bool fits = fitting_job() != nullptr;
-    if (last_.job() && !fits) request_.left_out.clear();  // they were views of another search
+    if (last_.job() && !fits) request_.excluded_views.clear();  // they were views of another search
     if (!fitting_job()) looked_from_ = view_.direction();
 }
 
@@ -139,7 +139,7 @@ template <> void SearchController::on(const command::Locate&) {
     if (!workspace_.require_scene() || workspace_.jobs->works()) return;
     if (workspace_.results) return workspace_.notices.toast("Apply or discard the edit first.");
     const auto run = begin_run();
-    request_.left_out.clear();  // of the search before
+    request_.excluded_views.clear();  // of the search before
     EditRecipe wanted = recipe();
     wanted.job.looked_from = looked_from_ = view_.direction();  // whatever a label was made from
     if (wanted.request.prompt.empty() && !wanted.request.source.empty())
@@ -236,7 +236,7 @@ template <> void SearchController::on(const command::SetAttentionThreshold& one)
 
 template <> void SearchController::on(const command::LeaveOutView& one) {
     if (one.view >= last_.views().size() || last_.arriving()) return;
-    request_.left_out = edit::with_view(request_.left_out, one.view, one.out);
+    request_.excluded_views = edit::with_view(request_.excluded_views, one.view, one.out);
     last_.leave_out(one.view, one.out);  // at once; what comes of it follows
     wanted_vote_ = Vote{
         request_, fmt::format("{} {}", one.out ? "Leave out" : "Put back", last_.views()[one.view].name), {}};
@@ -254,7 +254,7 @@ void SearchController::vote_if_wanted() {
         JobKind::Vote, {"New vote",
                         [job, wanted](const JobControl& control) {
                             job->set_control(control);
-                            job->locate_again(wanted.with.attention_threshold, wanted.with.left_out);
+                            job->locate_again(wanted.with.attention_threshold, wanted.with.excluded_views);
                         },
                         [this, job, wanted](const Error* error) { end_vote(job, wanted, error); }, true});
 }
@@ -273,10 +273,10 @@ void SearchController::travel(const std::function<void()>& move) {
     move();
     const auto [label, with] = found_with(workspace_.document.state());
     if (before.with.attention_threshold < 0 || with.attention_threshold < 0 || before.label != label) return;
-    if (with.tau != before.with.tau) request_.tau = with.tau;
+    if (with.label_threshold != before.with.label_threshold) request_.label_threshold = with.label_threshold;
     if (same_vote(with, before.with)) return;
     request_.attention_threshold = with.attention_threshold;
-    request_.left_out = with.left_out;
+    request_.excluded_views = with.excluded_views;
     if (with.attention_threshold > 0) last_.set_threshold(with.attention_threshold);
     wanted_vote_ = Vote{with, {}, {}};
     vote_if_wanted();

@@ -202,7 +202,7 @@ private:
         state["stack"] = app_.document().empty() ? 0 : app_.document().state().stack.size();
         state["undo_position"] = app_.document().empty() ? 0 : app_.document().position();
         state["views_attended"] = model.attention.size();
-        state["left_out"] = model.request.left_out;
+        state["left_out"] = model.request.excluded_views;
         state["hidden"] = model.hidden;
         state["picked"] = model.picked.count;
         state["compared"] = model.compared_name;

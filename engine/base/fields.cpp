@@ -61,6 +61,18 @@ Range as_floats(const Range& range) {
 
 }  // namespace
 
+Json with_present_names(const Json& json, std::span<const RenamedField> renamed) {
+    Json present = Json::object();
+    for (const auto& field : json.items()) {
+        const auto found = std::find_if(renamed.begin(), renamed.end(), [&](const RenamedField& other) {
+            return field.key() == other.before;
+        });
+        const bool moves = found != renamed.end() && !json.contains(found->now);
+        present[moves ? std::string(found->now) : field.key()] = field.value();
+    }
+    return present;
+}
+
 void note_retired_field(std::string_view name) {
     log::info("the setting \"{}\" is no longer there and is ignored", name);
 }

@@ -12,6 +12,7 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -28,6 +29,22 @@ struct Range {
     double low = 0;
     double high = 0;
 };
+
+/// A field that had another name before.
+struct RenamedField {
+    const char* before;
+    const char* now;
+};
+
+/// The renamed fields of a struct, which it lists as `Renamed` if there are any.
+template <class P> constexpr std::span<const RenamedField> renamed_fields() {
+    if constexpr (requires { P::Renamed; }) return P::Renamed;
+    else return {};
+}
+
+/// The object with the present names of fields; what has a present name in it already stays as it is.
+nlohmann::ordered_json with_present_names(const nlohmann::ordered_json& json,
+                                          std::span<const RenamedField> renamed);
 
 /// Help text of a field, with bits that say what the field is used for, in the struct's own meaning; 0 = for
 /// everything. Visitors that need no tag take it as `const char*`.
@@ -110,11 +127,13 @@ template <class P> void check_fields(const P& parameters) {
     });
 }
 
-/// Sets the fields named in `json`; absent ones keep their value, retired ones are ignored. Throws Error for
-/// an unknown name, a wrong type, or a number that is not finite or out of range. Nothing is set then.
-template <class P> void fields_from_json(P& parameters, const nlohmann::ordered_json& json) {
-    if (!json.is_object())
+/// Sets the fields that a JSON object names, by present names or those of before. Absent ones keep their
+/// value, retired ones are ignored. Throws Error for an unknown name, a wrong type, or a number that is not
+/// finite or out of range. Nothing is set then.
+template <class P> void fields_from_json(P& parameters, const nlohmann::ordered_json& named) {
+    if (!named.is_object())
         throw Error(ErrorCode::InvalidArgument, "the settings are not an object of names and values");
+    const auto json = with_present_names(named, renamed_fields<P>());
     P read = parameters;
     std::size_t known = 0;
     P::visit_fields(read, [&](const char* name, auto& value, const char*, const auto&... range) {

@@ -29,10 +29,10 @@ struct NamedLabel {
     std::string
         found_for;  // word that a search found it for, whatever it is called now; empty = not by a search
     double attention_threshold =
-        -1;                   // it was found with; 0 = what the model states, negative = not by a search
-    std::string left_out;     // views of that search that did not vote, as numbers: "3, 17"
-    std::string looked_from;  // azimuth of the view in which its thing was marked by hand, or looked for,
-                              // degrees; empty = not known
+        -1;                      // it was found with; 0 = what the model states, negative = not by a search
+    std::string excluded_views;  // views of that search that did not vote, as numbers: "3, 17"
+    std::string looked_from;     // azimuth of the view in which its thing was marked by hand, or looked for,
+                                 // degrees; empty = not known
     std::shared_ptr<const std::vector<float>>
         weight;  // [N] in [0,1] as decided at the threshold, not by hand
     std::shared_ptr<const std::vector<std::int8_t>>

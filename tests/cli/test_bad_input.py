@@ -130,7 +130,20 @@ class BadOptions(ProgramTest):
                           self.folder / "no_model"], "no_model")
 
     def test_a_view_to_be_left_out_that_is_not_there_is_told_before_any_work(self):
-        self.refuse_edit(["--source", "bear", "--prompt", "a red bear", "--target", "red", "--left-out", "3, 99"], "view 99", "left_out")
+        self.refuse_edit(["--source", "bear", "--prompt", "a red bear", "--target", "red", "--excluded-views", "3, 99"], "view 99", "excluded_views")
+
+    def test_options_of_before_are_read_and_not_shown(self):
+        text = run("edit", "--help").stdout
+        for before, now, value in (("--tau", "--label-threshold", "2"), ("--keep-mass", "--min-cluster-mass", "2"),
+                                   ("--fallback-mass", "--min-segment-attention", "2"), ("--second-look", "--retry-passes", "-1"),
+                                   ("--evidence-px", "--coverage-px", "-1")):
+            self.assertNotIn(before + " ", text)
+            self.assertIn(now + " ", text)
+            for option in (before, now):
+                self.refuse_edit(["--source", "bear", "--prompt", "a red bear", option, value], option)
+        self.refuse_edit(["--source", "bear", "--prompt", "a red bear", "--target", "red", "--left-out", "3, 99"], "view 99", "excluded_views")
+        for before in ("--focus", "--rivals", "--left-out", "--look-again"):
+            self.assertNotIn(before, text)
 
     def test_unwritable_output(self):
         blocker = self.write("file", b"x")
@@ -172,7 +185,7 @@ class BadOptions(ProgramTest):
         for part, name, value, word in [("request", "rate_sh", None, "null"), ("request", "rate_colour", 1e300, "0 to 10"),
                                         ("request", "iterations", 2.5, "2.5"), ("request", "iterations", "many", "many"),
                                         ("request", "seed", -1, "-1"), ("request", "prompt", 5, "text"),
-                                        ("request", "focus", 1, "true or false"), ("job", "threads", 4294967297, "threads"),
+                                        ("request", "reframe_views", 1, "true or false"), ("job", "threads", 4294967297, "threads"),
                                         ("guidance", "weight", True, "true"), ("dreambooth", "steps", [], "list")]:
             recipe = json.loads(json.dumps(seed))
             recipe.setdefault(part, {})[name] = value

@@ -50,7 +50,7 @@ class Edits(ProgramTest):
         self.assertEqual(report["nonfinite"], 0)
         self.assertGreater(report["labelled"], 0)
         self.assertIn({"field": "request.views", "value": 6, "source": "user"}, report["settings_from"])
-        self.assertNotIn("request.tau", [entry["field"] for entry in report["settings_from"]])
+        self.assertNotIn("request.label_threshold", [entry["field"] for entry in report["settings_from"]])
         self.assertEqual(self.info(out / "scene.ply")["splats"], report["splats"])
         self.check_unlabelled_rows(out)
 

@@ -188,7 +188,7 @@ void roll_seed(Context& context) {
 
 void run_locate(Context& context) {
     if (!why_not_locate(context).empty()) return;
-    context.request.left_out.clear();  // views of the search before
+    context.request.excluded_views.clear();  // views of the search before
     // Only this run sees the sentence that was made up for it.
     context.emit(command::SetRequest{locate_request(context.request, context.state.prompt.problem)});
     context.emit(command::Locate{});

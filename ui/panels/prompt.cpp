@@ -29,7 +29,7 @@ struct Group {
     const char* title;
 };
 constexpr std::array<Group, 8> Groups{{{"views", "Views"},
-                                       {"rivals", "Localization"},
+                                       {"competing_words", "Localization"},
                                        {"method", "Optimisation"},
                                        {"anchor_first", "Anchors"},
                                        {"rate_position", "Learning rates"},

@@ -51,11 +51,11 @@ FoundWith found_with(const DocumentState& state) {
     if (label.attention_threshold < 0) return {};
     // With the fewest digits, so that what was 0.4 is 0.4 again.
     return {label.name,
-            {label.attention_threshold, std::stod(fmt::format("{}", label.threshold)), label.left_out}};
+            {label.attention_threshold, std::stod(fmt::format("{}", label.threshold)), label.excluded_views}};
 }
 
 bool same_vote(const edit::LabelThresholds& a, const edit::LabelThresholds& b) {
-    return a.attention_threshold == b.attention_threshold && a.left_out == b.left_out;
+    return a.attention_threshold == b.attention_threshold && a.excluded_views == b.excluded_views;
 }
 
 bool stands_alone(const NamedLabel& label, const edit::EditRequest& request,

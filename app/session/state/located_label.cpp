@@ -36,7 +36,8 @@ DocumentState with_located_label(DocumentState state, const EditJob& job, bool f
     const std::size_t rows = state.current.size();
     // Nothing was looked for where the thing is no part of the scene.
     const bool looked = located.found.field.probability.size() == rows;
-    std::vector<float> weight = looked ? weights_of(source, request.tau) : std::vector<float>(rows, 0.0f);
+    std::vector<float> weight =
+        looked ? weights_of(source, request.label_threshold) : std::vector<float>(rows, 0.0f);
     const std::string name = adds ? request.source : located.word;
     auto found = std::find_if(state.labels.begin(), state.labels.end(),
                               [&](const auto& label) { return is_label_of(label, name); });
@@ -44,9 +45,9 @@ DocumentState with_located_label(DocumentState state, const EditJob& job, bool f
         found = state.labels.insert(state.labels.end(), empty_label(name, weight.size()));
     NamedLabel label = empty_label(found->name, weight.size());  // it may have been renamed since
     label.found_for = name;
-    label.threshold = static_cast<float>(request.tau);
+    label.threshold = static_cast<float>(request.label_threshold);
     label.attention_threshold = request.attention_threshold;
-    label.left_out = request.left_out;
+    label.excluded_views = request.excluded_views;
     label.looked_from = job.recipe().job.looked_from;
     label.weight = std::make_shared<const std::vector<float>>(std::move(weight));
     if (looked && located.found.field.views_used > 0)

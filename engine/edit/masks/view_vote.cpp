@@ -79,17 +79,17 @@ void suppress_competitors(ViewEvidence& view, const std::vector<Image>& maps, bo
     }
 }
 
-void require_views(const std::vector<std::size_t>& left_out, std::size_t count) {
-    for (const auto view : left_out)
+void require_views(const std::vector<std::size_t>& excluded, std::size_t count) {
+    for (const auto view : excluded)
         if (view >= count)
             throw Error(ErrorCode::InvalidArgument,
                         fmt::format("view {} is to be left out, but the last one is {}", view, count - 1),
-                        "correct left_out, or leave it empty");
+                        "correct excluded_views, or leave it empty");
 }
 
-void leave_out(std::vector<ViewEvidence>& views, const std::vector<std::size_t>& left_out) {
-    require_views(left_out, views.size());
-    for (const auto view : left_out) {
+void exclude_views(std::vector<ViewEvidence>& views, const std::vector<std::size_t>& excluded) {
+    require_views(excluded, views.size());
+    for (const auto view : excluded) {
         views[view].failed = true;
         views[view].step = ViewStep::LeftOut;
     }

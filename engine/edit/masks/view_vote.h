@@ -33,11 +33,11 @@ float largest_value(const Image& map);
 std::vector<std::size_t> faint_views(const std::vector<float>& peaks);
 
 /// Throws Error (InvalidArgument) for a view that is none of `count`.
-void require_views(const std::vector<std::size_t>& left_out, std::size_t count);
+void require_views(const std::vector<std::size_t>& excluded, std::size_t count);
 
 /// Views that do not vote, by their number: marked as such. Throws Error (InvalidArgument) for one that is
 /// not there.
-void leave_out(std::vector<ViewEvidence>& views, const std::vector<std::size_t>& left_out);
+void exclude_views(std::vector<ViewEvidence>& views, const std::vector<std::size_t>& excluded);
 
 /// Coverage from which a row counts as seen, in pixels: `asked` is meant for scenes whose splats cover a few
 /// pixels; in denser ones no splat has that much.

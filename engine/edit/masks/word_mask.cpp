@@ -29,9 +29,9 @@ struct SmallMap {
 SmallMap small_map(const Image& map, double threshold, const SearchSettings& settings) {
     const int height = std::max(1, ClusterGrid * map.height / map.width);
     SmallMap small{localize::resize_image(map, ClusterGrid, height), {}};
-    small.region =
-        localize::clean_clusters(localize::threshold_map(small.map, threshold), small.map,
-                                 {settings.dbscan_eps, settings.dbscan_min_samples}, settings.keep_mass);
+    small.region = localize::clean_clusters(localize::threshold_map(small.map, threshold), small.map,
+                                            {settings.dbscan_eps, settings.dbscan_min_samples},
+                                            settings.min_cluster_mass);
     return small;
 }
 
@@ -86,13 +86,13 @@ void refine(WordMask& found, const Image& picture, const Image& map, const std::
         accept(found, std::move(*from_text), text_mass, "text");
         found.trusted = true;
     };
-    const bool text_fits = from_text && text_mass >= settings.fallback_mass;
+    const bool text_fits = from_text && text_mass >= settings.min_segment_attention;
     if (text_fits && localize::mask_iou(*from_text, found.region) >= LeastOverlapIou) return accept_text();
     if (tools.segmenter != nullptr) {
         Mask mask = tools.segmenter->segment(picture, found.points, bounds_of(found.region), map);
-        mask = localize::clean_clusters(mask, map, {1.5, 1}, settings.keep_mass);
+        mask = localize::clean_clusters(mask, map, {1.5, 1}, settings.min_cluster_mass);
         const double mass = localize::captured_mass(map, found.region, mask);
-        if (sane(mask, found.region) && mass >= std::max(settings.fallback_mass, text_mass)) {
+        if (sane(mask, found.region) && mass >= std::max(settings.min_segment_attention, text_mass)) {
             found.trusted = tools.segmenter->trusted();
             return accept(found, std::move(mask), mass, "points");
         }

@@ -51,7 +51,7 @@ std::size_t normalise_maximum(Image& map);
 /// | largest growth | 4 times the region | a segmenter that ran away into the background; by judgement |
 /// | overlap with a text segmenter | IoU 0.1 | method A8 |
 /// | least text score | 0.3 | method A8 |
-/// | captured attention | `fallback_mass` | a setting, method A8 |
+/// | captured attention | `min_segment_attention` | a setting, method A8 |
 WordMask find_word_mask(const Image& picture, const Image& map, double threshold, const std::string& word,
                         const SearchSettings& settings, const WordMaskTools& tools, bool refines = true);
 

@@ -72,14 +72,14 @@ void WorkingSet::split(std::size_t index, int generation, Random& random) {
 }
 
 std::size_t WorkingSet::keep_added(std::span<const float> weight, std::span<const double> evidence,
-                                   double tau, double least_left) {
+                                   double least_weight, double least_left) {
     GSE_CHECK_EQ(weight.size(), table_.rows.size());
     std::vector<std::uint8_t> keep(labelled(), 1);
     std::size_t added = 0, dropped = 0;
     for (std::size_t i = 0; i < labelled(); ++i) {
         if (table_.ancestor[i] >= 0) continue;
         ++added;
-        if (evidence[first_row() + i] <= 0 || weight[first_row() + i] >= tau) continue;
+        if (evidence[first_row() + i] <= 0 || weight[first_row() + i] >= least_weight) continue;
         keep[i] = 0;
         ++dropped;
     }

@@ -63,7 +63,7 @@ std::vector<std::uint8_t> labelled(const EditBase& base, const EditPlan& plan) {
     if (plan.seeds.size() == 0 &&
         std::none_of(label.begin(), label.end(), [](std::uint8_t bit) { return bit != 0; }))
         throw Error(ErrorCode::InvalidArgument, "nothing is labelled, so there is nothing to edit",
-                    "name something the scene shows, or lower tau");
+                    "name something the scene shows, or lower label_threshold");
     return label;
 }
 
@@ -165,7 +165,7 @@ private:
         const int iteration = result.iterations;
         if (!begin_step() || !iterate(iteration, result)) return false;
         result.iterations = iteration + 1;
-        if (looks_again(iteration)) look_again(iteration, result);
+        if (prunes_added(iteration)) prune_added(iteration, result);
         const IterationRecord& record = result.history.back();
         result.converged = request_.early_stop && !record.skipped &&
                            rest_.visit(record.view, shown_, masks_.mask(record.view));
@@ -402,8 +402,8 @@ private:
         return views;
     }
 
-    bool looks_again(int iteration) const {
-        if (!request_.look_again || plan_.seeds.size() == 0 || !masks_.can_look()) return false;
+    bool prunes_added(int iteration) const {
+        if (!request_.prune_added || plan_.seeds.size() == 0 || !masks_.can_look()) return false;
         return std::any_of(LooksAgain.begin(), LooksAgain.end(), [&](double share) {
             return iteration + 1 == static_cast<int>(share * request_.iterations);
         });
@@ -411,7 +411,7 @@ private:
 
     /// Drops new splats outside of where the new thing is seen by now: the place was found before there was
     /// anything to see.
-    void look_again(int iteration, EditResult& result) {
+    void prune_added(int iteration, EditResult& result) {
         const StageTimer timer(seconds_.dynamic_mask);
         std::vector<localize::MaskedView> votes;
         Image shown;  // shown_ stays what the step has seen
@@ -428,7 +428,7 @@ private:
             std::count_if(votes.begin(), votes.end(), [](const auto& vote) { return vote.failed; });
         if (2 * static_cast<std::size_t>(failed) > votes.size()) return;  // the model does not see it yet
         const auto seen = localize::back_project(spans(set_.rows()), votes, settings_, tools_.rasterizer);
-        result.pruned += set_.keep_added(seen.probability, seen.coverage, request_.look_again_tau, LeastLeft);
+        result.pruned += set_.keep_added(seen.probability, seen.coverage, request_.prune_added_threshold, LeastLeft);
     }
 
     /// What was rendered last, as networks expect pictures: in [0,1].

@@ -58,11 +58,11 @@ public:
     /// Clone, split and prune (method 2.2); resets statistics and anchors.
     DensifyCount densify(const EditRequest& request, Random& random, bool may_grow);
 
-    /// Drops rows that grew from seeds and whose `weight` [rows] is below `tau`, where `evidence` [rows] says
-    /// that they were seen at all. Drops nothing when less than `least_left` of them would be left. Returns
-    /// how many were dropped.
-    std::size_t keep_added(std::span<const float> weight, std::span<const double> evidence, double tau,
-                           double least_left);
+    /// Drops rows that grew from seeds and whose `weight` [rows] is below `least_weight`, where `evidence`
+    /// [rows] says that they were seen at all. Drops nothing when less than `least_left` of them would be
+    /// left. Returns how many were dropped.
+    std::size_t keep_added(std::span<const float> weight, std::span<const double> evidence,
+                           double least_weight, double least_left);
 
     /// Begins a thing of another shape: the rows of the base fade to `logit` where they are more opaque, and
     /// so do those that a later label brings; rows that grew from seeds go, and `seeds` and `hidden`, of what

@@ -39,7 +39,7 @@ public:
         MethodWork left;
         left.pulls = std::max(0, request.iterations - first_iteration);
         left.refreshed_masks = refreshed_masks(request, first_iteration);
-        if (mode == EditMode::Add && request.look_again)
+        if (mode == EditMode::Add && request.prune_added)
             left.searched_views = SearchesOfAdded * request.views;
         return left;
     }

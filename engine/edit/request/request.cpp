@@ -68,7 +68,7 @@ EditRequest validated(EditRequest request) {
         throw Error(ErrorCode::InvalidArgument, "\"" + request.quality + "\" is not a quality",
                     "use draft, normal or fine");
     require_method(request.method);
-    views_left_out(request.left_out);
+    excluded_views_of(request.excluded_views);
     if (!request.source.empty()) request.source = phrase_of(request.source, "source");
     if (request.target.empty()) {
         if (request.source.empty())

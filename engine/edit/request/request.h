@@ -42,18 +42,18 @@ struct SearchSettings {
     int image_size = 96;
     double elevation = 12;
     std::string background = "black";
-    bool focus = true;
+    bool reframe_views = true;
     bool sided_view_words = false;
     // Localization
-    std::string rivals = "auto";
+    std::string competing_words = "auto";
     int attention_repeats = 1;
-    int second_look = 3;
+    int retry_passes = 3;
     double dbscan_eps = 2;
     int dbscan_min_samples = 4;
-    double keep_mass = 0.25;
+    double min_cluster_mass = 0.25;
     int positive_points = 5;
     int negative_points = 3;
-    double fallback_mass = 0.5;
+    double min_segment_attention = 0.5;
     double label_smoothness = 1.5;
     double coverage_px = 0.5;
     double least_confidence = 0.2;  // measured: `gseditpro-lab bench search`
@@ -74,33 +74,34 @@ struct SearchSettings {
         f("elevation", self.elevation,
           "Height of the lower ring of automatic views, degrees above the horizon.", Range{-60, 80});
         f("background", self.background, "Colour behind the scene: black, white, grey or #rrggbb.");
-        f("focus", self.focus, "Move the automatic views in on what was found and look again.");
+        f("reframe_views", self.reframe_views,
+          "Move the automatic views in on what was found and look again.");
         f("sided_view_words", self.sided_view_words,
           "Tell the model left from right too (\"front left view\"): for models that learned such words.");
-        f("rivals", self.rivals,
+        f("competing_words", self.competing_words,
           "Other things the scene shows (\"hat grass\", \"top hat, grass\"; auto: those the sentence names; "
           "none): pixels that attend more to "
           "them are not taken for the source.");
         f("attention_repeats", self.attention_repeats, "Attention passes per view, each with fresh noise.",
           Range{1, 100});
-        f("second_look", self.second_look,
+        f("retry_passes", self.retry_passes,
           "Attention passes more for a view that is at odds with what all views say together; 0 = it is left "
           "at odds.",
           Range{0, 100});
         f("dbscan_eps", self.dbscan_eps, "DBSCAN radius in pixels of a 64-pixel map.", Range{1, 32});
         f("dbscan_min_samples", self.dbscan_min_samples, "DBSCAN neighbours that make a core pixel.",
           Range{1, 1000});
-        f("keep_mass", self.keep_mass,
+        f("min_cluster_mass", self.min_cluster_mass,
           "Clusters below this share of the largest one's attention are dropped.", Range{0, 1});
         f("positive_points", self.positive_points, "Clicks inside for the segmenter.", Range{1, 50});
         f("negative_points", self.negative_points, "Clicks outside for the segmenter.", Range{0, 50});
-        f("fallback_mass", self.fallback_mass,
+        f("min_segment_attention", self.min_segment_attention,
           "A segment that captures less of the attention than this gives way to the attention region.",
           Range{0, 1});
         f("label_smoothness", self.label_smoothness,
           "How much neighbouring splats of one colour share their label; 0 = every splat for itself.",
           Range{0, 100});
-        f("evidence_px", self.coverage_px, "Splats seen over fewer pixels than this are not labelled.",
+        f("coverage_px", self.coverage_px, "Splats seen over fewer pixels than this are not labelled.",
           Range{0, 1e6});
         f("least_confidence", self.least_confidence,
           "A search that is less sure than this labels nothing; 0 = what was found is labelled, whatever it "
@@ -127,18 +128,18 @@ struct SearchSettings {
 /// What makes a label of what was found: another threshold asks no network.
 struct LabelThresholds {
     double attention_threshold = 0;
-    double tau = 0.4;
-    std::string left_out;
+    double label_threshold = 0.4;
+    std::string excluded_views;
 
     template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         f("attention_threshold", self.attention_threshold,
           "Attention above this share of the maximum counts; 0 = what the model states (0.5 in the paper).",
           Range{0, 1});
-        f("tau", self.tau,
+        f("label_threshold", self.label_threshold,
           "Splats of which the views say more than this are labelled: half a mask, half the attention, 0 to "
           "1.",
           Range{0, 1});
-        f("left_out", self.left_out,
+        f("excluded_views", self.excluded_views,
           "Views that do not vote, by their numbers from 0 (\"3, 17\"): those whose masks are seen to be "
           "wrong.");
     }
@@ -193,8 +194,8 @@ struct LoopSettings {
     bool dynamic_mask = true;
     double dynamic_from = 0.5;
     double dynamic_every = 0.125;
-    bool look_again = true;
-    double look_again_tau = 0.75;
+    bool prune_added = true;
+    double prune_added_threshold = 0.75;
     bool early_stop = false;
     double early_stop_change = 0.5 / 255;
     // Anchors with generations (method 2.3)
@@ -300,10 +301,10 @@ private:
           of_gradient("Share of the iterations after which masks are refreshed."), Range{0, 1});
         f("dynamic_every", self.dynamic_every,
           of_gradient("Share of the iterations between two refreshes of a view's mask."), Range{0, 1});
-        f("look_again", self.look_again,
+        f("prune_added", self.prune_added,
           of_gradient("When adding: from time to time look where the new thing is seen, and drop new splats "
                       "outside it."));
-        f("look_again_tau", self.look_again_tau,
+        f("prune_added_threshold", self.prune_added_threshold,
           of_gradient("New splats seen inside it for less than this share are dropped."), Range{0, 1});
         f("early_stop", self.early_stop, "Stop when no view changes any more.");
         f("early_stop_change", self.early_stop_change,
@@ -399,6 +400,18 @@ private:
 /// the values of the full-size method, all of which can be set here. What a stage depends on is the structs
 /// it is given.
 struct EditRequest : EditWords, SearchSettings, LabelThresholds, LoopSettings {
+    /// Names of before, which recipes, projects and command lines may still use.
+    static constexpr std::array<RenamedField, 10> Renamed{{{"rivals", "competing_words"},
+                                                           {"second_look", "retry_passes"},
+                                                           {"keep_mass", "min_cluster_mass"},
+                                                           {"fallback_mass", "min_segment_attention"},
+                                                           {"evidence_px", "coverage_px"},
+                                                           {"focus", "reframe_views"},
+                                                           {"tau", "label_threshold"},
+                                                           {"left_out", "excluded_views"},
+                                                           {"look_again", "prune_added"},
+                                                           {"look_again_tau", "prune_added_threshold"}}};
+
     template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         EditWords::visit_fields(self, f);
         SearchSettings::visit_fields(self, f);

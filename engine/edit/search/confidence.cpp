@@ -138,7 +138,7 @@ std::optional<SearchVerdict> refuse_label(const std::string& word, const Label& 
     return refusal(
         SearchProblem::NothingLabelled,
         fmt::format("the views agree on {} splat for \"{}\"", labelled == 0 ? "no" : "hardly a", word),
-        "name something the scene shows and the model knows, or lower tau");
+        "name something the scene shows and the model knows, or lower label_threshold");
 }
 
 SearchVerdict judge(const SearchEvidence& evidence, double least) {

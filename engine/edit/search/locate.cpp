@@ -1,7 +1,5 @@
-// Renders, asks for attention, makes masks and fuses them into labels.
+// Modes of a search: one label, or the place of something new.
 #include "engine/edit/search/locate.h"
-#include "engine/edit/placement/voxel_region.h"
-#include "engine/edit/request/decide_mode.h"
 
 #include <fmt/format.h>
 
@@ -19,6 +17,8 @@
 #include "engine/edit/masks/word_mask.h"
 #include "engine/edit/placement/head.h"
 #include "engine/edit/placement/placement_volume.h"
+#include "engine/edit/placement/voxel_region.h"
+#include "engine/edit/request/decide_mode.h"
 #include "engine/edit/search/word_search.h"
 #include "engine/edit/target_views/strategies/studio_background.h"
 #include "engine/language/grammar.h"

@@ -55,7 +55,7 @@ void over_views(ThreadPool* threads, std::size_t count,
 }
 
 WordSearch::WordSearch(const LocateInput& input, const LocateTools& tools, const ViewRenders& seen)
-    : input_(input), tools_(tools), seen_(seen), excluded_(views_left_out(input.request.left_out)) {}
+    : input_(input), tools_(tools), seen_(seen), excluded_(excluded_views_of(input.request.excluded_views)) {}
 
 double WordSearch::threshold() const {
     return request().attention_threshold > 0 ? request().attention_threshold : tools_.attention.threshold();
@@ -65,17 +65,17 @@ void WordSearch::check_stop() const {
     if (tools_.job.stop_requested()) throw Error(ErrorCode::Cancelled, "the search was stopped");
 }
 
-void WordSearch::exclude(std::vector<ViewEvidence>& views) const { leave_out(views, excluded_); }
+void WordSearch::exclude(std::vector<ViewEvidence>& views) const { exclude_views(views, excluded_); }
 
 SoughtWord WordSearch::sought(const std::string& name, bool absent) const {
     std::string sentence = language::normalised_prompt(request().prompt);
     if (!language::has_phrase(sentence, name))
         sentence = edit_sentence(request()).before();  // "on the snow" was "on the grass"
     if (!language::has_phrase(sentence, name)) sentence = "a " + name;
-    SoughtWord word{name, std::move(sentence), {}, request().rivals != "auto", absent};
-    if (absent || request().rivals == "none") return word;
+    SoughtWord word{name, std::move(sentence), {}, request().competing_words != "auto", absent};
+    if (absent || request().competing_words == "none") return word;
     for (const auto& other : word.competing_given
-                                 ? language::phrases_of(request().rivals)
+                                 ? language::phrases_of(request().competing_words)
                                  : language::Sentence(edit_sentence(request()).before()).things({name})) {
         if (other == name || (!word.competing_given && !language::vocabulary_contains(input_.known, other)))
             continue;
@@ -178,17 +178,17 @@ FoundWord WordSearch::find(const SoughtWord& word, std::vector<ViewEvidence>& vi
     views = look(word);
     if (word.whole) exclude(views);
     FoundWord found = fuse(word, views);
-    if (!found.verdict.sure() || request().second_look < 1) return found;
+    if (!found.verdict.sure() || request().retry_passes < 1) return found;
     const auto odd = to_ask_again(word, found.label, views);
     if (odd.empty()) return found;
     std::vector<ViewEvidence> again;
     const auto first = static_cast<float>(request().attention_repeats),
-               more = static_cast<float>(request().second_look);
+               more = static_cast<float>(request().retry_passes);
     for (std::size_t i = 0; i < odd.size(); ++i) {
         check_stop();
         const auto v = odd[i];
-        prepare(word, odd, i, request().second_look, SecondAsking);
-        auto maps = maps_of(word, v, request().second_look, SecondAsking + v);
+        prepare(word, odd, i, request().retry_passes, SecondAsking);
+        auto maps = maps_of(word, v, request().retry_passes, SecondAsking + v);
         ViewEvidence view;
         view.render = seen_.renders[v];
         view.map = std::move(maps.front());
@@ -263,7 +263,8 @@ FoundWord WordSearch::fuse(const SoughtWord& word, const std::vector<ViewEvidenc
     field = votes_.back_project(input_.gaussians.spans(), votes, input_.settings, tools_.rasterizer);
     rule = {least_coverage(field, request().coverage_px), request().label_smoothness,
             word.alone ? IslandShare : 0, input_.up, input_.front};
-    found.label = decide_label(word.name, input_.gaussians, found.field, request().tau, tools_.threads);
+    found.label =
+        decide_label(word.name, input_.gaussians, found.field, request().label_threshold, tools_.threads);
     if (auto refused = refuse_label(word.name, found.label)) return nothing(word, *std::move(refused));
     found.verdict = judge({word.name, views, field, found.label, recognised(word.name),
                            ground_seen(views, seen_.grounds), !word.competing.empty()},

@@ -84,7 +84,7 @@ EditRequest loop_request(EditRequest request, EditMode mode, bool by_views,
     request.iterations = plan.rounds * plan.fit_steps;
     request.rounds = plan.rounds;
     request.fit_steps = plan.fit_steps;
-    request.dynamic_mask = request.look_again = false;
+    request.dynamic_mask = request.prune_added = false;
     if (plan.anew) {
         grow_often(request, plan.fit_steps);
     } else if (request.densify_every > 0) {

@@ -221,7 +221,7 @@ Json to_json(const ProjectDescription::LabelEntry& entry) {
               {"threshold", any_number(static_cast<double>(entry.label.threshold))},
               {"attention_threshold", any_number(entry.label.attention_threshold)},
               {"found_for", entry.label.found_for},
-              {"left_out", entry.label.left_out},
+              {"excluded_views", entry.label.excluded_views},
               {"looked_from", entry.label.looked_from},
               {"weight", entry.weight},
               {"manual", entry.manual},
@@ -260,7 +260,8 @@ ProjectDescription::LabelEntry read_label(const Json& json, const std::string& n
     ProjectDescription::LabelEntry entry;
     fields.text("name", entry.label.name);
     fields.text("found_for", entry.label.found_for);
-    fields.text("left_out", entry.label.left_out);
+    fields.text("left_out", entry.label.excluded_views);  // its name before
+    fields.text("excluded_views", entry.label.excluded_views);
     fields.text("looked_from", entry.label.looked_from);
     double threshold = static_cast<double>(entry.label.threshold);
     fields.number("threshold", threshold, true);

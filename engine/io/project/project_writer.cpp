@@ -105,7 +105,7 @@ private:
         entry.label.threshold = label.threshold;
         entry.label.attention_threshold = label.attention_threshold;
         entry.label.found_for = label.found_for;
-        entry.label.left_out = label.left_out;
+        entry.label.excluded_views = label.excluded_views;
         entry.label.looked_from = label.looked_from;
         entry.weight = array(fmt::format("labels/{}.weight", index), label.weight);
         entry.manual = array(fmt::format("labels/{}.manual", index), label.manual);

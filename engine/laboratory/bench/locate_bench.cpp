@@ -68,8 +68,8 @@ std::vector<SettingPoint> search_points(const LocateBenchParameters& parameters,
                                       {{"method", "img2img"}, {"steps", steps}}));
     }
     if (parameters.parts) {
-        points.push_back(search_point("parts", "no second look", {{"second_look", 0}}, Json::object()));
-        points.push_back(search_point("parts", "no focus", {{"focus", false}}, Json::object()));
+        points.push_back(search_point("parts", "no second look", {{"retry_passes", 0}}, Json::object()));
+        points.push_back(search_point("parts", "no focus", {{"reframe_views", false}}, Json::object()));
         points.push_back(search_point("parts", "refined maps", Json::object(), {{"refinement", 1}}));
     }
     return points;

@@ -131,8 +131,8 @@ Json stated_by_size(ModelKind kind) {
     json["request"] = {
         {"views", 16},
         {"image_size", kind == ModelKind::Sd2Velocity ? 768 : 512},
-        {"tau", 0.5},
-        {"evidence_px", 1.0},
+        {"label_threshold", 0.5},
+        {"coverage_px", 1.0},
         {"iterations", 4000},
         {"geometry_share", 1.0},
         {"colour_coupling", 0.0},

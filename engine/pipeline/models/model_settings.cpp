@@ -5,6 +5,16 @@
 #include "engine/pipeline/models/installed.h"
 
 namespace gse::pipeline {
+namespace {
+
+/// The name that a setting of the request has now.
+std::string present_name(const std::string& field) {
+    for (const auto& renamed : renamed_fields<edit::EditRequest>())
+        if (field == renamed.before) return renamed.now;
+    return field;
+}
+
+}  // namespace
 
 #ifdef GSE_NEURAL
 namespace {
@@ -31,9 +41,10 @@ void apply_profile(const neural::ModelProfile& profile, EditRecipe& recipe,
     nlohmann::ordered_json stated = nlohmann::ordered_json::object();
     recipe.sources.clear();
     for (const auto& entry : profile.entries) {
-        const auto name = entry.part + "." + entry.field;
+        const auto field = entry.part == "request" ? present_name(entry.field) : entry.field;
+        const auto name = entry.part + "." + field;
         if (set_by_user.contains(name)) continue;
-        stated[entry.part][entry.field] = entry.value;
+        stated[entry.part][field] = entry.value;
         recipe.sources[name] = entry.source;
     }
     const auto set = [&](const char* part, auto& parameters) {

@@ -265,7 +265,7 @@ void EditJob::locate() {
 }
 
 /// The same from the views chosen already; the networks are asked only about pictures they have not seen.
-void EditJob::look_again(const EditRecipe& recipe) {
+void EditJob::relocate(const EditRecipe& recipe) {
     times_.begin("locate");
     take(pipeline::locate_again(*workplace_, *located_, recipe, control_));
     times_.end();
@@ -276,17 +276,17 @@ double EditJob::attention_threshold() const {
     return asked > 0 ? asked : workplace_->stated_threshold();
 }
 
-void EditJob::locate_again(double attention_threshold, const std::string& left_out) {
+void EditJob::locate_again(double attention_threshold, const std::string& excluded_views) {
     EditRecipe recipe = recipe_;
-    recipe.request.left_out = left_out;
+    recipe.request.excluded_views = excluded_views;
     recipe.request.attention_threshold = attention_threshold;
-    look_again(recipe);
+    relocate(recipe);
 }
 
 void EditJob::locate_anyway() {
     EditRecipe recipe = recipe_;
     recipe.request.least_confidence = 0;
-    look_again(recipe);
+    relocate(recipe);
 }
 
 void EditJob::correct_label(const std::vector<std::uint8_t>& bits) {
@@ -307,12 +307,13 @@ void EditJob::take_settings(const EditRecipe& recipe, bool relabels) {
     const auto request = edit::validated(recipe.request);
     const edit::LabelThresholds before = recipe_.request;
     static_cast<edit::LoopSettings&>(recipe_.request) = request;
-    recipe_.request.tau = request.tau;
+    recipe_.request.label_threshold = request.label_threshold;
     recipe_.guidance = recipe.guidance;
     plan_.reset();  // how far masks are grown, and whether the label counts at all
-    if (before.attention_threshold != request.attention_threshold || before.left_out != request.left_out ||
-        (relabels && before.tau != request.tau))
-        locate_again(request.attention_threshold, request.left_out);
+    if (before.attention_threshold != request.attention_threshold ||
+        before.excluded_views != request.excluded_views ||
+        (relabels && before.label_threshold != request.label_threshold))
+        locate_again(request.attention_threshold, request.excluded_views);
 }
 
 const edit::EditPlan& EditJob::plan() {
@@ -356,7 +357,7 @@ Edited EditJob::probe(const ProbeSize& size) {
     const log::Quiet nothing_said;  // of how well a few steps did: they only tell what a step takes
     EditRecipe plain = recipe_;
     plain.request.iterations = plain.request.fit_steps = size.steps;
-    plain.request.dynamic_mask = plain.request.look_again = plain.request.early_stop = false;
+    plain.request.dynamic_mask = plain.request.prune_added = plain.request.early_stop = false;
     plain.request.densify_every = 0;
     plain.request.rounds = plain.request.shape_rounds = plain.request.add_rounds = size.early ? 2 : 1;
     plain.request.shape_fit_steps = size.steps;

@@ -54,10 +54,10 @@ public:
     /// Labels what an unsure search found all the same.
     void locate_anyway();
     /// The same from the views chosen already, with another attention threshold, or without some views
-    /// (`left_out` of the request): no network is asked anything.
-    void locate_again(double attention_threshold, const std::string& left_out);
+    /// (`excluded_views` of the request): no network is asked anything.
+    void locate_again(double attention_threshold, const std::string& excluded_views);
     void locate_again(double attention_threshold) {
-        locate_again(attention_threshold, recipe_.request.left_out);
+        locate_again(attention_threshold, recipe_.request.excluded_views);
     }
     /// Who is told of the views while locate() looks; empty = nobody.
     void watch_views(ViewWatch watch) { workplace_->watch_views(std::move(watch)); }
@@ -140,7 +140,7 @@ private:
     void begin(Scene scene, std::shared_ptr<neural::TextToImage> model, Segmenters segmenters,
                const GivenCameras& given);
     void take(Located located);
-    void look_again(const EditRecipe& recipe);
+    void relocate(const EditRecipe& recipe);
     std::vector<Image> instance_pictures();
 
     EditRecipe recipe_;

@@ -62,10 +62,11 @@ EditRecipe recipe_from_json(const nlohmann::ordered_json& json, const std::files
         if (!json[part].is_object())
             throw Error(ErrorCode::InvalidArgument,
                         fmt::format("\"{}\" must be an object of settings", part));
-        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(parameters)>, edit::EditRequest>)
-            edit::read_request(parameters, json[part]);
-        else fields_from_json(parameters, json[part]);
-        for (const auto& [field, value] : json[part].items())
+        using Part = std::remove_cvref_t<decltype(parameters)>;
+        const auto fields = with_present_names(json[part], renamed_fields<Part>());
+        if constexpr (std::is_same_v<Part, edit::EditRequest>) edit::read_request(parameters, fields);
+        else fields_from_json(parameters, fields);
+        for (const auto& [field, value] : fields.items())
             if (!value.is_null()) recipe.given.insert(part + ("." + field));
         return true;
     };

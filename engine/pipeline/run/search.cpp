@@ -151,8 +151,8 @@ std::optional<edit::StudioBackground> ground_shown(RunContext& workplace, const 
                                         : std::nullopt;
 }
 
-edit::LocateResult look_from(RunContext& workplace, const Views& views, const EditRecipe& recipe,
-                             const std::vector<std::uint8_t>* label, const JobControl& control) {
+edit::LocateResult search_from(RunContext& workplace, const Views& views, const EditRecipe& recipe,
+                               const std::vector<std::uint8_t>* label, const JobControl& control) {
     auto input = question(workplace, recipe, views, label);
     input.ground = label == nullptr ? ground_shown(workplace, recipe, views) : std::nullopt;
     auto tools = workplace.tools(views, input.ground, control);
@@ -193,7 +193,7 @@ private:
         return from_label();
     }
 
-    bool moves() const { return views_.automatic && recipe_.request.focus; }
+    bool moves() const { return views_.automatic && recipe_.request.reframe_views; }
 
     std::optional<edit::StudioBackground> ground() {
         return hints_.label.empty() ? ground_shown(workplace_, recipe_, views_) : std::nullopt;
@@ -283,7 +283,7 @@ private:
 
     edit::LocateResult look(const EditRecipe& recipe, const Views& views,
                             const std::vector<std::uint8_t>& label) {
-        return look_from(workplace_, views, recipe, label.empty() ? nullptr : &label, control_);
+        return search_from(workplace_, views, recipe, label.empty() ? nullptr : &label, control_);
     }
 
     /// What few views from one distance find.
@@ -516,15 +516,15 @@ edit::LocateInput question(const RunContext& workplace, const EditRecipe& recipe
 Located locate(RunContext& workplace, const EditRecipe& recipe, const Views& views, const Hints& hints,
                const JobControl& control) {
     if (hints.label.empty())
-        edit::require_views(edit::views_left_out(recipe.request.left_out),
+        edit::require_views(edit::excluded_views_of(recipe.request.excluded_views),
                             views.views.size());  // before any work
     workplace.ask_anew(recipe.attention);
     EditRecipe all = recipe;  // from all views; what is left out is a matter of those that it ends with
-    all.request.left_out.clear();
+    all.request.excluded_views.clear();
     Located located = finished(Search(workplace, all, views, hints, control).run());
-    if (recipe.request.left_out.empty() || located.by_label()) return located;
+    if (recipe.request.excluded_views.empty() || located.by_label()) return located;
     all = located.recipe;
-    all.request.left_out = recipe.request.left_out;
+    all.request.excluded_views = recipe.request.excluded_views;
     return locate_again(workplace, located, all, control);
 }
 
@@ -533,7 +533,7 @@ Located locate_again(RunContext& workplace, const Located& located, const EditRe
     workplace.ask(recipe.attention);
     Located again{located.views, recipe, located.label, {}, located.target_read, {}};
     const auto* label = again.by_label() ? &again.label : nullptr;
-    again.result = look_from(workplace, again.views, recipe, label, control);
+    again.result = search_from(workplace, again.views, recipe, label, control);
     if (edit::moves_worn_place(recipe.request, again.result.mode)) again.result.room = located.result.room;
     return finished(std::move(again));
 }

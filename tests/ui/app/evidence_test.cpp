@@ -46,12 +46,12 @@ DOCTEST_TEST_CASE("views come in while a search looks; one can be left out, put 
     DOCTEST_CHECK(app.document().position() == at + 1);
     DOCTEST_CHECK(app.model().attention[2].step == edit::ViewStep::LeftOut);
     DOCTEST_CHECK(app.model().attention[2].render == render);  // what is on the screen stays
-    DOCTEST_CHECK(app.model().request.left_out == "2");
+    DOCTEST_CHECK(app.model().request.excluded_views == "2");
     const auto without = *active(app).weight;
     DOCTEST_CHECK(without != all);
     app.run(command::Undo{});
     DOCTEST_CHECK(*active(app).weight == all);
-    DOCTEST_CHECK(app.model().request.left_out.empty());
+    DOCTEST_CHECK(app.model().request.excluded_views.empty());
     DOCTEST_REQUIRE(session.settled());
     DOCTEST_CHECK(app.model().attention[2].step != edit::ViewStep::LeftOut);  // the evidence follows
     DOCTEST_CHECK(app.document().position() == at);
@@ -68,7 +68,7 @@ DOCTEST_TEST_CASE("views come in while a search looks; one can be left out, put 
     auto request = app.model().request;
     request.prompt = "a red bear on the grass", request.target = "red";
     app.run(command::SetRequest{request});
-    DOCTEST_CHECK(app.model().request.left_out.empty());  // another search has other views
+    DOCTEST_CHECK(app.model().request.excluded_views.empty());  // another search has other views
 }
 
 DOCTEST_TEST_CASE("a search that is stopped gives back the views of the one before") {

@@ -42,7 +42,7 @@ DOCTEST_TEST_CASE("a model's settings are taken where the artist changed nothing
         const auto steps = app.model().model_settings.learning.steps;
         app.run(command::ChooseModel{stating.string()});
         DOCTEST_REQUIRE(session.settled());
-        DOCTEST_CHECK(app.model().request.tau == 0.6);
+        DOCTEST_CHECK(app.model().request.label_threshold == 0.6);
         DOCTEST_CHECK(app.model().request_defaults.views == 5);
         DOCTEST_CHECK(app.model().model_settings_defaults.learning.steps == 333);
         DOCTEST_CHECK(app.model().request.views == 8);
@@ -50,20 +50,20 @@ DOCTEST_TEST_CASE("a model's settings are taken where the artist changed nothing
         DOCTEST_CHECK(app.model().model_settings.learning.steps == 333);
         app.run(command::ChooseModel{app::starter_model_path().string()});
         DOCTEST_REQUIRE(session.settled());
-        DOCTEST_CHECK(app.model().request.tau == usual.tau);
+        DOCTEST_CHECK(app.model().request.label_threshold == usual.label_threshold);
         DOCTEST_CHECK(app.model().request_defaults.views == usual.views);
         DOCTEST_CHECK(app.model().request.views == 8);
         DOCTEST_CHECK(app.model().model_settings.learning.steps == steps);
         app.run(command::ChooseModel{wrong.string()});
         DOCTEST_REQUIRE(session.settled());
         DOCTEST_CHECK(app.model().toasts.back().text.find("\"tao\"") != std::string::npos);
-        DOCTEST_CHECK(app.model().request.tau == usual.tau);
+        DOCTEST_CHECK(app.model().request.label_threshold == usual.label_threshold);
         app.run(command::ChooseModel{stating.string()});
         DOCTEST_REQUIRE(session.settled());
         app.shut_down();
     }
     Session again;
-    DOCTEST_CHECK(again.app.model().request.tau == 0.6);
+    DOCTEST_CHECK(again.app.model().request.label_threshold == 0.6);
     DOCTEST_CHECK(again.app.model().request.views == 5);
 }
 

@@ -341,18 +341,18 @@ DOCTEST_TEST_CASE("a threshold drag is one step of undo with its value, and undo
     app.run(command::Redo{});
     DOCTEST_CHECK(app.model().request.attention_threshold == 0.9);
     DOCTEST_REQUIRE(session.settled());
-    // The label's own threshold is what the recipe calls tau.
-    const double tau = app.model().request.tau;
+    // The label's own threshold is what the recipe calls label_threshold.
+    const double threshold = app.model().request.label_threshold;
     app.run(command::SetLabelThreshold{0.5f, false});
     app.run(command::SetLabelThreshold{0.55f, true});
     DOCTEST_CHECK(app.document().position() == at + 2);
     DOCTEST_CHECK(app.document().names().back() == "Threshold 0.55");
-    DOCTEST_CHECK(app.model().request.tau == 0.55);
+    DOCTEST_CHECK(app.model().request.label_threshold == 0.55);
     app.run(command::SetLabelThreshold{0.6f, true});
     DOCTEST_CHECK(app.document().position() == at + 3);
     app.run(command::Undo{});
     app.run(command::Undo{});
-    DOCTEST_CHECK(app.model().request.tau == tau);
+    DOCTEST_CHECK(app.model().request.label_threshold == threshold);
 }
 
 DOCTEST_TEST_CASE("a model that cannot be used is never in use: its row says why, the last good one stays") {

@@ -49,7 +49,7 @@ DOCTEST_TEST_CASE("prompt: every setting of a recipe is found by a word of its n
           std::pair{"dbscan", "request.dbscan_eps"}}) {
         search(wanted.first);
         DOCTEST_CHECK_MESSAGE(harness.find(wanted.second) != nullptr, wanted.first);
-        DOCTEST_CHECK_MESSAGE(harness.find("request.tau") == nullptr, wanted.first);
+        DOCTEST_CHECK_MESSAGE(harness.find("request.label_threshold") == nullptr, wanted.first);
     }
     search("shows its front");
     const auto over = harness.middle("prompt.filter");

@@ -74,7 +74,7 @@ DOCTEST_TEST_CASE(
     DOCTEST_CHECK(all.confidence.part("labelled_share") > 0.97);
     DOCTEST_CHECK(all.confidence.value == 0);
     DOCTEST_CHECK(all.problem == edit::SearchProblem::Unsure);
-    request.rivals = "none";  // whoever knows better may say so
+    request.competing_words = "none";  // whoever knows better may say so
     DOCTEST_CHECK(edit::locate(fixture.input(request), fixture.tools()).problem == edit::SearchProblem::None);
 }
 

@@ -206,9 +206,9 @@ DOCTEST_TEST_CASE("new splats outside of where the new thing is seen go, unless 
     for (int y = 0; y < 12; ++y)
         for (int x = 0; x < 24; ++x) attention.where.at(x, y) = 1;
     DOCTEST_CHECK(added() == std::pair<std::size_t, std::size_t>{30, 0});
-    request.look_again = false;
+    request.prune_added = false;
     DOCTEST_CHECK(added() == std::pair<std::size_t, std::size_t>{30, 20});
-    request.look_again = true;
+    request.prune_added = true;
     attention.where = Mask(24, 24);
     for (int x = 0; x < 24; ++x) attention.where.at(x, 0) = 1;  // far from all of them
     DOCTEST_CHECK(added() == std::pair<std::size_t, std::size_t>{30, 20});

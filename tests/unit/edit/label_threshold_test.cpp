@@ -16,7 +16,7 @@ DOCTEST_TEST_CASE("a label at another threshold is that of a fresh vote at it") 
     request.least_confidence = 0;
     edit::ViewMemory memory;
     const auto search = [&](double threshold) {
-        request.tau = threshold;
+        request.label_threshold = threshold;
         auto tools = fixture.tools();
         tools.memory = &memory;
         return edit::locate(fixture.input(request), tools);

@@ -57,7 +57,7 @@ struct Search {
         request.source = "ball";
         request.prompt = "a blue ball";
         request.target = "blue";
-        request.second_look = 0;
+        request.retry_passes = 0;
         request = edit::validated(request);
         attention.wrong = run().views[Wrong].render;
     }
@@ -72,23 +72,23 @@ struct Search {
 }  // namespace
 
 DOCTEST_TEST_CASE("lists of views: text to numbers and back") {
-    DOCTEST_CHECK(edit::views_left_out("").empty());
-    DOCTEST_CHECK(edit::views_left_out(" 17,3 , 3") == std::vector<std::size_t>{3, 17});
+    DOCTEST_CHECK(edit::excluded_views_of("").empty());
+    DOCTEST_CHECK(edit::excluded_views_of(" 17,3 , 3") == std::vector<std::size_t>{3, 17});
     DOCTEST_CHECK(edit::with_view("17, 3", 5, true) == "3, 5, 17");
     DOCTEST_CHECK(edit::with_view("3, 5", 5, true) == "3, 5");
     DOCTEST_CHECK(edit::with_view("3, 5, 17", 5, false) == "3, 17");
     DOCTEST_CHECK(edit::with_view("5", 5, false).empty());
     for (const char* wrong : {"front", "3;4", "-1", "3.5", "99999999999999999999999"})
-        DOCTEST_CHECK_THROWS_AS(edit::views_left_out(wrong), Error);
+        DOCTEST_CHECK_THROWS_AS(edit::excluded_views_of(wrong), Error);
     edit::EditRequest request;
-    request.source = "ball", request.prompt = "a blue ball", request.left_out = "third";
+    request.source = "ball", request.prompt = "a blue ball", request.excluded_views = "third";
     DOCTEST_CHECK_THROWS_AS(edit::validated(request), Error);
 }
 
 DOCTEST_TEST_CASE("a view that is left out has no say: the label is that of a search without it") {
     Search search;
     const auto misled = search.run();
-    search.request.left_out = std::to_string(Wrong);
+    search.request.excluded_views = std::to_string(Wrong);
     const auto without = search.run();
     DOCTEST_CHECK(without.found.field.probability != misled.found.field.probability);
     DOCTEST_CHECK(without.views.size() == search.views.size());
@@ -110,11 +110,11 @@ DOCTEST_TEST_CASE("a view that is left out has no say: the label is that of a se
 DOCTEST_TEST_CASE(
     "so many views can be left out that too few are left, and a view that is not there cannot") {
     Search search;
-    search.request.left_out = "0, 1, 2, 3, 4, 5, 6, 7";
+    search.request.excluded_views = "0, 1, 2, 3, 4, 5, 6, 7";
     const auto few = search.run();
     DOCTEST_CHECK(few.problem == edit::SearchProblem::FewViews);
     DOCTEST_CHECK(few.message.find("2 of 2 views") != std::string::npos);
-    search.request.left_out = "10";
+    search.request.excluded_views = "10";
     DOCTEST_CHECK_THROWS_WITH_AS(
         search.run(), doctest::Contains("view 10 is to be left out, but the last one is 9"), Error);
 }
@@ -122,9 +122,9 @@ DOCTEST_TEST_CASE(
 DOCTEST_TEST_CASE(
     "a view in which the word draws much less attention than in the others has no say, and tells why") {
     Search search;
-    search.request.left_out = std::to_string(Wrong);
+    search.request.excluded_views = std::to_string(Wrong);
     const auto without = search.run();
-    search.request.left_out.clear();
+    search.request.excluded_views.clear();
     search.attention.scale = 0.3f;
     const auto faint = search.run();
     for (std::size_t v = 0; v < faint.views.size(); ++v)
@@ -148,7 +148,7 @@ DOCTEST_TEST_CASE("something new is not put where only a view says that was left
     Search search;
     search.request.mode = "add";
     search.request.prompt = "a ball with a hat", search.request.target = "hat";
-    search.request.left_out = std::to_string(Wrong);
+    search.request.excluded_views = std::to_string(Wrong);
     const auto located = search.run();
     DOCTEST_CHECK(located.views[Wrong].step == edit::ViewStep::LeftOut);
     DOCTEST_CHECK(located.views[Wrong].failed);

@@ -141,7 +141,7 @@ DOCTEST_TEST_CASE("a rival word takes the pixels that attend more to it") {
     const Quiet quiet;
     Fixture fixture;
     auto request = request_for("a blue ball", "blue");
-    request.rivals = "grass, ball";
+    request.competing_words = "grass, ball";
     const auto found = edit::locate(fixture.input(request), fixture.tools());
     DOCTEST_CHECK(fixture.attention.queries.front().prompt == "a blue ball, grass");
     for (const auto& view : found.views)
@@ -164,7 +164,7 @@ DOCTEST_TEST_CASE("what another thing of the sentence attends to for sure is not
     DOCTEST_CHECK(fixture.attention.queries.front().prompt == "a blue ball on the grass");
     const double competing = iou(*found.label.bits, fixture.scene.first);
     DOCTEST_CHECK(competing > LeastIouUnrefined);  // the ball is kept, its lower half too
-    request.rivals = "none";
+    request.competing_words = "none";
     const auto alone = edit::locate(fixture.input(request), fixture.tools(&segmenter));
     constexpr double least_gain = 0.05;  // the other ball's lower half, in the views whose mask takes it
     DOCTEST_CHECK(competing > iou(*alone.label.bits, fixture.scene.first) + least_gain);
@@ -179,7 +179,7 @@ DOCTEST_TEST_CASE(
     auto request = request_for("a blue ball on the grass", "blue");
     const auto found = edit::locate(fixture.input(request), fixture.tools());
     DOCTEST_CHECK(iou(*found.label.bits, fixture.scene.first) > LeastIouUnrefined);
-    request.rivals = "grass";
+    request.competing_words = "grass";
     DOCTEST_CHECK_THROWS_AS(edit::locate(fixture.input(request), fixture.tools()), Error);
 }
 
@@ -194,7 +194,7 @@ DOCTEST_TEST_CASE("what the attention covers belongs to the thing, even where th
                                 [](const auto& view) { return view.branch == "points"; }) > 6);
     const double covered = iou(*found.label.bits, fixture.scene.first);
     DOCTEST_CHECK(covered > LeastIouUnrefined);
-    request.tau = 0.6;  // more than half a vote: the masks must agree
+    request.label_threshold = 0.6;  // more than half a vote: the masks must agree
     const auto strict = edit::locate(fixture.input(request), fixture.tools(&segmenter));
     constexpr double least_gain = 0.1;  // the part left out is a third of the ball
     DOCTEST_CHECK(covered > iou(*strict.label.bits, fixture.scene.first) + least_gain);
@@ -381,7 +381,7 @@ DOCTEST_TEST_CASE(
     DOCTEST_CHECK(query.prompt == "a blue * beach ball on grass");
     DOCTEST_CHECK(query.words ==
                   std::vector<std::string>{"beach ball", "grass"});  // its head is no rival of the phrase
-    request.rivals = "top hat, grass";
+    request.competing_words = "top hat, grass";
     edit::locate(fixture.input(request), fixture.tools());
     DOCTEST_CHECK(fixture.attention.queries.back().words ==
                   std::vector<std::string>{"beach ball", "top hat", "grass"});

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <limits>
+#include <map>
 #include <set>
 #include <string>
 #include <type_traits>
@@ -83,11 +84,31 @@ DOCTEST_TEST_CASE("settings of earlier versions that are no longer there are rea
     DOCTEST_CHECK_THROWS_AS(fields_from_json(request, {{"polish_steps", 20}, {"no_such_field", 1}}), Error);
 }
 
+DOCTEST_TEST_CASE("settings are read under the names that they had before, too") {
+    const std::map<std::string, nlohmann::ordered_json> before{
+        {"tau", 0.75},         {"keep_mass", 0.5},     {"fallback_mass", 0.25}, {"second_look", 5},
+        {"focus", false},      {"rivals", "hat"},      {"evidence_px", 2.5},    {"left_out", "3, 17"},
+        {"look_again", false}, {"look_again_tau", 0.5}};
+    DOCTEST_CHECK(before.size() == EditRequest::Renamed.size());
+    for (const auto& renamed : EditRequest::Renamed) {
+        DOCTEST_CAPTURE(renamed.before);
+        EditRequest old_name, new_name;
+        fields_from_json(old_name, {{renamed.before, before.at(renamed.before)}});
+        fields_from_json(new_name, {{renamed.now, before.at(renamed.before)}});
+        DOCTEST_CHECK(fields_to_json(old_name) == fields_to_json(new_name));
+        DOCTEST_CHECK(fields_to_json(old_name) != fields_to_json(EditRequest{}));
+        DOCTEST_CHECK_FALSE(fields_to_json(old_name).contains(renamed.before));
+        nlohmann::ordered_json both;
+        both[renamed.before] = both[renamed.now] = before.at(renamed.before);
+        DOCTEST_CHECK_THROWS_AS(fields_from_json(old_name, both), Error);
+    }
+}
+
 DOCTEST_TEST_CASE("JSON with an unknown name, a wrong type or a value out of range is refused") {
     EditRequest request;
     DOCTEST_CHECK_THROWS_AS(fields_from_json(request, {{"no_such_field", 1}}), Error);
     DOCTEST_CHECK_THROWS_AS(fields_from_json(request, {{"iterations", "many"}}), Error);
-    DOCTEST_CHECK_THROWS_AS(fields_from_json(request, {{"tau", 1.5}}), Error);
+    DOCTEST_CHECK_THROWS_AS(fields_from_json(request, {{"label_threshold", 1.5}}), Error);
     EditRequest hostile;
     hostile.prompt = "a blue bear";
     hostile.source = "bear";

@@ -143,7 +143,7 @@ DOCTEST_TEST_CASE("looking again for what is new does not delay the rest") {
     tools.attention = &attention;  // finds nothing, so that nothing is dropped
     const auto looked = edit::run_edit(scene.set, plan, request, tools);
     DOCTEST_CHECK(attention.calls == 10);  // after iterations 60 and 90, five views each
-    request.look_again = false;
+    request.prune_added = false;
     const auto plain = edit::run_edit(scene.set, plan, request, tools);
     DOCTEST_REQUIRE(plain.converged);
     DOCTEST_CHECK(plain.iterations > 90);

@@ -55,7 +55,7 @@ inline ProjectData random_project(const SceneSource& source, std::uint64_t seed)
         project.state = with_edit(project.state, node);
     }
     project.state.labels = {random_label(project.state, seed), random_label(project.state, seed + 1)};
-    project.state.labels[0].left_out = "3, 17";
+    project.state.labels[0].excluded_views = "3, 17";
     project.state.labels[0].looked_from = "270";
     project.state.labels[0].attention_threshold = 0.3125;  // the other was not found by a search
     project.state.labels[1].weight = nullptr;
@@ -104,7 +104,7 @@ inline bool same_label(const NamedLabel& a, const NamedLabel& b) {
                             : a.absent->ids == b.absent->ids && a.absent->weight == b.absent->weight &&
                                   a.absent->manual == b.absent->manual;
     return absent && a.name == b.name && a.threshold == b.threshold &&
-           a.attention_threshold == b.attention_threshold && a.left_out == b.left_out &&
+           a.attention_threshold == b.attention_threshold && a.excluded_views == b.excluded_views &&
            a.looked_from == b.looked_from && same_array(a.weight, b.weight) &&
            same_array(a.manual, b.manual) && same_array(a.bits, b.bits) && same_field(a.found, b.found);
 }

@@ -98,14 +98,14 @@ DOCTEST_TEST_CASE("profile: a kind's values, and over them those of gseditpro.js
     DOCTEST_CHECK(value_of(built_in, "guidance", "guidance_scale") == 7.5);
     DOCTEST_CHECK(value_of(built_in, "dreambooth", "learning_rate") == 5e-6);
     DOCTEST_CHECK(value_of(built_in, "job", "threads") >= 1);
-    DOCTEST_CHECK(value_of(built_in, "request", "tau") == 0.5);
+    DOCTEST_CHECK(value_of(built_in, "request", "label_threshold") == 0.5);
     model.state(
         R"({"name": "mine", "profile": {"request": {"image_size": 384}, "attention": {"steps": 20}}})");
     const auto stated = model_profile(model.path());
     DOCTEST_REQUIRE(entry_of(stated, "request", "image_size") != nullptr);
     DOCTEST_CHECK(entry_of(stated, "request", "image_size")->value == 384);
     DOCTEST_CHECK(entry_of(stated, "request", "image_size")->source == "file gseditpro.json");
-    DOCTEST_CHECK(entry_of(stated, "request", "tau")->source == "model");
+    DOCTEST_CHECK(entry_of(stated, "request", "label_threshold")->source == "model");
     DOCTEST_CHECK(value_of(stated, "attention", "steps") == 20);
     DOCTEST_CHECK(stated.entries.size() == built_in.entries.size() + 1);
     // A checkpoint's file is in its folder.

@@ -62,6 +62,19 @@ DOCTEST_TEST_CASE(
     DOCTEST_CHECK(pipeline::search_key(recipe) == before);
 }
 
+DOCTEST_TEST_CASE(
+    "a recipe with the names of before gives its settings, which count as given under their present ones") {
+    const auto recipe = pipeline::recipe_from_json(
+        {{"version", 1},
+         {"request", {{"prompt", "a red bear"}, {"tau", 0.75}, {"left_out", "3"}, {"focus", false}}}},
+        {});
+    DOCTEST_CHECK(recipe.request.label_threshold == 0.75);
+    DOCTEST_CHECK(recipe.request.excluded_views == "3");
+    DOCTEST_CHECK_FALSE(recipe.request.reframe_views);
+    DOCTEST_CHECK(recipe.given == std::set<std::string>{"request.prompt", "request.label_threshold",
+                                                        "request.excluded_views", "request.reframe_views"});
+}
+
 DOCTEST_TEST_CASE("every field of a request belongs to one part of it") {
     const auto all = names<edit::EditRequest>();
     const std::size_t parts = names<edit::EditWords>().size() + names<edit::SearchSettings>().size() +
