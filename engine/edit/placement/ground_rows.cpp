@@ -21,7 +21,7 @@ constexpr double MostLow = 0.5;     // of the label: more of it is a ground itse
 constexpr double Nearer = 0.5;      // distance to the ground's colour, over that to the thing's
 constexpr double Apart =
     0.1;  // of a coefficient, 0.03 of a channel: colours of a thing nearer to a row are its own
-constexpr std::size_t LeastGroundRows = 20;  // rows that make a ground
+constexpr std::size_t LeastGround = 20;  // rows that make a ground
 constexpr std::size_t LeastBeside =
     5;  // of them beyond the thing's half width, in each of four quarters: a ground reaches out on all sides
 constexpr std::size_t MostColours = 600;  // of each that a row is compared with
@@ -77,7 +77,7 @@ std::vector<std::size_t> ground_rows(const GaussianSet& set, const std::vector<s
             thing.push_back(colour(row));
         }
     }
-    if (ground.size() < LeastGroundRows || *std::min_element(beside.begin(), beside.end()) < LeastBeside)
+    if (ground.size() < LeastGround || *std::min_element(beside.begin(), beside.end()) < LeastBeside)
         return {};
     if (static_cast<double>(low.size()) > MostLow * static_cast<double>(low.size() + thing.size())) return {};
     thin_out(ground);
