@@ -39,8 +39,8 @@ struct NamedLabel {
         manual;  // [N] +1 added, -1 removed by hand, 0 = as the weight says
     std::shared_ptr<const std::vector<std::uint8_t>> bits;  // [N] 0 or 1, what the others give
     std::shared_ptr<const AbsentRows> absent;               // may be null
-    /// What the views of its search said; the weights follow from it and the threshold. Null for a label that
-    /// was not searched for, and once its rows are others.
+    /// Field of its search. The weights follow from it and the threshold. Null for a label that was not
+    /// searched for, and once its rows are others.
     std::shared_ptr<const FoundField> found = {};
 };
 

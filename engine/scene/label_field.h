@@ -1,4 +1,4 @@
-// What the views of a search say about every Gaussian, apart from the threshold that makes a label of it.
+// Votes of a search's views on every Gaussian, apart from the threshold that makes a label of them.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ struct LabelField {
     int views_used = 0;
 };
 
-/// How a label is made of a field, beside the threshold.
+/// Rule by which a field becomes a label, beside the threshold.
 struct LabelRule {
     double least_coverage = 0.5;         // pixels: Gaussians of no more count as unseen
     double smoothness = 1.5;             // of the minimum cut, nats; 0 = no cut

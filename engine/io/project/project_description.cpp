@@ -237,7 +237,7 @@ Json to_json(const ProjectDescription::LabelEntry& entry) {
     return json;
 }
 
-/// What the views of a label's search said; older projects do not have it.
+/// Reads the field of a label's search. Older projects do not have it.
 void read_views(const Json& json, const std::string& name, ProjectDescription::LabelEntry& entry) {
     const Fields fields(json, name);
     fields.text("probability", entry.probability);

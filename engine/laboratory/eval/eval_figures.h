@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "engine/edit/interfaces/image_text_encoder.h"
-#include "engine/edit/request/scales.h"
 #include "engine/edit/optimise/edit_loop.h"
+#include "engine/edit/request/scales.h"
 #include "engine/edit/search/locate.h"
 #include "engine/laboratory/eval/eval_suite.h"
 #include "engine/pipeline/run/scene_tools.h"
