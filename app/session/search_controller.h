@@ -50,7 +50,9 @@ public:
     const edit::EditRequest& request() const { return request_; }
     void set_request(const edit::EditRequest& request);
     void set_seed(std::uint64_t seed) { request_.seed = seed; }
-    void set_label_threshold(double threshold) { request_.label_threshold = threshold; }  // a repeated search gives that label
+    void set_label_threshold(double threshold) {
+        request_.label_threshold = threshold;
+    }  // a repeated search gives that label
     void forget_target() { request_.target.clear(); }
     /// Fields that still are as `before` has them become as `after` has them.
     void move_request(const edit::EditRequest& before, const edit::EditRequest& after);

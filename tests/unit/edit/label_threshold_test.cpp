@@ -14,11 +14,11 @@ DOCTEST_TEST_CASE("a label at another threshold is that of a fresh vote at it") 
     Fixture fixture;
     auto request = request_for("a blue ball", "blue");
     request.least_confidence = 0;
-    edit::ViewMemory memory;
+    edit::LocateCache cache;
     const auto search = [&](double threshold) {
         request.label_threshold = threshold;
         auto tools = fixture.tools();
-        tools.memory = &memory;
+        tools.cache = &cache;
         return edit::locate(fixture.input(request), tools);
     };
     constexpr double First = 0.4;

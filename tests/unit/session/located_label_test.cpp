@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 
+#include "app/session/state/located_label.h"
 #include "engine/edit/search/decide_label.h"
-#include "engine/pipeline/session/located_label.h"
 #include "engine/scene/label_ops.h"
 #include "tests/unit/edit/edit_scenes.h"
 
@@ -32,7 +32,7 @@ struct Found {
         found.rule.smoothness = 1.5;
         label.name = "ball";
         label.found = std::make_shared<const FoundField>(std::move(found));
-        label = pipeline::at_threshold(std::move(label), scene.set, 0.5);
+        label = app::at_threshold(std::move(label), scene.set, 0.5);
     }
 };
 
@@ -52,13 +52,13 @@ DOCTEST_TEST_CASE("a slid label is decided anew, back and forth, and corrections
     int differs = 0;
     for (const double threshold : std::array{0.3, 0.4, 0.6, 0.7}) {
         DOCTEST_CAPTURE(threshold);
-        const auto slid = pipeline::at_threshold(corrected, set, threshold);
+        const auto slid = app::at_threshold(corrected, set, threshold);
         auto expected = *edit::decide_label("ball", set, *found.label.found, threshold).bits;
         expected[0] = 0;
         DOCTEST_CHECK(*slid.bits == expected);
         DOCTEST_CHECK(slid.threshold == static_cast<float>(threshold));
         differs += *with_threshold(corrected, slid.threshold).bits != expected ? 1 : 0;
-        const auto back = pipeline::at_threshold(slid, set, 0.5);
+        const auto back = app::at_threshold(slid, set, 0.5);
         DOCTEST_CHECK(*back.bits == *corrected.bits);
         DOCTEST_CHECK(*back.weight == *corrected.weight);
     }
@@ -69,11 +69,11 @@ DOCTEST_TEST_CASE("a label without a field, or of other rows, compares its weigh
     const Found found;
     NamedLabel plain = found.label;
     plain.found = nullptr;
-    const auto slid = pipeline::at_threshold(plain, found.scene.set, 0.7);
+    const auto slid = app::at_threshold(plain, found.scene.set, 0.7);
     DOCTEST_CHECK(*slid.bits == *with_threshold(plain, 0.7f).bits);
     DOCTEST_CHECK(*slid.weight == *plain.weight);
     const auto fewer = found.scene.set.filtered(found.scene.first);
-    DOCTEST_CHECK(*pipeline::at_threshold(found.label, fewer, 0.7).bits == *slid.bits);
+    DOCTEST_CHECK(*app::at_threshold(found.label, fewer, 0.7).bits == *slid.bits);
     DOCTEST_CHECK(view_probability(found.label)->size() == found.scene.set.size());
     DOCTEST_CHECK(*view_probability(found.label) == found.label.found->field.probability);
     DOCTEST_CHECK(view_probability(plain) == plain.weight);
