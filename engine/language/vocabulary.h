@@ -15,8 +15,8 @@ struct VocabularyMatch {
 
 VocabularyMatch match_word(const std::string& word, const std::vector<std::string>& known);
 
-/// The sentence as a model of the words `known` (lower case) is told it: known words, and commas between them.
-/// `signs`: characters that are words of their own, and stay.
+/// The sentence as a model of the words `known` (lower case) is told it: known words, and commas between
+/// them. `signs`: characters that are words of their own, and stay.
 std::string filter_to_vocabulary(std::string_view sentence, const std::vector<std::string>& known,
                                  std::string_view signs = {});
 

@@ -428,7 +428,8 @@ private:
             std::count_if(votes.begin(), votes.end(), [](const auto& vote) { return vote.failed; });
         if (2 * static_cast<std::size_t>(failed) > votes.size()) return;  // the model does not see it yet
         const auto seen = localize::back_project(spans(set_.rows()), votes, settings_, tools_.rasterizer);
-        result.pruned += set_.keep_added(seen.probability, seen.coverage, request_.prune_added_threshold, LeastLeft);
+        result.pruned +=
+            set_.keep_added(seen.probability, seen.coverage, request_.prune_added_threshold, LeastLeft);
     }
 
     /// What was rendered last, as networks expect pictures: in [0,1].

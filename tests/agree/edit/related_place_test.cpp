@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "engine/base/log.h"
+#include "engine/edit/placement/voxel_region.h"
 #include "engine/edit/search/locate.h"
 #include "engine/laboratory/synth/synth.h"
 #include "engine/localize/clusters.h"

@@ -2,6 +2,7 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
+#include "engine/edit/placement/voxel_region.h"
 #include "tests/unit/edit/edit_scenes.h"
 
 #include "engine/language/grammar.h"

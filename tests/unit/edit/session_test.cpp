@@ -11,6 +11,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/log.h"
+#include "engine/edit/placement/voxel_region.h"
 #include "tests/unit/edit/edit_scenes.h"
 
 namespace session_test {

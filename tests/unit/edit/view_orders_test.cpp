@@ -321,7 +321,8 @@ DOCTEST_TEST_CASE("settings that are said to have no effect have none") {
             });
         DOCTEST_CHECK(unused == (by_views ? 13 : 15));
     }
-    const std::set<std::string> always{"seed", "strength", "rate_colour", "snapshot_every", "label_threshold"};
+    const std::set<std::string> always{"seed", "strength", "rate_colour", "snapshot_every",
+                                       "label_threshold"};
     const edit::EditRequest usual;
     edit::EditRequest::visit_fields(usual,
                                     [&](const char* name, const auto&, const FieldHelp& help, auto...) {
