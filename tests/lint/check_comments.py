@@ -6,7 +6,7 @@ import sys
 import tempfile
 
 ROOMS = ("app", "ui", "engine")
-NOT_YET = ("engine/edit/", "engine/pipeline/run/", "engine/pipeline/select/")   # not rewritten yet
+NOT_YET = ()   # rooms that are not rewritten yet
 SUFFIXES = {".h", ".cpp", ".inl", ".cu", ".comp"}
 MOST_WORDS = 30
 BEGINNINGS = re.compile(r"(What|The same|Of|Where)\b")
@@ -17,7 +17,7 @@ CITED = re.compile(r"\b([\w-]+)\.md\b(,? (\d+(?:\.\d+)*)\b)?")
 OUTSIDE = re.compile(r"\b(?:method|views|raster|formats|design|style) [A-Z]?\d+(?:\.\d+)*\b(?! ?(?:px|%|MB))")
 LITERAL = r'"((?:\\.|[^"\\])*)"'
 LITERALS = re.compile(LITERAL)
-FIELD_HELP = re.compile(r'\bf\(\s*"[a-z_0-9]+",\s*self\.[\w.]+,\s*((?:' + LITERAL + r'\s*)+)')
+FIELD_HELP = re.compile(r'\bf\(\s*"[a-z_0-9]+",\s*self\.[\w.]+,\s*(?:\w+\(\s*)?((?:' + LITERAL + r'\s*)+)')
 OPTION_HELP = re.compile(r'\badd_(?:option|flag|subcommand)\(\s*"[^"]*",(?:\s*[\w.\->&*\[\]]+,)?\s*((?:' + LITERAL + r'\s*)+)\)')
 
 
@@ -46,6 +46,7 @@ def help_texts(text):
 
 
 def sentences(text):
+    text = "\n".join(line for line in text.split("\n") if not line.startswith("|"))   # no tables
     # A line that ends in ";" or ":" ends an entry of a list, as a blank line ends a paragraph.
     for paragraph in re.split(r"\n\s*\n|\n(?=\s*(?:[-*] |\d+\. ))|(?<=[;:])\n", text):
         if all(line.startswith("  ") for line in paragraph.split("\n") if line.strip()) and "\n\n" in text:

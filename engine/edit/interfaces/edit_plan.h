@@ -1,4 +1,4 @@
-// What an edit works on: views, masks, labelled rows, seeds.
+// Inputs of an edit: views, masks, labelled rows, seeds.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace gse::edit {
 
-/// What the loop works on.
+/// Inputs of the loop.
 struct EditPlan {
     std::vector<View> views;              // cameras at the size of the pictures
     std::vector<std::string> view_words;  // per view, or empty

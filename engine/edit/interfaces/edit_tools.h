@@ -48,8 +48,8 @@ struct EditTools {
     MultiViewEditor* views = nullptr;  // leads the edit in place of `guidance`: redraws views to fit to
     double snapshot_seconds = 0;  // above 0: a snapshot whenever this much time has passed (more where they
                                   // take long), instead of by iterations
-    /// Of view guidance: shows the redrawn views, as soon as a round is redrawn and whenever something about
-    /// them changes.
+    /// Shows the redrawn views of view guidance. Called as soon as a round is redrawn, and on every change of
+    /// them.
     std::function<void(const ViewTargets&)> targets = {};
     /// Asked when a round was redrawn, before every iteration, and again after orders: what the artist says
     /// meanwhile, or nothing. May wait for an answer; a stop request has to end that.

@@ -21,7 +21,7 @@ constexpr float Memory = 0.5f;                    // weight of the mask before
 constexpr float TurnsOn = 0.6f, TurnsOff = 0.4f;  // hysteresis
 constexpr double LargestGrowth = 3;               // times the static area; beyond, the mask has run away
 
-/// What replaces the word ("on the snow" that was "on the grass") is looked for once the edit shows it.
+/// Word to look for once the edit shows it: the replacement ("on the snow" that was "on the grass").
 std::string word_after(const EditRequest& request, std::string word) {
     if (language::has_phrase(request.prompt, word)) return word;
     return language::has_phrase(request.prompt, request.target) ? request.target : std::string();

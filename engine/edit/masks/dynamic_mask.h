@@ -28,7 +28,7 @@ public:
     void refresh(std::size_t view, int iteration, const Image& shown, const Image& label_seen);
     /// Replaces a view's static mask: the label was corrected.
     void set_static(std::size_t view, Mask mask);
-    /// Where the word is in a current render: attention, cleaned and refined by the segmenter; may be empty.
+    /// Mask of the word in a current render: attention, cleaned and refined by the segmenter. May be empty.
     Mask found_in(const Image& shown, std::size_t view, int iteration) const;
     bool can_look() const { return attention_ != nullptr && !word_.empty(); }
     const Mask& mask(std::size_t view) const { return masks_[view]; }

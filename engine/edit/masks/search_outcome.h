@@ -6,7 +6,7 @@
 
 namespace gse::edit {
 
-/// What a view came to.
+/// Outcome of a view.
 enum class ViewStep {
     Found,
     NoAttention,  // the word drew none
@@ -31,7 +31,7 @@ enum class SearchProblem {
 std::string step_text(ViewStep step);
 std::string step_remedy(ViewStep step);
 
-/// What a search needs whose views came to these steps: what most of the failed ones need.
+/// Need of a search whose views came to these steps: the need of most failed ones.
 std::string search_remedy(const std::vector<ViewStep>& steps);
 
 }  // namespace gse::edit

@@ -8,9 +8,8 @@
 
 namespace gse::edit {
 
-/// Indices of the views to redraw, ascending: farthest-point sample of the cameras among those of which what
-/// may change covers a share of the picture, starting with the view that shows most of it. `covered`: share
-/// of each view's picture.
+/// Indices of the views to redraw, ascending. They are a farthest-point sample of the cameras that see enough
+/// of the label, starting with the view that shows most of it. `covered`: share of each view's picture.
 std::vector<std::size_t> views_to_redraw(const std::vector<View>& views, const std::vector<double>& covered,
                                          std::size_t count);
 

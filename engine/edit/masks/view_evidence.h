@@ -1,4 +1,4 @@
-// What one view of a search contributed.
+// Contribution of one view to a search.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// What one view of a search says, as the vote that labels are fused from.
+// Vote of one view of a search, from which labels are fused (METHOD.md, Label voting).
 #pragma once
 
 #include <cstddef>
@@ -13,16 +13,16 @@ namespace gse::edit {
 /// [H,W,1], 0 or 1.
 Image mask_image(const Mask& mask);
 
-/// What a view says about its pixels, [H,W,1] in [0,1]. A mask cut out by colours has sharp edges but leaves
-/// out what has another colour (a mushroom's stem, a car's windows); the attention is blurred but knows that
-/// they belong. Where the two disagree, the other views and the cut between neighbours decide; what another
-/// named thing has for sure (the white legs of a dog on snow) the mask does not take from it. The mask of a
-/// segmenter that is trusted is believed as it is.
+/// Probability of each pixel in a view, [H,W,1] in [0,1]. A mask cut out by colours has sharp edges but
+/// misses parts of another colour (a mushroom's stem, a car's windows). The attention is blurred but includes
+/// them. Where the two disagree, the other views and the cut between neighbours decide. Parts that another
+/// named object has for sure (the white legs of a dog on snow) are not taken from it. The mask of a trusted
+/// segmenter is taken as it is.
 Image vote_of(const ViewEvidence& view, double threshold);
 
-/// How far ahead the others are (`competitor_margin`); maps[0] is the view's own. Those that the user gave
-/// (`strict`) take every pixel they have more of, those of the sentence only count in vote_of(): the
-/// attention of a wide ground is strong under the feet of what stands on it.
+/// Margin of the competing words' maps (`competitor_margin`); maps[0] is the view's own. Words that the user
+/// gave (`strict`) take every pixel they have more of. Words of the sentence only count in vote_of(): the
+/// attention of a wide ground is strong under the feet of an object on it.
 void suppress_competitors(ViewEvidence& view, const std::vector<Image>& maps, bool strict);
 
 /// The largest of its values; those that are not finite do not count.

@@ -1,5 +1,5 @@
-// Where a picture shows a word: one finder for the search, for the masks that follow an edit, and for the
-// look at what was added.
+// Mask of a word in a picture: one finder for the search, for masks that follow an edit, and for the look at
+// added objects.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ namespace gse::edit {
 
 constexpr double LeastTextScore = 0.3;  // from which a text segmenter is taken to see the word (method A8)
 
-/// What a picture came to. Masks have the picture's size.
+/// Outcome of a picture. Masks have the picture's size.
 struct WordMask {
     Mask region;  // attention above the threshold, cleaned
     Mask mask;    // the region, or what a segmenter made of it; empty of pixels where nothing was found
@@ -38,20 +38,20 @@ BoxPrompt bounds_of(const Mask& mask);
 /// not finite.
 std::size_t normalise_maximum(Image& map);
 
-/// Threshold and DBSCAN on a 64-cell grid, small clusters dropped (GSEditPro 3.2, method S4a); then the mask
-/// of a text segmenter that agrees with the attention, or of a segmenter from clicks and box, or the region
-/// itself (method A8). `picture` [H,W,3] and `map` [H,W,1] in [0,1], of one size; `refines` = false: the
-/// region is enough.
+/// Mask of a word by threshold and DBSCAN on a 64-cell grid, with small clusters dropped (METHOD.md, Masks in
+/// a view). It is refined by a text segmenter that agrees with the attention, or by a segmenter from clicks
+/// and box. Otherwise it is the region itself. `picture` [H,W,3] and `map` [H,W,1] are in [0,1], of one size.
+/// `refines` = false: the region is enough.
 ///
 /// | constant | value | chosen |
 /// |---|---|---|
-/// | cells of the grid | 64 | method 2.7 |
+/// | cells of the grid | 64 | as the paper |
 /// | least region | 4 cells | as many as DBSCAN's core needs neighbours; by judgement |
 /// | largest mask | 0.9 of the picture | such a mask says nothing about where; by judgement |
 /// | largest growth | 4 times the region | a segmenter that ran away into the background; by judgement |
-/// | overlap with a text segmenter | IoU 0.1 | method A8 |
-/// | least text score | 0.3 | method A8 |
-/// | captured attention | `min_segment_attention` | a setting, method A8 |
+/// | overlap with a text segmenter | IoU 0.1 | METHOD.md, Masks in a view |
+/// | least text score | 0.3 | METHOD.md, Masks in a view |
+/// | captured attention | `min_segment_attention` | a setting |
 WordMask find_word_mask(const Image& picture, const Image& map, double threshold, const std::string& word,
                         const SearchSettings& settings, const WordMaskTools& tools, bool refines = true);
 

@@ -8,8 +8,8 @@
 
 namespace gse::edit {
 
-/// Tells when an edit has come to rest: the mean absolute change inside the mask between two visits of the
-/// same view, as an exponential mean (0.98 a step, corrected for its start), has been below
+/// Tells when an edit has converged. The measure is the mean absolute change inside the mask between two
+/// visits of a view, as an exponential mean (0.98 a step, corrected for its start). It must have been below
 /// `EditRequest::early_stop_change` for every view.
 class ConvergenceDetector {
 public:

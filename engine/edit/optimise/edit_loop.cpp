@@ -137,7 +137,7 @@ private:
         prepared_ = true;
     }
 
-    /// What comes before a step: a corrected label, the stop request, redrawn views. False ends the edit.
+    /// Work before a step: a corrected label, the stop request, redrawn views. Returns false to end the edit.
     bool begin_step() {
         if (begun_) return true;
         if (tools_.new_label) take_label(result_);
@@ -199,7 +199,7 @@ private:
         for (Image* image : {&shown_, &gradient_, &label_seen_}) *image = {};
     }
 
-    /// What only the steps need goes, so that the result has room.
+    /// Frees memory that only the steps need, so that the result has room.
     void end_steps() {
         work_ = pictures_->work();
         pictures_->forget();
@@ -234,7 +234,7 @@ private:
         }
     }
 
-    /// Views in which at least one labelled row is drawn; the others cannot change anything (method E5).
+    /// Views in which at least one labelled row is drawn. The others cannot change anything.
     std::vector<std::size_t> visible_views() const {
         const auto values = label_values();
         std::vector<std::size_t> views;
@@ -432,7 +432,7 @@ private:
             set_.keep_added(seen.probability, seen.coverage, request_.prune_added_threshold, LeastLeft);
     }
 
-    /// What was rendered last, as networks expect pictures: in [0,1].
+    /// Last render as networks expect pictures: in [0,1].
     void show(Image& shown) const {
         shown.resize(output_.colour.width, output_.colour.height, 3);
         for (std::size_t i = 0; i < shown.data.size(); ++i)

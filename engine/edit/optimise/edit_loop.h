@@ -1,5 +1,5 @@
 // One edit from labels to result: the loop of rendering, guidance, preservation, anchors and densification
-// (GSEditPro 3.3, method S6).
+// (METHOD.md, Optimiser).
 #pragma once
 
 #include <map>
@@ -60,9 +60,9 @@ public:
     Optimiser(const GaussianSet& base, const EditPlan& plan, const EditRequest& request,
               const EditTools& tools);
     ~Optimiser();
-    /// Where views lead: has those of the first round redrawn, or takes them from EditTools::start, and
-    /// returns them before anything is fitted. None where the edit was stopped; fit() then returns at once.
-    /// Throws Error when no labelled row is visible in any view, and as the view editor does.
+    /// Has the views of the first round redrawn, or takes them from EditTools::start. Returns them before
+    /// anything is fitted. None if views do not lead, or if the edit was stopped; fit() then returns at once.
+    /// Throws Error when no labelled row is visible in any view, and the errors of the view editor.
     std::optional<ViewTargets> draw_views();
     /// Runs the edit, from the drawn views on where they are; once. Throws Error as draw_views() does, and
     /// when the guidance was finite in no step.

@@ -9,14 +9,14 @@
 
 namespace gse::edit {
 
-/// Weights of the two parts (method 2.5).
+/// Weights of the two parts (METHOD.md, Preservation).
 struct PreservationWeights {
     double l1 = 0.8;
     double ssim = 0.2;
     double multiplier = 10;
 };
 
-/// Of fits to redrawn views, which do not agree: the absolute difference alone is the median over them.
+/// Weights for fits to redrawn views, which do not agree. The absolute difference alone fits their median.
 constexpr PreservationWeights FitWeights{1, 0, 10};
 
 /// Computes value and gradient for one view; keeps its scratch memory.

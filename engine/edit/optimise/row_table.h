@@ -1,5 +1,5 @@
-// The rows an edit works on, as one table: every array with an entry per labelled row is declared in one
-// place, and rows come, go and are carried over in all of them at once.
+// Rows of an edit as one table. Every array with an entry per labelled row is declared in one place. Rows
+// come, go and are carried over in all of them at once.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,7 @@
 
 namespace gse::edit {
 
-/// What a column holds for a row that is new, and for one that is carried over from a row of this or another
-/// table.
+/// Content of a column for a new row, and for a row carried over from this or another table.
 enum class ColumnKind {
     Splat,     // an attribute, behind those of the unlabelled rows. New: zero; carried over: as it was
     Fact,      // what is remembered of the row. New: zero; carried over: as it was

@@ -17,7 +17,7 @@
 
 namespace gse::edit {
 
-/// Anchor weights per generation (GSEditPro eq. 6; GaussianEditor's schedule, method 2.3).
+/// Anchor weights per generation (GSEditPro eq. 6; GaussianEditor's schedule; METHOD.md, Anchors).
 class GenerationSchedule {
 public:
     explicit GenerationSchedule(const EditRequest& request);
@@ -38,8 +38,9 @@ struct DensifyCount {
 
 class WorkingSet {
 public:
-    /// `label` [N] bits of the base set; `seeds` (may be empty) are appended as labelled rows of generation 1
-    /// with origin -1: as if born in a densification, so free of anchors until the next (method A14).
+    /// Working set of `label` [N], bits of the base set. `seeds` (may be empty) are appended as labelled rows
+    /// of generation 1 with origin -1. Like rows born in a densification, they are free of anchors until the
+    /// next.
     WorkingSet(const GaussianSet& base, std::span<const std::uint8_t> label, const GaussianData& seeds,
                const EditRequest& request, double extent);
 
@@ -55,7 +56,7 @@ public:
     double step(const raster::Gradients& gradients, int iteration, const EditRequest& request);
     /// Adds the screen-space gradients of one iteration to the densification statistics.
     void collect(const raster::Gradients& gradients);
-    /// Clone, split and prune (method 2.2); resets statistics and anchors.
+    /// Clone, split and prune (METHOD.md, Densification). Resets statistics and anchors.
     DensifyCount densify(const EditRequest& request, Random& random, bool may_grow);
 
     /// Drops rows that grew from seeds and whose `weight` [rows] is below `least_weight`, where `evidence`
@@ -64,15 +65,15 @@ public:
     std::size_t keep_added(std::span<const float> weight, std::span<const double> evidence,
                            double least_weight, double least_left);
 
-    /// Begins a thing of another shape: the rows of the base fade to `logit` where they are more opaque, and
-    /// so do those that a later label brings; rows that grew from seeds go, and `seeds` and `hidden`, of what
-    /// the old thing hid, take their place. Momentum, statistics and anchors begin anew.
+    /// Begins an object of another shape. Rows of the base fade to `logit` where they are more opaque, and so
+    /// do those that a later label brings. Rows that grew from seeds go. `seeds`, and `hidden` for surfaces
+    /// that the old object hid, take their place. Momentum, statistics and anchors begin anew.
     void plant(const GaussianData& seeds, const GaussianData& hidden, double logit);
 
-    /// Another label for the same base, in the middle of a run: rows that leave it become the base's again,
-    /// rows that join it start as the base has them, with the change of colour that the label shares; rows
-    /// that stay keep what they have become. Rows born in the run stay when the row they descend from does.
-    /// Momentum and anchors begin anew.
+    /// Takes another label for this base, in the middle of a run. Rows that leave it become the base's again.
+    /// Rows that join it start as in the base, with the change of colour that the label shares. Rows that
+    /// stay keep their values. Rows born in the run stay when the row they descend from does. Momentum and
+    /// anchors begin anew.
     void relabel(const GaussianSet& base, std::span<const std::uint8_t> label, const EditRequest& request);
 
     /// Takes up a state that an earlier run over the same base has reached, for the rows of this set's label.
@@ -114,7 +115,7 @@ private:
     void step_colour(const raster::Gradients& gradients, const EditRequest& request);
     void load_gradient(std::span<const float> gradient, std::size_t stride);
     void guard(const EditRequest& request);
-    /// Of the labelled row, as a logarithm.
+    /// Size of the labelled row, as a logarithm.
     float largest_scale(std::size_t index) const;
     bool prunable(std::size_t index, const EditRequest& request) const;
     void find_bad_rows(const raster::Gradients& gradients);

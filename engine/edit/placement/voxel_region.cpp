@@ -24,7 +24,7 @@ std::vector<Vec3> slice(const std::vector<Vec3>& points, double low, double high
     return result.empty() ? points : result;
 }
 
-/// What the views say about one point.
+/// Votes of the views on one point.
 struct Vote {
     int counted = 0, seen = 0, covered = 0;  // in the picture; of those not hidden; of those inside the mask
 };
@@ -203,8 +203,8 @@ double silhouette_match(const RegionSearch& search, const VoxelRegion& region) {
     return views > 0 ? sum / static_cast<double>(views) : 0;
 }
 
-/// Where the votes for what the source wears or has on are counted: around it, down to its foot (a label may
-/// lack what carries a thing) and above.
+/// Box in which votes for worn or added parts count: around the source, down to its foot (a label may lack
+/// the part that carries an object) and above.
 Box worn_box(const std::vector<Vec3>& points, const UprightBounds& standing, const Frame& frame) {
     Box box = trimmed_box(points, BoundsTrim);
     if (standing.found()) box.low.y = std::min(box.low.y, frame.to_frame(standing.foot).y);

@@ -1,4 +1,5 @@
-// Where a thing that is not in the scene yet goes, and the faint new splats it grows from (method A14).
+// Region of an object that is not in the scene yet, and the faint new splats it grows from (METHOD.md, Where
+// something new goes).
 #pragma once
 
 #include <cstdint>
@@ -15,7 +16,7 @@
 
 namespace gse::edit {
 
-/// What the search for a region looks at.
+/// Inputs of the search for a region.
 struct RegionSearch {
     const GaussianSet& gaussians;
     std::span<const std::uint8_t> source_bits;  // [N] rows of the thing the new one belongs to
@@ -51,8 +52,8 @@ VoxelRegion vote_region(const RegionSearch& search, const RegionParameters& para
 /// (flames).
 VoxelRegion anchor_region(const RegionSearch& search, const std::string& place, int cells = 28);
 
-/// Where the relation puts a thing of that name when nothing else says it; without a relation, where it
-/// usually goes.
+/// Region of an object of that name by the relation, when nothing else tells it. Without a relation, its
+/// usual place.
 VoxelRegion usual_region(const RegionSearch& search, const std::string& thing, int cells = 28);
 
 /// `count` round splats of neutral colour, spread over the region; sized by the room each has. `opacity` in
@@ -60,8 +61,8 @@ VoxelRegion usual_region(const RegionSearch& search, const std::string& thing, i
 GaussianData seed_splats(const VoxelRegion& region, int count, int sh_degree, std::uint64_t seed,
                          double opacity = 0.1);
 
-/// Pixels that the region covers in a view; with `depth` ([H,W,1] of the surface, 0 = nothing there) those in
-/// which something of it lies before the surface, or a cube's side behind it.
+/// Pixels that the region covers in a view. With `depth` ([H,W,1] of the surface, 0 = nothing there), those
+/// in which some of it lies before the surface, or a cube's side behind it.
 Mask region_mask(const VoxelRegion& region, const Camera& camera, const Image* depth = nullptr);
 
 }  // namespace gse::edit

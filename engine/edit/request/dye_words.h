@@ -21,7 +21,7 @@ struct NamedMetal {
     unsigned lit, shade;
 };
 
-/// What "dark" and the like make of a colour: its share, and that of white.
+/// Effect of "dark" and its like on a colour: the colour's own share, and that of white.
 struct ColourModifier {
     const char* word;
     float own, white;

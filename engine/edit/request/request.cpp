@@ -112,7 +112,7 @@ int RoundPlan::view_steps_within(int steps) const {
 
 namespace {
 
-/// Of the views and of their steps.
+/// Work of the views and of their steps.
 struct QualityShare {
     double views = 1, steps = 1;
 };

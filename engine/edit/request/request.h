@@ -14,7 +14,7 @@
 
 namespace gse::edit {
 
-/// What is to change, in words.
+/// Words of an edit.
 struct EditWords {
     std::string source;
     std::string prompt;
@@ -23,11 +23,12 @@ struct EditWords {
 
     template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         f("source", self.source,
-          "What in the scene the edit is about (\"bear\", \"teddy bear\"); empty = the target word.");
+          "Subject of the edit in the scene (\"bear\", \"teddy bear\"); empty = the target word.");
         f("prompt", self.prompt, "A sentence that describes the scene after the edit (\"a golden statue\").");
         f("target", self.target,
-          "What in the prompt is new (\"golden\", \"top hat\"); empty = what the pictures show least, where "
-          "the model compares pictures with words, else what the sentence says of the source.");
+          "New words of the prompt (\"golden\", \"top hat\"). Empty = those that the pictures show least, if "
+          "the "
+          "model compares pictures with words, else those that the sentence says of the source.");
         f("mode", self.mode,
           "modify (change what is there), replace (put something else in its place), add (put something new "
           "beside it) or auto.");
@@ -108,24 +109,22 @@ struct SearchSettings {
           "is.",
           Range{0, 1});
         f("place_views", self.place_views,
-          "Views into which something that is added is drawn to see where it goes, by a model that is shown "
-          "the scene (the bundled one is); 0, or with "
-          "another model: the attention of its word says where.",
+          "Views into which an addition is drawn to find its place, by a model that is shown the scene (the "
+          "bundled one is). 0, or with another model: the attention of its word tells the place.",
           Range{0, 64});
         f("place_steps", self.place_steps, "Denoising steps of such a view.", Range{1, 100});
         f("add_room", self.add_room,
           "Room around a thing in which what is added to it is drawn then, as a share of its size.",
           Range{0, 2});
         f("add_noise", self.add_noise,
-          "Deviation of the noise that pictures of something added begin from; below 1 they come nearer to "
-          "the mean of what the model thinks "
-          "possible: fewer surprises, and another seed differs less.",
+          "Deviation of the noise that pictures of an addition begin from. Below 1 they come nearer to the "
+          "mean of the model's possible pictures: fewer surprises, and another seed differs less.",
           Range{0, 1});
         f("seed_splats", self.seed_splats, "New splats placed where something is added.", Range{10, 1e6});
     }
 };
 
-/// What makes a label of what was found: another threshold asks no network.
+/// Thresholds that make a label of a search's views. Another threshold asks no network.
 struct LabelThresholds {
     double attention_threshold = 0;
     double label_threshold = 0.4;
@@ -255,9 +254,8 @@ private:
                    "views, half again as many steps)."));
         f("iterations", self.iterations, of_gradient("Optimisation steps of method sds."), Range{0, 1e6});
         f("instruction", self.instruction,
-          "What a model that edits pictures by instructions (InstructPix2Pix) is told to do (\"make the bear "
-          "golden\"); empty = to turn "
-          "the source into what the sentence says.");
+          "Instruction for a model that edits pictures by instructions (InstructPix2Pix): \"make the bear "
+          "golden\". Empty = to turn the source into the sentence.");
         f("edited_views", self.edited_views, of_views("Views that the model redraws in a round."),
           Range{1, 64});
         f("rounds", self.rounds,
@@ -266,9 +264,8 @@ private:
         f("fit_steps", self.fit_steps, of_views("Optimisation steps after each round."), Range{1, 1e5});
         f("restyle_steps", self.restyle_steps,
           of_views(
-              "The same where a model that is shown the scene (the bundled model is) gives a thing another "
-              "colour or "
-              "material, or another ground."),
+              "Denoising steps of a redrawn view, for another colour, material or ground by a model that "
+              "is shown the scene (the bundled one is)."),
           Range{1, 100});
         f("view_strength", self.view_strength,
           of_views(
@@ -328,9 +325,9 @@ private:
         f("shape_views", self.shape_views,
           of_views("Views that the model redraws in a round, where a thing becomes another or is new."),
           Range{1, 64});
-        f("shape_rounds", self.shape_rounds, of_views("The same as rounds, where a thing becomes another."),
+        f("shape_rounds", self.shape_rounds, of_views("Rounds when an object becomes another."),
           Range{1, 20});
-        f("add_rounds", self.add_rounds, of_views("The same where something is added."), Range{1, 20});
+        f("add_rounds", self.add_rounds, of_views("Rounds when something is added."), Range{1, 20});
         f("shape_steps", self.shape_steps,
           of_views("Denoising steps of a view in its first round there; later rounds take fewer, by their "
                    "strength."),
@@ -356,7 +353,8 @@ private:
     template <class Self, class F> static void visit_rates(Self& self, F&& f) {
         f("rate_position", self.rate_position,
           "Learning rate of positions at the start, times the scene extent.", Range{0, 1});
-        f("rate_position_end", self.rate_position_end, "The same at the end.", Range{0, 1});
+        f("rate_position_end", self.rate_position_end,
+          "Learning rate of positions at the end, times the scene extent.", Range{0, 1});
         f("rate_colour", self.rate_colour, "Learning rate of the base colour.", Range{0, 10});
         f("rate_sh", self.rate_sh, "Learning rate of view-dependent colour.", Range{0, 10});
         f("rate_opacity", self.rate_opacity, "Learning rate of opacities.", Range{0, 10});
@@ -396,9 +394,8 @@ private:
     }
 };
 
-/// The request of an artist. Defaults suit the bundled model on two processor cores; method.md section 7 has
-/// the values of the full-size method, all of which can be set here. What a stage depends on is the structs
-/// it is given.
+/// Request of an artist. Defaults suit the bundled model on two processor cores. All values of the full-size
+/// method can be set. A stage depends on the structs it is given.
 struct EditRequest : EditWords, SearchSettings, LabelThresholds, LoopSettings {
     /// Names of before, which recipes, projects and command lines may still use.
     static constexpr std::array<RenamedField, 10> Renamed{{{"rivals", "competing_words"},
@@ -431,8 +428,8 @@ const char* mode_name(EditMode mode);
 /// The mode of that name; nothing for others, "auto" among them.
 std::optional<EditMode> mode_named(const std::string& name);
 
-/// What has a shape of its own after an edit of that mode: what takes the source's place, or is added. The
-/// words of a validated request.
+/// Target with a shape of its own after an edit of that mode: the replacement of the source, or the addition.
+/// The words of a validated request.
 std::string new_thing(const EditRequest& request, EditMode mode);
 
 /// The values of LoopSettings::quality, from quick to thorough.
@@ -452,7 +449,7 @@ struct RoundPlan {
     double strength_of(int round) const { return round == 0 ? strength : again_strength; }
     /// Denoising steps of a round: as many per strength as the first has.
     int steps_of(int round) const;
-    /// The same in guided steps: one below `guided_until` counts half.
+    /// Work in guided steps. One below `guided_until` counts half.
     double guided_steps_of(int round) const;
     /// Denoising steps of a view in the rounds that begin within the first `steps` steps of the loop.
     int view_steps_within(int steps) const;

@@ -12,8 +12,8 @@
 namespace gse::edit {
 namespace {
 
-/// What can be said in a word's place where something is to be made: words near to it, else all but the names
-/// of colours and patterns that are dyed, of which there are many.
+/// Words for the place of one that is to be made: those near to it. Failing these, all but the many names of
+/// colours and patterns that are remapped.
 std::string words_to_make(const std::string& word, const std::vector<std::string>& known,
                           const std::vector<std::string>& drawn) {
     const auto say = language::promptable_vocabulary(known, drawn);

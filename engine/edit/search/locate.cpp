@@ -129,7 +129,7 @@ private:
         return label;
     }
 
-    /// What the views show of the artist's label.
+    /// Masks of the artist's label in the views.
     std::vector<ViewEvidence> labelled_views() {
         std::vector<ViewEvidence> views;
         const std::vector<float> values(input_.label->begin(), input_.label->end());
@@ -196,7 +196,8 @@ private:
                LeastVotingViews;
     }
 
-    /// What a model that is shown the scene draws around what wears it; nothing where there is no such model.
+    /// Draws the sought accessory around its wearer, by a model that is shown the scene. Empty without such a
+    /// model.
     std::vector<ViewEvidence> draw(const SoughtWord& word, const AttachmentTarget& wearer,
                                    const std::vector<std::uint8_t>& source_bits) {
         if (tools_.drawing == nullptr || !draws_place(request(), EditMode::Add)) return {};

@@ -1,5 +1,4 @@
-// From words to what may change: attention maps, masks and labels over all views (GSEditPro 3.2, method S3 to
-// S5).
+// From words to a label: attention maps, masks and votes over all views (METHOD.md, Label voting).
 #pragma once
 
 #include <functional>
@@ -27,7 +26,7 @@
 
 namespace gse::edit {
 
-/// What is looked at. `request` must have gone through validated().
+/// Inputs of a search. `request` must have gone through validated().
 struct LocateInput {
     const GaussianSet& gaussians;
     const std::vector<View>& views;              // cameras at the size of the pictures
@@ -96,10 +95,10 @@ struct LocateResult {
     std::string message, remedy;  // of the problem: what came of the search, and what to do
 };
 
-/// Labels what the request is about. A search that comes to nothing is a result too, with its evidence and
-/// `problem` set: the views are then those of the word that was not found; the label is empty, but for
-/// `Unsure`, where it holds what was found. Throws Error only for input that cannot be looked at, a stop, and
-/// failures of the tools.
+/// Labels the object of the request. A search without a result is a result too, with its evidence and
+/// `problem` set. Its views are then those of the word that was not found. The label is empty, but for
+/// `Unsure`, where it holds the uncertain finding. Throws Error only for unusable input, a stop, and failures
+/// of the tools.
 LocateResult locate(const LocateInput& input, const LocateTools& tools);
 
 /// Throws Error (NotFound) with the message and the remedy of a search that came to nothing.

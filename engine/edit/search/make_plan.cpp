@@ -17,7 +17,7 @@ namespace {
 constexpr float SurelyIt =
     0.9f;  // of a map: towards a thing's rim its colour is in part that of what is behind it
 
-/// What colour the new thing has in the pictures that show where it goes.
+/// Colour of the new object in the pictures that show its place.
 std::string colour_of_drawn(const LocateResult& located, const std::vector<std::string>& known) {
     ColourVote sure(known), all(known);
     for (const auto& view : located.views) {

@@ -6,8 +6,8 @@
 
 namespace gse::edit {
 
-/// The plan of the edit loop from what was located: masks dilated as the request says and joined with the
-/// label's own render, so that a view whose mask missed part of the label does not pull it back.
+/// Plan of the edit loop for a located label. Masks are dilated as the request says and joined with the
+/// label's own render. So a view whose mask missed part of the label does not pull it back.
 EditPlan make_plan(const LocateInput& input, const LocateResult& located, raster::Rasterizer& rasterizer);
 
 }  // namespace gse::edit

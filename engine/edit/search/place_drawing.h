@@ -1,6 +1,6 @@
-// Where something goes that the scene does not show yet, by drawing it: a model that is shown the scene draws
-// the thing into the views, anywhere around what it belongs to; what differs and draws the word's attention
-// is its place (views.md 10).
+// Place of an object that the scene does not show yet, by drawing it (METHOD.md, Where something new goes). A
+// model that is shown the scene draws the object into the views, anywhere around its owner. Pixels that
+// differ and draw the word's attention are its place.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace gse::edit {
 
-/// What is drawn into which views; lists are per view. Refers to all it is given.
+/// Views, masks and words of the drawing; lists are per view. Refers to its arguments.
 struct PlaceDrawing {
     const std::vector<View>& views;
     const std::vector<std::string>& view_words;  // or empty
@@ -32,7 +32,7 @@ struct PlaceDrawing {
 /// Denoising steps of one drawn view; one that is not guided counts half.
 double guided_steps_of_place(const EditRequest& request);
 
-/// Of everything that the drawn pictures follow from, but for the scene and the views.
+/// Key of all inputs of the drawn pictures, but for the scene and the views.
 ContentKey drawing_key(const PlaceDrawing& drawing, const std::vector<std::uint8_t>& source_bits,
                        bool plain_ground);
 
@@ -48,7 +48,7 @@ struct DrawnViews {
 /// Throws Error (Cancelled, Model).
 DrawnViews draw_thing(const PlaceDrawing& drawing, MultiViewEditor& guidance, const JobControl& job);
 
-/// What a drawn view says.
+/// Findings in a drawn view.
 struct DrawnPlace {
     Image map;  // [H,W,1] attention of the word in the drawn picture, maximum 1; or what the model tells of
                 // it, in [0,1]
@@ -56,8 +56,8 @@ struct DrawnPlace {
     std::size_t broken = 0;  // values of the attention that were not finite, and count as none
 };
 
-/// Of each drawn view. A threshold that the request sets is that of what the model tells, too: the share of a
-/// pixel that counts as the thing. Throws Error (Cancelled, NotFound).
+/// Findings in each drawn view. A threshold of the request also applies to the model's own outlines: the
+/// share of a pixel that counts as the object. Throws Error (Cancelled, NotFound).
 std::vector<DrawnPlace> find_drawn(const PlaceDrawing& drawing, const DrawnViews& drawn,
                                    AttentionSource& attention, const JobControl& job);
 

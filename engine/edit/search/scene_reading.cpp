@@ -9,14 +9,12 @@
 namespace gse::edit {
 namespace {
 
-/// Distances whose pictures fit the sentence less by no more than this (a cosine) are told apart by
-/// attention: with pictures that a model does not know, the fit hardly follows the distance. By judgement.
+/// Difference of fits (a cosine) up to which distances are told apart by attention. With pictures that a
+/// model does not know, the fit hardly follows the distance. By judgement.
 constexpr double FitSlack = 0.05;
 
-/// By how much pictures must fit better without a known word for that to be new rather than one that the
-/// encoder is not told: in 20 scenes to which something was added it was 0.045 and more in 19; where it was
-/// there already, of 10, it was less in 8 (`gseditpro-lab eval --edits 10 --kinds add`, `dye`, seeds 55 and
-/// 56).
+/// Least gain of fit without a known word for that to be new, rather than one that the encoder is not told.
+/// Chosen on scenes with and without the addition (`gseditpro-lab eval --kinds add`).
 constexpr double Doubt = 0.04;
 
 /// How well a sentence fits the pictures of each distance.

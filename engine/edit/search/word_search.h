@@ -27,7 +27,7 @@ struct SoughtWord {
                          // goes with it
 };
 
-/// What the views of one word came to.
+/// Outcome of the views of one word.
 struct FoundWord {
     FoundField field;
     Label label;
@@ -59,7 +59,8 @@ private:
     const EditRequest& request() const { return input_.request; }
     double threshold() const;
     void check_stop() const;
-    /// Where a word draws much less attention than elsewhere, its map, scaled to its maximum, is noise.
+    /// Drops maps of views in which the word draws much less attention than elsewhere: scaled to their
+    /// maximum, they are noise.
     void hide_faint(std::vector<ViewEvidence>& views) const;
     void make_masks(const SoughtWord& word, std::vector<ViewEvidence>& views);
     ViewEvidence attend(const SoughtWord& word, std::size_t v);

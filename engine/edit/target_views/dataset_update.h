@@ -1,5 +1,5 @@
-// What the loop does by view guidance alone: views are redrawn, an artist may drop some and have others
-// redrawn, the rows are fitted to the rest (views.md 8 and 12).
+// Optimisation by view guidance alone (METHOD.md, Redrawn views). Views are redrawn, an artist may drop some
+// and have others redrawn, and the rows are fitted to the rest.
 #pragma once
 
 #include <cstddef>
@@ -51,7 +51,7 @@ public:
     const CutOut& found() const { return rounds_.found(); }  // of the new shape, in the last round
     /// The masks have changed: what was redrawn counts inside them.
     void take_masks();
-    /// What the scene is fitted to: redrawn inside the mask, the original outside.
+    /// Target picture of a fit: redrawn inside the mask, the original outside.
     const Image& target(std::size_t view) const { return rounds_.target(view); }
 
     /// How much a pixel of it counts, [H,W,1]; null = all fully.
@@ -69,8 +69,8 @@ public:
 private:
     EditView begin_view(std::size_t view, const GaussianSpans& rows, const GaussianSpans& unlabelled,
                         const raster::Settings& settings);
-    /// What rows show from a camera: [H,W,3] in [0,1], [H,W,1] depth of the surface, 0 where hardly anything
-    /// is, and [H,W,1] how much of each pixel is covered.
+    /// Renders of rows from a camera. Colour [H,W,3] in [0,1]; depth of the surface [H,W,1], 0 where hardly
+    /// anything is; and covered share of each pixel [H,W,1].
     struct Surface {
         Image colour, depth, alpha;
     };

@@ -1,5 +1,5 @@
-// What a round of redrawn views says of a thing that becomes another, or is new: its outlines, what the scene
-// is fitted to, and the rows it grows from (views.md 17).
+// Shape of a replaced or new object from a round of redrawn views (METHOD.md, Visual hull): its outlines, the
+// targets of the fit, and the rows it grows from.
 #pragma once
 
 #include <cstddef>
@@ -32,7 +32,7 @@ public:
     /// request.
     CutOut cut_out(const std::vector<EditView>& views, EditedViews& drawn, int round, const JobControl& job);
 
-    /// The same for the picture at `index`. Whether it shows the thing.
+    /// Takes the picture at `index`. Returns whether it shows the object.
     bool take_out(const EditView& view, EditedViews& drawn, std::size_t index, std::uint64_t seed,
                   Image* outline = nullptr) const;
 
@@ -47,8 +47,8 @@ public:
 
 private:
     AttentionQuery query_of(const EditView& view, const Image& picture, std::uint64_t seed) const;
-    /// Where a picture shows the thing, by what the model tells of it, else by the word's attention and by
-    /// what differs from the view's backdrop; [H,W,1] in [0,1], all zero where it does not.
+    /// Mask of the object in a picture, [H,W,1] in [0,1], all zero if it does not show it. It follows the
+    /// model's outlines, else the word's attention and the difference to the view's clean plate.
     Image outline_of(const EditView& view, const EditedViews& drawn, std::size_t index,
                      std::uint64_t seed) const;
 

@@ -135,7 +135,7 @@ void ViewRounds::choose(const std::vector<std::size_t>& visible, const std::vect
 
 bool ViewRounds::begins(int iteration) const { return round_ < 0 || iteration / request_.fit_steps > round_; }
 
-/// What this round is asked to be; `stream` of the request's seed.
+/// Orders for this round. `stream` is that of the request's seed.
 EditViewsRequest ViewRounds::input(std::uint64_t stream) const {
     const auto plan = round_plan(request_, plan_.mode);
     EditViewsRequest asked{round_,
@@ -150,8 +150,8 @@ EditViewsRequest ViewRounds::input(std::uint64_t stream) const {
     return asked;
 }
 
-/// Where the sentence leaves open what colour the new thing has, it is the one that the search has drawn it
-/// in most; else the view with most room for it is drawn first. The word for it is told to all.
+/// Colour of the new object when the sentence leaves it open: the one that the search has drawn it in most.
+/// Otherwise the view with most room for it is drawn first. All views are told the word for it.
 void ViewRounds::name_colour(const std::vector<EditView>& views, const JobControl& job) {
     const auto told = language::normalised_prompt(request_.prompt);
     if (shapes_ == nullptr || views.empty() || language::is_described(told, shapes_->word())) return;

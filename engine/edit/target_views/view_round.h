@@ -1,5 +1,5 @@
-// A round of view guidance around the model's part: which views are redrawn, and what the scene is fitted to
-// (views.md 8).
+// A round of view guidance around the model's part: the redrawn views and the targets of the fit (METHOD.md,
+// Redrawn views).
 #pragma once
 
 #include <cstddef>
@@ -17,16 +17,15 @@
 
 namespace gse::edit {
 
-/// The request as the loop goes by it, with what suits the kind of edit. With view guidance the steps are
-/// those of the fits, what is fitted has no mask to follow, and growth comes once in the middle of each round
-/// (views.md 8). What gets another shape may move, every splat for itself and without anchors, and grows
-/// often (views.md 17); settings that differ from the program's defaults stay as they are.
-/// `supports_appearance_editing`: what redraws the views does
-/// (MultiViewEditor::supports_appearance_editing()).
+/// Request of the loop, with settings that suit the kind of edit (METHOD.md, What the scene is fitted to).
+/// With view guidance the steps are those of the fits, without a mask to follow. Growth comes once in the
+/// middle of each round. Gaussians that get another shape move without anchors, each for itself, and grow
+/// often. Settings that somebody set stay as they are. `supports_appearance_editing`: the editor of the
+/// views does (MultiViewEditor::supports_appearance_editing()).
 EditRequest loop_request(EditRequest request, EditMode mode, bool by_views,
                          bool supports_appearance_editing = false);
-/// What of that follows from `supports_appearance_editing` alone: shapes are shown, so that views begin from
-/// noise alone, in steps of their own number.
+/// Part of those settings that follows from `supports_appearance_editing` alone. Shapes are shown, so that
+/// views begin from noise alone, in steps of their own number.
 EditRequest restyling(EditRequest request, EditMode mode);
 
 /// F edited + (1 - F) original, where F is the mask, feathered inwards by `feather_px`: outside the mask the
@@ -61,18 +60,18 @@ public:
     /// By how much the views were redrawn further from the render than was asked, because they hardly
     /// changed.
     double raised() const { return raised_; }
-    /// What the model is told where the artist's sentence leaves the new thing's colour open; else empty.
+    /// Word for the new object's colour if the artist's sentence leaves it open; else empty.
     const std::string& sentence() const { return sentence_; }
     /// Pictures that were asked for beside one of each of views() a round: for the colour, and where a first
     /// try hardly changed.
     std::size_t extra_pictures() const { return extra_pictures_; }
-    /// What is suspicious about the pictures of the last round.
+    /// Suspicious facts about the pictures of the last round.
     const std::vector<std::string>& warnings() const { return warnings_; }
-    /// What the last round found of the new shape.
+    /// Findings of the last round about the new shape.
     const CutOut& found() const { return found_; }
     /// Another mask: what was redrawn counts inside it.
     void blend(std::size_t view, const Image& original, const Mask& mask);
-    /// What the scene is fitted to: redrawn inside the mask, the original outside.
+    /// Target picture of a fit: redrawn inside the mask, the original outside.
     const Image& target(std::size_t view) const { return targets_[view]; }
     /// As the model would have it.
     const Image& edited(std::size_t view) const { return edited_[view]; }

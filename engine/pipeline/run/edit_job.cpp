@@ -42,7 +42,7 @@ std::vector<std::uint8_t> label_of(const Scene& scene, const std::filesystem::pa
                 "use a PLY whose float column \"label\" is 1 where the edit may change something", path);
 }
 
-/// What the box of --cut-out holds.
+/// Label in the box of --cut-out.
 std::vector<std::uint8_t> labelled_by_box(const Scene& scene, const EditRecipe& recipe,
                                           edit::Segmenter* segmenter, const JobControl& control) {
     const auto& job = recipe.job;
@@ -242,7 +242,7 @@ std::optional<neural::TunedModel> EditJob::tuned() const {
     return tuning_ ? std::optional(neural::TunedModel{workplace_->shared_model(), *tuning_}) : std::nullopt;
 }
 
-/// What was found takes the place of what was found before, with the settings it was found for.
+/// Puts a new search in place of the old one, with the settings it was made for.
 void EditJob::take(Located located) {
     recipe_ = located.recipe;
     views_ = std::make_shared<const Views>(located.views);
@@ -264,7 +264,8 @@ void EditJob::locate() {
         log::info("located with {}", use_text(use));
 }
 
-/// The same from the views chosen already; the networks are asked only about pictures they have not seen.
+/// Locates again from the views chosen already. The networks are asked only about pictures they have not
+/// seen.
 void EditJob::relocate(const EditRecipe& recipe) {
     times_.begin("locate");
     take(pipeline::locate_again(*workplace_, *located_, recipe, control_));

@@ -19,7 +19,7 @@
 
 namespace gse::pipeline {
 
-/// What a job works on when it is in memory already.
+/// Parts of a job that are in memory already.
 struct EditJobInput {
     Scene scene;
     std::vector<View> cameras;  // fewer than LeastViewpoints = an orbit is fitted
@@ -39,7 +39,7 @@ public:
     /// Checks the request, reads the scene, loads the model, chooses the views. Throws Error before anything
     /// is written. `cache`: see open_recipe_model().
     EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCache> cache = nullptr);
-    /// The same for what is in memory; the recipe's files are not read.
+    /// Job from parts in memory. The recipe's files are not read.
     EditJob(EditRecipe recipe, EditJobInput input, JobControl control);
 
     /// DreamBooth: from here on this job works with a model of its own, which learned the scene from renders
@@ -53,8 +53,8 @@ public:
     bool found() const { return located_->found(); }
     /// Labels what an unsure search found all the same.
     void locate_anyway();
-    /// The same from the views chosen already, with another attention threshold, or without some views
-    /// (`excluded_views` of the request): no network is asked anything.
+    /// Locates again from the views chosen already, with another attention threshold, or without some views
+    /// (`excluded_views` of the request). No network is asked anything.
     void locate_again(double attention_threshold, const std::string& excluded_views);
     void locate_again(double attention_threshold) {
         locate_again(attention_threshold, recipe_.request.excluded_views);
@@ -63,7 +63,7 @@ public:
     void watch_views(ViewWatch watch) { workplace_->watch_views(std::move(watch)); }
     /// The attention threshold in force: the request's, or what the model states.
     double attention_threshold() const;
-    /// What may change, corrected by hand (modify mode): [N] 0 or 1.
+    /// Label corrected by hand (modify mode): [N] 0 or 1.
     void correct_label(const std::vector<std::uint8_t>& bits);
     /// For words that no view shows: this label alone says what may change, [N] 0 or 1.
     void use_label(const std::vector<std::uint8_t>& bits);
@@ -92,15 +92,15 @@ public:
     std::size_t unusable() const { return workplace_->unusable(); }
     const std::vector<View>& views() const { return views_->views; }
     const edit::LocateResult& located() const { return located_->result; }
-    /// What the loop is told: made anew when label or settings have changed.
+    /// Plan of the loop, made anew when label or settings have changed.
     const edit::EditPlan& plan();
     const edit::EditResult& result() const { return edited_->result; }
     const Edited& edited() const { return *edited_; }
     /// The redrawn views of every round, where the edit was led by them.
     const std::vector<edit::ViewTargets>& targets() const { return edited_->targets; }
-    /// What was learned of the scene, if anything was.
+    /// Learned weights of the scene, if there are any.
     const std::optional<neural::TuneReport>& tuning() const { return tuning_; }
-    /// The same with the model that learned it, for another job.
+    /// Learned weights with the model that learned them, for another job.
     std::optional<neural::TunedModel> tuned() const;
     /// "front view" and so on per view, or empty.
     const std::vector<std::string>& view_words() const { return views_->words; }
@@ -112,14 +112,14 @@ public:
     std::string model_prompt() const;
     /// Pictures that the search has asked the networks about so far.
     std::size_t questions() const { return workplace_->questions(); }
-    /// What drawing the place of an added thing took of that.
+    /// Cost of drawing the place of an added object, out of that.
     const PlaceCost& place_cost() const { return workplace_->place_cost(); }
     /// Whether the model is shown the scene where something new is drawn.
     bool supports_scene_conditioning() const { return workplace_->model().supports_scene_conditioning(); }
     bool supports_appearance_editing() const {
         return recipe_.guidance.restyle && workplace_->model().supports_appearance_editing();
     }
-    /// What cuts masks out of pictures.
+    /// Segmenter of the job.
     std::string segmenter_name() const { return workplace_->segmenter().name(); }
     /// Whether the pictures said which word is new, and not the recipe.
     bool target_read() const { return located_->target_read; }

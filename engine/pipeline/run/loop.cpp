@@ -16,7 +16,7 @@
 namespace gse::pipeline {
 namespace {
 
-/// What the dynamic mask looks for in the changing pictures: the new thing, or the thing that changes by its
+/// Words that the dynamic mask looks for in the changing pictures: the new object, or the changing one by its
 /// new name.
 std::string dynamic_word(const Located& located, const edit::EditRequest& request) {
     const auto& result = located.result;

@@ -1,4 +1,4 @@
-// What every stage of a run works with: the scene, the model, and what both have answered so far.
+// Context of every stage of a run: the scene, the model, and their answers so far.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@
 
 namespace gse::pipeline {
 
-/// What drawing the place of an added thing took.
+/// Cost of drawing the place of an added object.
 struct PlaceCost {
     std::size_t views = 0;
     double seconds = 0;
@@ -36,9 +36,9 @@ using ViewWatch = std::function<void(const View& view, std::size_t index, std::s
 /// never what comes of it.
 class RunContext {
 public:
-    /// Of the job, the up axis and the rasterizer count. `segmenters`: where null, the one that needs no
-    /// weights. Throws Error (InvalidArgument) for a scene of which nothing can be seen, and where the
-    /// rasterizer cannot be had.
+    /// Context of a scene. The up axis and the rasterizer of the job count. Null in `segmenters` = the one
+    /// without weights. Throws Error (InvalidArgument) for a scene of which nothing can be seen, and for a
+    /// rasterizer that is not available.
     RunContext(Scene scene, std::shared_ptr<neural::TextToImage> model, const JobParameters& job,
                Segmenters segmenters = {});
 
@@ -54,7 +54,7 @@ public:
     void take_model(std::shared_ptr<neural::TextToImage> model);
     /// Forgets what networks answered and asks with these settings from here on.
     void ask_anew(const neural::AttentionParameters& attention);
-    /// The same, where nothing was asked yet.
+    /// Context of this scene without answers.
     void ask(const neural::AttentionParameters& attention);
     /// Who is told of the views of searches from here on; empty = nobody.
     void watch_views(ViewWatch watch) { watch_ = std::move(watch); }
@@ -65,12 +65,12 @@ public:
     /// The ground that the model is shown below and behind such a scene, for a sentence that says what the
     /// scene shows; none before look_for_ground().
     std::optional<edit::StudioBackground> ground(const std::string& sentence) const;
-    /// What locate() calls, for these views before this ground; the views must stay while it is used; needs
-    /// ask() or ask_anew().
+    /// Arguments of locate(), for these views before this ground. The views must stay while they are used.
+    /// Needs ask() or ask_anew().
     edit::LocateTools tools(const Views& views, const std::optional<edit::StudioBackground>& ground,
                             const JobControl& control);
-    /// What draws the place of what is added, where the model can
-    /// (TextToImage::supports_scene_conditioning()), else null; its cost is counted. Not the artist's
+    /// Editor that draws the place of an addition, if the model can
+    /// (TextToImage::supports_scene_conditioning()), else null. Its cost is counted. It is not the artist's
     /// guidance, which belongs to the loop.
     std::unique_ptr<edit::MultiViewEditor> place_drawing(const edit::EditRequest& request);
     const PlaceCost& place_cost() const { return place_cost_; }

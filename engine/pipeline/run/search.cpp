@@ -52,7 +52,7 @@ constexpr double MostBack =
     1.25;  // of the distance of a sure glance: what would be framed from farther off is no thing
 constexpr std::size_t FrontViews = 12;  // in which the front of a scene is looked for
 
-/// What is added needs room around what is there; beside it more than on it.
+/// Room for an addition around the source; beside it more than on it.
 double room_around(const edit::EditRequest& request) {
     constexpr double BesideIt = 1.75;
     const auto relation = edit::edit_sentence(request).relation();
@@ -99,8 +99,8 @@ bool holds_some(const Label& found, const std::vector<std::uint8_t>& by_hand) {
     return common(*found.bits, by_hand) >= SameThing * common(by_hand, by_hand);
 }
 
-/// The orbit from which a thing is seen as large, and as high in the picture, as figures are in the pictures
-/// that the model has learned from: there a figure's height tells where in the picture its foot is.
+/// Orbit from which an object is seen as large, and as high in the picture, as figures are in the model's
+/// training pictures. There a figure's height tells the place of its foot in the picture.
 OrbitParameters framed_figure(const edit::UprightBounds& standing, const OrbitParameters& orbit,
                               const edit::ModelTraits& traits) {
     const double height = edit::figure_height(standing);
@@ -128,7 +128,7 @@ std::string key_of(const Located& located) {
     return hash.key().hex();
 }
 
-/// What an unsure search found is seen in its views only.
+/// Note that an uncertain finding is seen in its views only.
 Located finished(Located located) {
     auto& result = located.result;
     if (!located.found())
@@ -253,8 +253,8 @@ private:
         return azimuth_of_box(job.cut_out) * Degree;
     }
 
-    /// The views with their front, where the recipe leaves it open: that which their pictures show, where the
-    /// model's encoder can tell, or else the side that the artist looked at.
+    /// The views with their front, if the recipe leaves it open. Their pictures tell it if the model's
+    /// encoder can, else the side that the artist looked at.
     Views faced(Views views) {
         if (!recipe_.job.front.empty() || !views.words.empty() ||
             !language::vocabulary_contains(workplace_.model().known_words(), "front side back view"))
@@ -286,7 +286,7 @@ private:
         return search_from(workplace_, views, recipe, label.empty() ? nullptr : &label, control_);
     }
 
-    /// What few views from one distance find.
+    /// Search in few views from one distance.
     struct Glance {
         OrbitParameters orbit;
         edit::LocateResult result;
@@ -322,13 +322,14 @@ private:
         return best;
     }
 
-    /// Where a thing is drawn anew, or what it wears; what is beside it, or a ground, is framed by its box.
+    /// Rows to frame for a search: the object that is drawn anew, or its wearer. The box of a neighbour, or
+    /// of a ground, is framed as it is.
     bool framed_as_figure(edit::EditMode mode) const {
         return mode == edit::EditMode::Replace ||
                (edit::draws_place(recipe_.request, mode) && workplace_.model().supports_scene_conditioning());
     }
 
-    /// Where the wearer of what is labelled stands, or its head.
+    /// Place of the wearer of a label, or of its head.
     edit::UprightBounds standing_of_wearer(const Label& label, const OrbitParameters& orbit,
                                            const Vec3& front) {
         if (!wearer_) wearer_ = wearer_of(label, orbit);
@@ -367,7 +368,7 @@ private:
         return found.problem == edit::SearchProblem::None ? *found.label.bits : std::vector<std::uint8_t>{};
     }
 
-    /// Where something may be that is worn elsewhere than what it takes the place of.
+    /// Place of an object that is worn elsewhere than the one it replaces.
     edit::VoxelRegion room_on_wearer(const Located& located) {
         const auto& result = located.result;
         if (!located.found() || !edit::moves_worn_place(recipe_.request, result.mode)) return {};
@@ -396,7 +397,7 @@ private:
         return focused;
     }
 
-    /// Where few views were sure, all views look from where these would move to.
+    /// Views of a second search, when few were sure: all look from where these would move to.
     Located from_glance(const std::vector<double>& distances) {
         const Glance glance = best_glance(distances);
         if (!glance.sure()) return moved_in(views_on(glance.orbit, recipe_), {});

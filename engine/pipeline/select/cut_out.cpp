@@ -84,8 +84,8 @@ Mask mask_of(const Section& section) {
     return mask;
 }
 
-/// What of the box's pixels of a colour the surroundings do not explain, in [0,1]: GrabCut begins with it,
-/// because most of a box may show what is around the thing.
+/// Share of a pixel's colour that the surroundings of the box do not explain, in [0,1]. GrabCut begins with
+/// it, because most of a box may show the surroundings.
 Image unexplained(const Image& picture, const edit::BoxPrompt& box) {
     constexpr int levels = 16;  // of a channel
     const auto bin_of = [&](int x, int y) {
@@ -165,7 +165,7 @@ std::array<float, 3> telling_background(const raster::ForwardOutput& picture,
     return best;
 }
 
-/// Where the picture is opaque at about the depths that the mask's pixels have.
+/// Pixels that are opaque at about the depths of the mask's pixels.
 Mask level_with(const Mask& mask, const raster::ForwardOutput& picture, double focal) {
     constexpr double trim = 0.02, gap = 0.1;  // of the depths; of the mask's longer side
     std::vector<float> depths;
@@ -208,8 +208,7 @@ bool centred(const GaussianSet& set, std::size_t row, const Camera& camera, cons
 }
 
 /// Rows in the mask that are seen mostly inside it, the most visible first, until they make up nearly all of
-/// it: what hides behind them is seen through them a little, and the far ends of what is beside it show in
-/// it.
+/// it. Rows behind them are seen through them a little, and the far ends of neighbours show in it.
 std::vector<std::uint8_t> seen_rows(const GaussianSet& set, const Camera& camera, const Mask& mask,
                                     const raster::Settings& settings, Painter& painter) {
     constexpr double mostly = 0.5, nearly_all = 0.98;

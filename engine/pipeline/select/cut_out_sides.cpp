@@ -27,7 +27,7 @@ constexpr double LeastAgreement = 0.4;  // IoU of outline and expectation
 constexpr float Unseen =
     0.6f;  // how probably a row that no view has shown yet is the thing's: above a half, its other sides are
 
-/// Where the views lie: turned from the first one about the vertical, raised; those next to what is known
+/// Places of the views: turned from the first one about the vertical, and raised. Those next to known sides
 /// come first.
 struct Turn {
     double azimuth = 0, raised = 0;  // degrees
@@ -237,7 +237,7 @@ std::vector<Camera> cameras_around(const SeenThing& seen, const Bounds& bounds) 
     return cameras;
 }
 
-/// What is known of the rows after some views.
+/// Rows known after some views.
 class Knowledge {
 public:
     explicit Knowledge(const std::vector<std::uint8_t>& candidates)

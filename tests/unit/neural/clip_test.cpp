@@ -9,6 +9,7 @@
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/laboratory/starter/starter_stages.h"
+#include "engine/language/vocabulary.h"
 #include "engine/neural/clip/clip_score.h"
 #include "engine/neural/weights/safetensors.h"
 #include "tests/test_paths.h"
@@ -136,12 +137,13 @@ DOCTEST_TEST_CASE("keys that transformers leaves out are those of ViT-B/32") {
 
 DOCTEST_TEST_CASE("words the encoder never saw are left out") {
     const std::vector<std::string> known{"a", "red", "bear", "front", "view"};
-    DOCTEST_CHECK(filter_to_vocabulary("A sks red, shiny bear; front view!", known) ==
+    DOCTEST_CHECK(gse::language::filter_to_vocabulary("A sks red, shiny bear; front view!", known) ==
                   "a red, bear front view");
-    DOCTEST_CHECK(filter_to_vocabulary("nothing known", known).empty());
-    DOCTEST_CHECK(filter_to_vocabulary("a shiny red * bear, front view", known, "*") ==
+    DOCTEST_CHECK(gse::language::filter_to_vocabulary("nothing known", known).empty());
+    DOCTEST_CHECK(gse::language::filter_to_vocabulary("a shiny red * bear, front view", known, "*") ==
                   "a red * bear, front view");
-    DOCTEST_CHECK(filter_to_vocabulary("a caf\xc3\xa9", {"a", "caf\xc3\xa9"}) == "a caf\xc3\xa9");
+    DOCTEST_CHECK(gse::language::filter_to_vocabulary("a caf\xc3\xa9", {"a", "caf\xc3\xa9"}) ==
+                  "a caf\xc3\xa9");
     TinyFolder tiny;
     tiny.folder.known_words = {"a", "red", "bear"};
     const auto score = load_clip_score(tiny.folder);

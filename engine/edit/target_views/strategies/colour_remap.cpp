@@ -74,7 +74,7 @@ std::optional<ColourRemap> patterned(const std::vector<std::string>& words, std:
     return dye;
 }
 
-/// Where the noun phrase begins of which the word at `index` is a part.
+/// First word of the noun phrase that the word at `index` belongs to.
 std::size_t phrase_begin(const std::vector<std::string>& words, std::size_t index) {
     while (index > 0 && !language::ends_phrase(words[index - 1]) &&
            !language::is_a(words[index - 1], language::Determiner))
@@ -114,8 +114,7 @@ private:
     std::array<double, 2 * static_cast<std::size_t>(MostOffRed) + 1> votes_{};
 };
 
-/// Of a pixel that is a mixture of grey and of red of the hue `red_hue`, the red gets the colour (linear
-/// unmixing).
+/// Pixel that mixes grey and red of the hue `red_hue`, with the red replaced by the colour (linear unmixing).
 Rgb dyed_red(const Rgb& pixel, const Rgb& colour, float red_hue) {
     const auto [low, high] = std::minmax({pixel[0], pixel[1], pixel[2]});
     if (high - low <= 0 || pixel[0] < high) return pixel;

@@ -16,9 +16,9 @@
 
 namespace gse::edit {
 
-/// What a colour is made of. Of a plain one the model draws `base` red, and of every pixel the share that is
-/// red gets the colour: what is white, grey or black stays. Of a metal it draws gold, whose reflections get
-/// the metal's tones. A pattern is laid over what was red, in space.
+/// Recipe of a colour (METHOD.md, Colours without a word). For a plain one the model draws `base` red, and
+/// the red share of every pixel gets the colour. White, grey and black stay. For a metal it draws gold, whose
+/// reflections get the metal's tones. A pattern is laid over the red, in space.
 struct ColourRemap {
     std::vector<std::string> words;  // of the sentence, one after the other: "pink"; "dark", "red"
     std::string base;                // that the model is told instead: "red", "golden"
@@ -29,9 +29,9 @@ struct ColourRemap {
         {};  // instead of one colour; it is laid over what the edit has come to, by dye_rows()
 };
 
-/// The dye for what a validated request makes: the name of a colour in its target, or right before it, that
-/// is not in `known`, or that "dark" or the like stands before. What is added or comes in a thing's place may
-/// be called like a colour. None where there is none, or dye_words() is empty.
+/// Colour to lay over an edit: a colour name in its target, or right before it. The name is not in `known`,
+/// or "dark" or its like stands before it. Objects that are added or replace others may be named like a
+/// colour. None where there is none, or dye_words() is empty.
 std::optional<ColourRemap> dye_of(const EditRequest& request, EditMode mode,
                                   const std::vector<std::string>& known);
 
@@ -43,7 +43,7 @@ std::string told_with(const ColourRemap& dye, const std::string& sentence);
 /// beak) keeps it.
 void apply_dye(const ColourRemap& dye, std::span<const Image> shares, std::span<Image> pictures);
 
-/// Where a thing stands, and which way it looks.
+/// Place and direction of an object.
 struct DyedThing {
     UprightBounds standing;
     Vec3 up, front;  // unit length
