@@ -150,7 +150,7 @@ EditSentence::EditSentence(Sentence sentence, std::string source, std::string ta
 
 std::pair<EditMode, std::string> decide_mode(const EditSentence& words, std::optional<EditMode> asked,
                                              std::optional<double> target_found_share) {
-    constexpr double present_share = 0.3;  // A7
+    constexpr double present_share = 0.3;  // METHOD.md, The sentence
     const auto &source = words.source(), &target = words.target();
     if (asked) return {*asked, "as asked"};
     if (!words.replacement().empty())

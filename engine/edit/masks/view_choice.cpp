@@ -10,7 +10,7 @@ namespace gse::edit {
 namespace {
 
 constexpr double LeastCover =
-    0.01;  // of the picture: smaller things are not worth a redrawn view (views.md 8)
+    0.01;  // of the picture: smaller things are not worth a redrawn view (METHOD.md, Redrawn views)
 
 }  // namespace
 

@@ -70,7 +70,8 @@ void accept(WordMask& found, Mask mask, double captured, const char* branch) {
     found.branch = branch;
 }
 
-/// Refines the region that was found: text segmenter, clicks, or the region itself (A8).
+/// Refines the region that was found: text segmenter, clicks, or the region itself (METHOD.md, Masks in a
+/// view).
 void refine(WordMask& found, const Image& picture, const Image& map, const std::string& word,
             const SearchSettings& settings, const WordMaskTools& tools) {
     std::optional<Mask> from_text;

@@ -11,7 +11,7 @@
 
 namespace gse::edit {
 
-constexpr double LeastTextScore = 0.3;  // from which a text segmenter is taken to see the word (method A8)
+constexpr double LeastTextScore = 0.3;  // of a text segmenter that sees the word (METHOD.md, Masks in a view)
 
 /// Outcome of a picture. Masks have the picture's size.
 struct WordMask {

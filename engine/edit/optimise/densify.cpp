@@ -13,7 +13,7 @@ namespace {
 constexpr double SplitShrink = 1.6;
 constexpr int SplitChildren = 2;
 constexpr double GrownFactor =
-    2;  // an original splat counts as grown beyond this times its scale at load (F8)
+    2;  // an original splat counts as grown beyond this times its scale at load (METHOD.md, Densification)
 
 }  // namespace
 

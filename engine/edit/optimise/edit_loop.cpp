@@ -40,7 +40,7 @@ constexpr float SeenLabel = 0.5f;            // share of a pixel that the label 
 constexpr std::array LooksAgain{0.5, 0.75};  // shares of the iterations after which new splats are looked for
 constexpr double LeastLeft = 0.15;  // of the new splats; fewer: the model does not see the new thing yet
 constexpr double FadedLogit =
-    -6;  // opacity of what another thing takes the place of: it may come back (views.md 17)
+    -6;  // opacity of what another thing takes the place of: it may come back (METHOD.md, Visual hull)
 // A guidance that is not finite is broken for good, not only now and then, when so many steps in a row were
 // left out and all that were are more than this share of the steps.
 constexpr std::size_t SkippedInARow = 10;

@@ -189,7 +189,7 @@ struct LoopSettings {
     double preserve = 10;
     double l1 = 0.8;
     double ssim = 0.2;
-    // Dynamic mask (method S7) and early stop (X8)
+    // Dynamic mask (METHOD.md, Dynamic masks); early stop (METHOD.md, Optimiser)
     bool dynamic_mask = true;
     double dynamic_from = 0.5;
     double dynamic_every = 0.125;
@@ -197,7 +197,7 @@ struct LoopSettings {
     double prune_added_threshold = 0.75;
     bool early_stop = false;
     double early_stop_change = 0.5 / 255;
-    // Anchors with generations (method 2.3)
+    // Anchors with generations (METHOD.md, Anchors)
     double anchor_first = 0.05;
     double anchor_start = 0.1;
     double anchor_growth = 1.3;

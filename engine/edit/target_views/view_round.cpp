@@ -24,9 +24,10 @@ Mask eroded(Mask mask, double radius_px) {
     return mask;
 }
 
-constexpr double FeatherPx = 3;                // of a picture of ReferenceSide (views.md 8.6)
+constexpr double FeatherPx = 3;                // of a picture of ReferenceSide (METHOD.md, Redrawn views)
 constexpr std::uint64_t ColourStream = 39000;  // of the request's seed
-constexpr double StrengthRaise = 0.1;          // of redrawing that hardly changed anything (views.md 12)
+constexpr double StrengthRaise =
+    0.1;  // of redrawing that hardly changed anything (METHOD.md, Agreement of views)
 
 /// The pictures that the model draws, one per view; what is not finite in them is counted and stays as the
 /// scene is.

@@ -149,7 +149,8 @@ Json stated_by_size(ModelKind kind) {
                         {"view_guidance_scale", 7.5},
                         {"shape_guidance_scale", 7.5},
                         {"t_max_end", 0.5}};
-    json["attention"] = {{"refinement", 1}};  // views.md 15; the starter's own maps are as good without
+    json["attention"] = {
+        {"refinement", 1}};  // METHOD.md, Model profiles; the starter's own maps are as good without
     json["dreambooth"] = {{"steps", 400},
                           {"batch", 4},
                           {"class_images", 200},

@@ -28,7 +28,7 @@
 namespace gse::pipeline {
 namespace {
 
-constexpr std::size_t InstanceViews = 12;  // renders a tuning learns from (method 2.6: 8 to 16)
+constexpr std::size_t InstanceViews = 12;  // renders a tuning learns from (METHOD.md, DreamBooth: 8 to 16)
 constexpr double NearInstance =
     0.6;  // share of the fitted distance of every other one, where views are automatic
 

@@ -97,7 +97,7 @@ struct EditRecipe {
     edit::EditRequest request;
     neural::SdsParameters guidance;
     neural::AttentionParameters attention;
-    bool use_dreambooth = false;  // the model learns the scene first (method S2)
+    bool use_dreambooth = false;  // the model learns the scene first (METHOD.md, DreamBooth)
     neural::DreamBoothParameters dreambooth;
     // Not written: "request.image_size" and so on.
     std::set<std::string> given;  // what the file that was read names
