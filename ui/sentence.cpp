@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <optional>
 
 #include "engine/base/error.h"
+#include "engine/edit/request/checked_request.h"
 #include "engine/edit/request/edit_method.h"
 #include "engine/edit/request/vocabulary.h"
 #include "engine/language/news.h"
@@ -58,27 +60,28 @@ std::string problem_of(const edit::EditRequest& request, const SentenceGround& g
         return "Describe the scene after the edit in one sentence";
     if (request.source.empty() && request.target.empty())
         return "Type what in the scene the edit is about, or click the word of the sentence that is new";
-    edit::EditRequest valid;
+    std::optional<edit::CheckedRequest> valid;
     try {
-        valid = edit::validated(with_target(request, ground.said, ground.read_target));
+        valid = edit::check(request, {ground.said, ground.read_target});
     } catch (const Error& error) {
         if (!request.source.empty() && request.target.empty())
             return "Click the word of the sentence that is new";
         return first_letter_up(error.message());
     }
-    facts.guessed_target = request.target.empty() ? valid.target : std::string();
+    const auto& words = valid->words();
+    facts.guessed_target = request.target.empty() ? words.target() : std::string();
     if (!facts.source_known && !ground.labelled_by_hand)  // the words to use stand beside the source already
-        return unknown_source(valid.source, ground);
+        return unknown_source(words.source(), ground);
     const auto drawn = edit::method_of(request).draws_views() ? ground.drawn : std::vector<std::string>{};
     try {
-        edit::require_known_words(valid, ground.known, drawn, ground.labelled_by_hand);
+        edit::require_known_words(*valid, ground.known, drawn, ground.labelled_by_hand);
     } catch (const Error& error) {
         return fmt::format("{}: {}", first_letter_up(error.message()),
-                           what_to_say(valid.target, language::promptable_vocabulary(ground.known, drawn),
+                           what_to_say(words.target(), language::promptable_vocabulary(ground.known, drawn),
                                        !drawn.empty(), error.hint()));
     }
-    for (const auto& word : {valid.source, valid.target})
-        if (unread(valid.prompt, word, ground))
+    for (const auto& word : {words.source(), words.target()})
+        if (unread(request.prompt, word, ground))
             return fmt::format(
                 "The model stops reading before \"{}\": shorten the sentence, or move the word forward",
                 word);
@@ -93,16 +96,6 @@ std::string locate_problem_of(const std::string& source, const SentenceGround& g
 }
 
 }  // namespace
-
-edit::EditRequest with_target(edit::EditRequest request, const std::vector<std::string>& said,
-                              const std::string& read_target) {
-    const auto source = language::normalised_prompt(request.source);
-    if (request.target.empty() && !source.empty())
-        request.target = read_target.empty()
-                             ? language::guessed_target(language::Sentence(request.prompt), source, said)
-                             : read_target;
-    return request;
-}
 
 SentenceFacts facts_of(const edit::EditRequest& request, const SentenceGround& ground) {
     SentenceFacts facts;
@@ -137,15 +130,6 @@ SentenceFacts facts_of(const edit::EditRequest& request, const SentenceGround& g
         chip.guessed = chip.target && request.target.empty();
     }
     return facts;
-}
-
-edit::EditRequest locate_request(const edit::EditRequest& request, const std::string& problem) {
-    if (problem.empty()) return request;
-    edit::EditRequest alone = request;
-    alone.target = language::normalised_prompt(request.source);
-    alone.prompt = "a " + alone.target;
-    alone.mode = "modify";
-    return alone;
 }
 
 std::string target_to(const std::string& sentence, const std::string& target, std::size_t index) {

@@ -32,17 +32,7 @@ struct SentenceFacts {
     std::string cut_at;          // first word that the text encoder does not read; empty = it reads all
 };
 
-/// The request with a target. It is the chosen one, else the one that a search has read off the scene.
-/// Failing both, it is the one that the sentence implies against the scene's present look. Without a source
-/// it stays open.
-edit::EditRequest with_target(edit::EditRequest request, const std::vector<std::string>& said,
-                              const std::string& read_target);
-
 SentenceFacts facts_of(const edit::EditRequest& request, const SentenceGround& ground);
-
-/// The request that Locate runs. For a sentence that cannot be run (`problem`), the source alone is looked
-/// for.
-edit::EditRequest locate_request(const edit::EditRequest& request, const std::string& problem);
 
 /// The target grown to the word number `index` of the sentence: all words between them.
 std::string target_to(const std::string& sentence, const std::string& target, std::size_t index);

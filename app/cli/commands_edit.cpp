@@ -14,6 +14,7 @@
 #include "engine/base/path_text.h"
 #include "engine/base/print.h"
 #include "engine/base/staged_folder.h"
+#include "engine/edit/request/checked_request.h"
 #include "engine/edit/request/edit_method.h"
 #include "engine/pipeline/models/model_settings.h"
 #include "engine/pipeline/models/tuning_json.h"
@@ -111,10 +112,9 @@ void complete(EditOptions& options) {
                          (options.demo ? "demo" : std::filesystem::path(options.recipe.job.scene).stem());
     apply_model(options);
     auto& request = options.recipe.request;
-    const bool open =
-        request.target.empty() && !request.source.empty();  // the pictures say which word is new
-    request = edit::validated(request);
-    if (open) request.target.clear();
+    const auto checked = edit::check(request);
+    request = checked.plain();
+    if (checked.target_open()) request.target.clear();  // the pictures say which word is new
 }
 
 /// Results beside their own scene would replace it, or be taken for it the next time.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/base/error.h"
+#include "engine/edit/request/checked_request.h"
 #include "engine/edit/request/edit_method.h"
 #include "engine/pipeline/models/neural_loader.h"
 #include "engine/scene/stack_edits.h"
@@ -37,7 +38,7 @@ void EditController::start(std::optional<edit::EditSnapshot> from) {
     view_.compare_as_usual();
     EditRecipe recipe = search_.recipe();
     try {
-        recipe.request = edit::validated(recipe.request);
+        recipe.request = edit::check(recipe.request).plain();
     } catch (const Error& error) { return workspace_.notices.report(error); }
     const auto run = search_.begin_run();
     run->job = search_.fitting_job();

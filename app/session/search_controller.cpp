@@ -14,6 +14,7 @@
 #include "engine/base/error.h"
 #include "engine/base/json.h"
 #include "engine/base/random.h"
+#include "engine/edit/request/checked_request.h"
 #include "engine/edit/request/edit_method.h"
 #include "engine/edit/request/excluded_views.h"
 #include "engine/language/news.h"
@@ -78,7 +79,7 @@ void SearchController::follow_document() {
 EditRecipe SearchController::recipe() const {
     EditRecipe recipe =
         models_.recipe(request_, label_drives_edit() ? workspace_.active_label()->looked_from : looked_from_);
-    recipe.request = ui::with_target(std::move(recipe.request), said_words_, read_target());
+    recipe.request = edit::with_target(std::move(recipe.request), {said_words_, read_target()});
     return recipe;
 }
 
@@ -135,19 +136,19 @@ SearchGround SearchController::ground(const EditRecipe& recipe) const {
             said_words_};
 }
 
-template <> void SearchController::on(const command::Locate&) {
+template <> void SearchController::on(const command::Locate& locate) {
     if (!workspace_.require_scene() || workspace_.jobs->works()) return;
     if (workspace_.results) return workspace_.notices.toast("Apply or discard the edit first.");
     const auto run = begin_run();
     request_.excluded_views.clear();  // of the search before
     EditRecipe wanted = recipe();
     wanted.job.looked_from = looked_from_ = view_.direction();  // whatever a label was made from
-    if (wanted.request.prompt.empty() && !wanted.request.source.empty())
-        wanted.request.prompt = "a " + wanted.request.source;
+    const bool alone = locate.source_alone || wanted.request.prompt.empty();
+    if (alone) wanted.request = edit::source_alone(std::move(wanted.request));
     try {
-        wanted.request = edit::validated(wanted.request);
+        wanted.request = edit::check(std::move(wanted.request)).plain();
     } catch (const Error& error) { return workspace_.notices.report(error); }
-    auto work = [run, wanted, open = open_recipe(wanted), ground = ground(wanted),
+    auto work = [run, wanted, open = alone ? wanted : open_recipe(wanted), ground = ground(wanted),
                  known = costs_.profile(request_), cache = models_.cache()](const JobControl& control) {
         const auto before = network_use();
         load_model(*run, wanted.job, cache, control);
@@ -361,7 +362,7 @@ void SearchController::refresh_estimate() {
     work.traits = models_.traits();
     work.words = language::promptable_vocabulary(models_.list().known_words(), models_.list().drawn_words());
     try {
-        work.mode = edit::planned_mode(edit::validated(request_));
+        work.mode = edit::planned_mode(edit::check(request_));
     } catch (const Error&) {  // not a sentence yet
     }
     costs_.estimate(request_, work);

@@ -69,7 +69,9 @@ struct CancelFileJob {};
 struct SetRequest {
     edit::EditRequest request;
 };
-struct Locate {};
+struct Locate {
+    bool source_alone = false;  // the sentence cannot be edited by: its source is looked for all the same
+};
 /// Labels the splats that an unsure search found.
 struct LabelAnyway {};
 struct Edit {};

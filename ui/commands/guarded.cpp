@@ -189,11 +189,9 @@ void roll_seed(Context& context) {
 void run_locate(Context& context) {
     if (!why_not_locate(context).empty()) return;
     context.request.excluded_views.clear();  // views of the search before
-    // Only this run sees the sentence that was made up for it.
-    context.emit(command::SetRequest{locate_request(context.request, context.state.prompt.problem)});
-    context.emit(command::Locate{});
-    context.emit(command::SetRequest{context.request});
-    context.request_changed = false;
+    context.request_changed = true;
+    send_request(context);
+    context.emit(command::Locate{!context.state.prompt.problem.empty()});
     show_panel(context.state, PanelId::Attention);
 }
 

@@ -1,32 +1,15 @@
-// Checks of a request before anything is loaded or computed.
+// Words of a request, and what follows from its settings.
 #include "engine/edit/request/request.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "engine/base/error.h"
 #include "engine/edit/request/edit_method.h"
-#include "engine/edit/request/excluded_views.h"
 #include "engine/edit/request/scales.h"
-#include "engine/language/news.h"
 #include "engine/language/sentence.h"
-#include "engine/language/words.h"
 #include "engine/localize/clusters.h"
 
 namespace gse::edit {
-namespace {
-
-/// Lower-case words with one space between them; throws when there are none.
-std::string phrase_of(const std::string& text, const char* what) {
-    auto phrase = language::normalised_prompt(text);
-    if (phrase.empty())
-        throw Error(ErrorCode::InvalidArgument,
-                    std::string("the ") + what + " \"" + text + "\" is not a word",
-                    "give the word or the words that matter");
-    return phrase;
-}
-
-}  // namespace
 
 language::EditSentence edit_sentence(const EditRequest& request) {
     return {language::Sentence(request.prompt), request.source, request.target};
@@ -54,36 +37,6 @@ void read_request(EditRequest& request, const nlohmann::ordered_json& json) {
         if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, Overridable>)
             if (value.is_standard()) value.unset();
     });
-}
-
-EditRequest validated(EditRequest request) {
-    check_fields(request);
-    if (language::words_of(request.prompt).empty())
-        throw Error(ErrorCode::InvalidArgument, "the edit has no prompt",
-                    "describe the scene after the edit in one sentence");
-    if (request.mode != "auto" && !mode_named(request.mode))
-        throw Error(ErrorCode::InvalidArgument, "\"" + request.mode + "\" is not an edit mode",
-                    "use auto, modify, replace or add");
-    if (std::find(Qualities.begin(), Qualities.end(), request.quality) == Qualities.end())
-        throw Error(ErrorCode::InvalidArgument, "\"" + request.quality + "\" is not a quality",
-                    "use draft, normal or fine");
-    require_method(request.method);
-    excluded_views_of(request.excluded_views);
-    if (!request.source.empty()) request.source = phrase_of(request.source, "source");
-    if (request.target.empty()) {
-        if (request.source.empty())
-            throw Error(ErrorCode::InvalidArgument, "neither a source nor a target word is given",
-                        "name what the edit is about, or the word of the sentence that is new");
-        request.target = language::guessed_target(language::Sentence(request.prompt), request.source);
-    }
-    request.target = phrase_of(request.target, "target");
-    if (!language::has_phrase(request.prompt, request.target))
-        throw Error(ErrorCode::InvalidArgument,
-                    "the prompt \"" + request.prompt + "\" does not contain the target word \"" +
-                        request.target + "\"",
-                    "use it in the sentence, or choose another target");
-    if (request.source.empty()) request.source = request.target;
-    return request;
 }
 
 std::string new_thing(const EditRequest& request, EditMode mode) {

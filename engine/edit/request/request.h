@@ -429,7 +429,7 @@ const char* mode_name(EditMode mode);
 std::optional<EditMode> mode_named(const std::string& name);
 
 /// Target with a shape of its own after an edit of that mode: the replacement of the source, or the addition.
-/// The words of a validated request.
+/// `request` is completed.
 std::string new_thing(const EditRequest& request, EditMode mode);
 
 /// The values of LoopSettings::quality, from quick to thorough.
@@ -462,16 +462,11 @@ double mask_growth(const LoopSettings& settings, EditMode mode, const Mask& mask
 /// Mode as the words of the request say, before anything was looked for.
 EditMode planned_mode(const EditRequest& request);
 
-/// The words of a validated request, parsed.
+/// The words of a request that was completed, parsed.
 language::EditSentence edit_sentence(const EditRequest& request);
 
 /// The order for a model that edits pictures by instructions (InstructPix2Pix): the request's instruction;
 /// without one language::instruction_for().
 std::string instruction_of(const EditRequest& request);
-
-/// Fills what the request leaves open (target and source) and checks it; both may be phrases of several
-/// words. Throws Error with one sentence: an empty prompt, a target that is not in the prompt, an unknown
-/// mode.
-EditRequest validated(EditRequest request);
 
 }  // namespace gse::edit

@@ -4,14 +4,14 @@
 #include <string>
 #include <vector>
 
-#include "engine/edit/request/request.h"
+#include "engine/edit/request/checked_request.h"
 
 namespace gse::edit {
 
-/// Checks the words of a validated request. Throws Error (InvalidArgument) with the nearest known words when
+/// Checks the words of a request. Throws Error (InvalidArgument) with the nearest known words when
 /// the source is not in `known`. The target must be there or in `drawn`, whose words can be made and not
 /// found. With a label made by hand the source may be anything, since nothing is looked for.
-void require_known_words(const EditRequest& request, const std::vector<std::string>& known,
+void require_known_words(const CheckedRequest& request, const std::vector<std::string>& known,
                          const std::vector<std::string>& drawn, bool labelled_by_hand);
 
 }  // namespace gse::edit

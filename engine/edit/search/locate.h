@@ -26,7 +26,7 @@
 
 namespace gse::edit {
 
-/// Inputs of a search. `request` must have gone through validated().
+/// Views of a scene, and the completed request about them.
 struct LocateInput {
     const GaussianSet& gaussians;
     const std::vector<View>& views;              // cameras at the size of the pictures

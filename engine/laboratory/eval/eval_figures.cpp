@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "engine/base/check.h"
+#include "engine/edit/request/checked_request.h"
 #include "engine/evaluate/consistency.h"
 #include "engine/evaluate/direction.h"
 #include "engine/evaluate/metrics.h"
@@ -383,7 +384,7 @@ EvalSetting make_setting(const EvalCase& edit, const edit::EditRequest& settings
     setting.request.prompt = edit.prompt;
     setting.request.source = edit.word;
     setting.request.target = edit.target_word;
-    setting.request = edit::validated(setting.request);
+    setting.request = edit::check(setting.request).plain();
     setting.seen = ring(setting.source, settings.views, 0, settings.image_size);
     setting.held_out = ring(setting.source, held_out_views, 0.5, settings.image_size);
     return setting;

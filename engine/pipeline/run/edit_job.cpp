@@ -1,5 +1,6 @@
 // Loads, locates, edits.
 #include "engine/pipeline/run/edit_job.h"
+#include "engine/edit/request/checked_request.h"
 #include "engine/edit/request/edit_method.h"
 
 #include <fmt/format.h>
@@ -143,12 +144,9 @@ EditJob::EditJob(EditRecipe recipe, EditJobInput input, JobControl control)
 }
 
 void EditJob::check_recipe(const neural::TextToImage* model) {
-    auto& request = recipe_.request;
-    hints_.target_open = request.target.empty() && !request.source.empty();
-    if (hints_.target_open)
-        request.target = language::guessed_target(language::Sentence(request.prompt),
-                                                  language::normalised_prompt(request.source), hints_.said);
-    recipe_.request = edit::validated(recipe_.request);
+    const auto checked = edit::check(recipe_.request, {hints_.said});
+    hints_.target_open = checked.target_open();
+    recipe_.request = checked.plain();
     check_fields(recipe_.job);
     check_fields(recipe_.guidance);
     check_fields(recipe_.attention);
@@ -157,8 +155,7 @@ void EditJob::check_recipe(const neural::TextToImage* model) {
     const auto drawn = !edit::method_of(recipe_.request).draws_views() ? std::vector<std::string>{}
                        : model != nullptr ? edit::with_dyes(model->drawn_words(), known)
                                           : drawn_words(model_path(recipe_.job));
-    edit::require_known_words(recipe_.request, known, drawn,
-                              recipe_.job.brings_label() || !hints_.label.empty());
+    edit::require_known_words(checked, known, drawn, recipe_.job.brings_label() || !hints_.label.empty());
     check_length();
     parse_colour(recipe_.request.background);
     parse_up(recipe_.job.up, {});
@@ -305,7 +302,7 @@ void EditJob::use_label(const std::vector<std::uint8_t>& bits) {
 }
 
 void EditJob::take_settings(const EditRecipe& recipe, bool relabels) {
-    const auto request = edit::validated(recipe.request);
+    const auto request = edit::check(recipe.request);
     const edit::LabelThresholds before = recipe_.request;
     static_cast<edit::LoopSettings&>(recipe_.request) = request;
     recipe_.request.label_threshold = request.label_threshold;

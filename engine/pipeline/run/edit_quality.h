@@ -31,7 +31,7 @@ struct EditQuality {
 /// A picture before and after.
 using PicturePair = std::pair<const Image*, const Image*>;
 
-/// Quality of pictures [H,W,3] in [0,1]. The request is validated. `told` is the sentence as the model is
+/// Quality of pictures [H,W,3] in [0,1]. The request is completed. `told` is the sentence as the model is
 /// told it.
 EditQuality judge(const neural::TextToImage& model, const edit::EditRequest& request, const std::string& told,
                   const std::vector<PicturePair>& pictures);

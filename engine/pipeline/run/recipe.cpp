@@ -8,6 +8,7 @@
 #include "engine/base/file.h"
 #include "engine/base/json.h"
 #include "engine/base/path_text.h"
+#include "engine/edit/request/checked_request.h"
 #include "engine/io/image/image_file.h"
 #include "engine/neural/api/lora_spec.h"
 
@@ -133,7 +134,7 @@ std::string search_key(const EditRecipe& recipe) {
 
 std::string valid_search_key(EditRecipe recipe) {
     try {
-        recipe.request = edit::validated(recipe.request);
+        recipe.request = edit::check(recipe.request).plain();
     } catch (const Error&) { return {}; }
     return search_key(recipe);
 }

@@ -117,7 +117,7 @@ EditRecipe read_recipe(const std::filesystem::path& path);
 EditRecipe recipe_from_json(const nlohmann::ordered_json& json, const std::filesystem::path& folder);
 
 /// Key of all requests to the networks before the loop begins, for a scene. Recipes with equal keys find
-/// equal labels. The recipe's request must be validated.
+/// equal labels. The recipe's request must be completed.
 std::string search_key(const EditRecipe& recipe);
 /// Key of the recipe once its words are completed. Empty if they cannot be.
 std::string valid_search_key(EditRecipe recipe);

@@ -35,7 +35,7 @@ struct Located {
 /// looks again. With a label made by hand, unknown words are not looked for, and one that is not found does
 /// no harm. A search without a result is a result too: see found().
 ///
-/// The recipe's request is validated. Excluded views of the recipe count among those that the search ends
+/// The recipe's request is completed. Excluded views of the recipe count among those that the search ends
 /// with. Throws Error (Cancelled) on a stop request, and for failures of the tools.
 Located locate(RunContext& workplace, const EditRecipe& recipe, const Views& views, const Hints& hints,
                const JobControl& control);

@@ -7,6 +7,7 @@
 
 #include "engine/base/log.h"
 #include "engine/edit/placement/voxel_region.h"
+#include "engine/edit/request/checked_request.h"
 #include "engine/edit/search/locate.h"
 #include "engine/laboratory/synth/synth.h"
 #include "engine/localize/clusters.h"
@@ -89,7 +90,7 @@ edit::LocateResult locate(const World& world, const std::string& sentence, const
     request.source = "bear";
     request.prompt = sentence;
     request.target = "ball";
-    request = edit::validated(request);
+    request = edit::check(request).plain();
     KnowingAttention attention(world, place);
     const std::vector<std::string> no_words;
     return edit::locate(

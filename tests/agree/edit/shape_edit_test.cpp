@@ -12,6 +12,7 @@
 
 #include "engine/base/error.h"
 #include "engine/edit/optimise/edit_loop.h"
+#include "engine/edit/request/checked_request.h"
 #include "engine/edit/search/locate.h"
 #include "engine/edit/search/make_plan.h"
 #include "engine/evaluate/metrics.h"
@@ -135,7 +136,7 @@ struct ShapeEdit {
         request.target = "cat";
         request.method = "views";
         request.shape_rounds = 2;  // what a later round does is seen, too
-        request = edit::validated(request);
+        request = edit::check(request).plain();
         plan.views = ring(source, 24, 0);
         edit::LocateResult located;
         plan.label = rows_of(source, synth::Part::Object);

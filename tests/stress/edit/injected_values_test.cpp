@@ -8,6 +8,7 @@
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/edit/optimise/oracle_guidance.h"
+#include "engine/edit/request/checked_request.h"
 #include "engine/scene/delta.h"
 #include "tests/unit/edit/view_oracle.h"
 
@@ -290,7 +291,7 @@ DOCTEST_TEST_CASE("a search whose attention is broken in places finds what it fi
     request.source = "ball";
     request.target = "blue";
     request.prompt = "a blue ball";
-    request = edit::validated(request);
+    request = edit::check(request).plain();
     const std::vector<std::string> words;
     const edit::LocateInput input{scene.set, views, words, request, {}, {0, -1, 0}};
     BreakingAttention whole(0, 1);

@@ -9,6 +9,7 @@
 
 #include "engine/base/file.h"
 #include "engine/base/random.h"
+#include "engine/edit/request/checked_request.h"
 #include "tests/test_paths.h"
 #include "tests/ui/support/harness.h"
 #include "ui/keys/keys.h"
@@ -160,11 +161,10 @@ DOCTEST_TEST_CASE("what is said about a sentence") {
     DOCTEST_CHECK(!ui::facts_of(request, ground).problem.empty());
     // Locate needs no sentence, Edit does.
     DOCTEST_CHECK(ui::facts_of(request, ground).locate_problem.empty());
-    DOCTEST_CHECK(ui::locate_request(request, ui::facts_of(request, ground).problem).prompt == "a bear");
+    DOCTEST_CHECK(edit::source_alone(request).prompt == "a bear");
     request.prompt = "a golden bear";
     request.target = "golden";
-    DOCTEST_CHECK(ui::locate_request(request, ui::facts_of(request, ground).problem).prompt ==
-                  "a golden bear");
+    DOCTEST_CHECK(ui::facts_of(request, ground).problem.empty());
     request.source = "two words";
     request.prompt.clear();
     DOCTEST_CHECK(!ui::facts_of(request, ground).locate_problem.empty());
@@ -217,7 +217,7 @@ DOCTEST_TEST_CASE("things of several words are marked, checked and looked for wh
     }
     DOCTEST_CHECK(
         !ui::facts_of(request, {.known = known, .words_read = 6}).problem.empty());  // "hat" is not read
-    DOCTEST_CHECK(ui::locate_request(request, "not yet").prompt == "a teddy bear");
+    DOCTEST_CHECK(edit::source_alone(request).target == "teddy bear");
     request.source = "tedyd bear";
     facts = ui::facts_of(request, {.known = known});
     DOCTEST_CHECK(facts.source_suggestions == std::vector<std::string>{"teddy bear"});

@@ -11,6 +11,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/random.h"
+#include "engine/edit/request/checked_request.h"
 #include "engine/edit/request/vocabulary.h"
 #include "engine/edit/target_views/strategies/colour_remap.h"
 #include "engine/math/sh.h"
@@ -31,7 +32,7 @@ edit::EditRequest request_of(const std::string& prompt, const std::string& targe
     request.source = "bear";
     request.prompt = prompt;
     request.target = target;
-    return edit::validated(request);
+    return edit::check(request).plain();
 }
 
 std::optional<edit::ColourRemap> dye(const std::string& prompt, const std::string& target,
@@ -117,7 +118,7 @@ DOCTEST_TEST_CASE("what is drawn besides can be made and not found") {
         auto request = request_of(prompt, target);
         request.source = source;
         try {
-            edit::require_known_words(request, Few, made, false);
+            edit::require_known_words(edit::check(request), Few, made, false);
         } catch (const Error& error) {
             DOCTEST_CHECK(error.hint().size() < 200);  // not the names of all colours
             hint = error.hint();

@@ -8,6 +8,7 @@
 #include "engine/base/thread_pool.h"
 #include "engine/edit/masks/search_outcome.h"
 #include "engine/edit/masks/view_vote.h"
+#include "engine/edit/request/checked_request.h"
 #include "engine/edit/request/excluded_views.h"
 #include "engine/edit/search/locate.h"
 #include "tests/unit/edit/edit_scenes.h"
@@ -58,7 +59,7 @@ struct Search {
         request.prompt = "a blue ball";
         request.target = "blue";
         request.retry_passes = 0;
-        request = edit::validated(request);
+        request = edit::check(request).plain();
         attention.wrong = run().views[Wrong].render;
     }
     ~Search() { log::set_level(log::Level::Info); }
@@ -82,7 +83,7 @@ DOCTEST_TEST_CASE("lists of views: text to numbers and back") {
         DOCTEST_CHECK_THROWS_AS(edit::excluded_views_of(wrong), Error);
     edit::EditRequest request;
     request.source = "ball", request.prompt = "a blue ball", request.excluded_views = "third";
-    DOCTEST_CHECK_THROWS_AS(edit::validated(request), Error);
+    DOCTEST_CHECK_THROWS_AS(edit::check(request).plain(), Error);
 }
 
 DOCTEST_TEST_CASE("a view that is left out has no say: the label is that of a search without it") {

@@ -3,6 +3,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/log.h"
+#include "engine/edit/request/checked_request.h"
 #include "engine/edit/search/locate.h"
 #include "tests/unit/edit/edit_scenes.h"
 
@@ -130,7 +131,7 @@ inline edit::EditRequest request_for(const std::string& prompt, const std::strin
     request.prompt = prompt;
     request.target = target;
     request.seed = 3;
-    return edit::validated(request);
+    return edit::check(request).plain();
 }
 
 struct Fixture {

@@ -10,6 +10,7 @@
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/edit/masks/drawn_thing.h"
+#include "engine/edit/request/checked_request.h"
 #include "engine/edit/search/make_plan.h"
 #include "engine/edit/search/place_drawing.h"
 #include "tests/unit/edit/edit_scenes.h"
@@ -116,7 +117,7 @@ struct Fixture {
         request.prompt = prompt;
         request.target = "hat";
         request.place_views = 6;
-        request = edit::validated(request);
+        request = edit::check(request).plain();
     }
     edit::LocateResult locate(const std::vector<std::uint8_t>* label = nullptr) {
         edit::LocateTools tools{*rasterizer, attention, nullptr, nullptr, {}};

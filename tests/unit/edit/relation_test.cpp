@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "engine/edit/request/checked_request.h"
 #include "engine/edit/request/decide_mode.h"
 #include "engine/edit/request/request.h"
 #include "engine/edit/search/locate.h"
@@ -78,7 +79,7 @@ DOCTEST_TEST_CASE("what stands somewhere is added, and the sentence before has n
         request.source = "bear";
         request.prompt = said.sentence;
         request.target = said.target;
-        request = edit::validated(request);
+        request = edit::check(request).plain();
         DOCTEST_CHECK(edit::edit_sentence(request).before() == said.before);
         if (said.relation != Relation::None)
             DOCTEST_CHECK(edit::decide_mode(request, std::nullopt).first == edit::EditMode::Add);

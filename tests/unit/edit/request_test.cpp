@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "engine/edit/request/checked_request.h"
 #include "engine/edit/request/decide_mode.h"
 #include "engine/edit/request/edit_method.h"
 #include "engine/edit/request/request.h"
@@ -37,7 +38,7 @@ EditRequest bear(const std::string& source, const std::string& prompt, const std
 }
 
 edit::EditMode mode_of(const std::string& source, const std::string& prompt, const std::string& target) {
-    return edit::decide_mode(edit::validated(bear(source, prompt, target)), std::nullopt).first;
+    return edit::decide_mode(edit::check(bear(source, prompt, target)).plain(), std::nullopt).first;
 }
 
 /// Another value that the field's range allows.
@@ -112,9 +113,9 @@ DOCTEST_TEST_CASE("JSON with an unknown name, a wrong type or a value out of ran
     EditRequest hostile;
     hostile.prompt = "a blue bear";
     hostile.source = "bear";
-    DOCTEST_CHECK(validated(hostile).target == "blue");
+    DOCTEST_CHECK(edit::check(hostile).words().target() == "blue");
     hostile.rate_colour = std::numeric_limits<double>::quiet_NaN();
-    DOCTEST_CHECK_THROWS_AS(validated(hostile), Error);
+    DOCTEST_CHECK_THROWS_AS(edit::check(hostile), Error);
     // A number without limits would let anything pass.
     EditRequest::visit_fields(
         request, [](const char* name, const auto& value, const char*, const auto&... range) {
@@ -126,24 +127,25 @@ DOCTEST_TEST_CASE("JSON with an unknown name, a wrong type or a value out of ran
 }
 
 DOCTEST_TEST_CASE("a request is checked in one sentence") {
-    DOCTEST_CHECK_THROWS_AS(edit::validated(bear("bear", "", "hat")), Error);
-    DOCTEST_CHECK_THROWS_AS(edit::validated(bear("bear", "a blue bear", "hat")), Error);
-    DOCTEST_CHECK_THROWS_AS(edit::validated(bear("", "a blue bear", "")), Error);
-    DOCTEST_CHECK_THROWS_AS(edit::validated(bear("bear", "a bluebear", "blue")), Error);  // whole words only
+    DOCTEST_CHECK_THROWS_AS(edit::check(bear("bear", "", "hat")).plain(), Error);
+    DOCTEST_CHECK_THROWS_AS(edit::check(bear("bear", "a blue bear", "hat")).plain(), Error);
+    DOCTEST_CHECK_THROWS_AS(edit::check(bear("", "a blue bear", "")).plain(), Error);
+    DOCTEST_CHECK_THROWS_AS(edit::check(bear("bear", "a bluebear", "blue")).plain(),
+                            Error);  // whole words only
     EditRequest request = bear("bear", "a blue bear", "blue");
     request.mode = "guess";
-    DOCTEST_CHECK_THROWS_AS(edit::validated(request), Error);
+    DOCTEST_CHECK_THROWS_AS(edit::check(request).plain(), Error);
     try {
-        edit::validated(bear("bear", "a blue bear", "hat"));
+        edit::check(bear("bear", "a blue bear", "hat")).plain();
     } catch (const Error& error) {
         DOCTEST_CHECK(error.code() == ErrorCode::InvalidArgument);
         DOCTEST_CHECK(error.message().find("hat") != std::string::npos);
         DOCTEST_CHECK(std::string(error.what()).find('\n') == std::string::npos);
     }
-    const auto good = edit::validated(bear("Bear", "A BLUE bear.", "Blue"));
+    const auto good = edit::check(bear("Bear", "A BLUE bear.", "Blue")).plain();
     DOCTEST_CHECK(good.source == "bear");
     DOCTEST_CHECK(good.target == "blue");
-    DOCTEST_CHECK(edit::validated(bear("", "a golden statue", "golden")).source == "golden");
+    DOCTEST_CHECK(edit::check(bear("", "a golden statue", "golden")).plain().source == "golden");
 }
 
 DOCTEST_TEST_CASE("the sentence decides whether something is changed or added") {
@@ -176,7 +178,7 @@ DOCTEST_TEST_CASE(
     "another thing in the source's place replaces it, whatever word of its phrase is the new one") {
     using edit::EditMode;
     const auto thing_of = [](const char* source, const char* prompt, const char* target) {
-        return edit::edit_sentence(edit::validated(bear(source, prompt, target))).replacement();
+        return edit::edit_sentence(edit::check(bear(source, prompt, target)).plain()).replacement();
     };
     for (const auto& [source, prompt, target, thing] : std::vector<std::array<const char*, 4>>{
              {"bear", "a blue dog on the grass", "dog", "dog"},
@@ -210,7 +212,7 @@ DOCTEST_TEST_CASE(
     for (const char* asked : {"modify", "replace", "add"}) {  // what the artist says wins
         request.mode = asked;
         DOCTEST_CHECK(std::string(edit::mode_name(
-                          edit::decide_mode(edit::validated(request), std::nullopt).first)) == asked);
+                          edit::decide_mode(edit::check(request).plain(), std::nullopt).first)) == asked);
         DOCTEST_CHECK(edit::mode_name(*edit::mode_named(asked)) == std::string(asked));
     }
     DOCTEST_CHECK(!edit::mode_named("auto"));
@@ -332,7 +334,7 @@ DOCTEST_TEST_CASE("the sentence before an edit lacks what the edit brings") {
         request.prompt = prompt;
         request.source = source;
         request.target = target;
-        return edit::edit_sentence(edit::validated(request)).before();
+        return edit::edit_sentence(edit::check(request).plain()).before();
     };
     DOCTEST_CHECK(before("a blue bear on the grass", "bear", "blue") == "a bear on the grass");
     DOCTEST_CHECK(before("a bear wearing a red hat on the grass", "bear", "hat") == "a bear on the grass");
@@ -380,7 +382,7 @@ DOCTEST_TEST_CASE("the target is guessed from the sentence") {
         edit::EditRequest golden;
         golden.source = "bear";
         golden.prompt = sentence;
-        golden = edit::validated(golden);
+        golden = edit::check(golden).plain();
         DOCTEST_CHECK_MESSAGE(golden.target == "golden", sentence);
         DOCTEST_CHECK_MESSAGE(!language::has_phrase(edit::edit_sentence(golden).before(), "golden"),
                               sentence);
@@ -454,7 +456,7 @@ DOCTEST_TEST_CASE(
     const std::vector<std::string> known{"a", "in", "the", "on", "bear", "pear", "hat", "golden", "grass"};
     const auto refused = [&](const EditRequest& request, bool by_hand) {
         try {
-            edit::require_known_words(edit::validated(request), known, {}, by_hand);
+            edit::require_known_words(edit::check(request), known, {}, by_hand);
             return std::string();
         } catch (const Error& error) {
             DOCTEST_CHECK(error.code() == ErrorCode::InvalidArgument);
@@ -473,7 +475,7 @@ DOCTEST_TEST_CASE(
     DOCTEST_CHECK(language::nearest_words("bears", known) == std::vector<std::string>{"bear", "pear"});
     DOCTEST_CHECK(language::nearest_words("hta", known) == std::vector<std::string>{"hat"});
     DOCTEST_CHECK(language::nearest_words("sign", known).empty());
-    edit::require_known_words(edit::validated(bear("sign", "a jade sign", "jade")), {}, {},
+    edit::require_known_words(edit::check(bear("sign", "a jade sign", "jade")), {}, {},
                               false);  // an open vocabulary
 }
 

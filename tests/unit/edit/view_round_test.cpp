@@ -7,6 +7,7 @@
 
 #include "engine/base/error.h"
 #include "engine/edit/optimise/surface_noise.h"
+#include "engine/edit/request/checked_request.h"
 #include "engine/edit/target_views/view_round.h"
 #include "tests/unit/edit/edit_scenes.h"
 #include "tests/unit/edit/view_oracle.h"
@@ -236,7 +237,7 @@ DOCTEST_TEST_CASE("quality scales views and steps of a round, whatever they are 
     DOCTEST_CHECK(edit::round_plan(request, edit::EditMode::Modify).views == 1);
     DOCTEST_CHECK(edit::round_plan(request, edit::EditMode::Modify).view_steps == 1);
     request.quality = "best";
-    DOCTEST_CHECK_THROWS_AS(edit::validated(request), Error);
+    DOCTEST_CHECK_THROWS_AS(edit::check(request).plain(), Error);
 }
 
 }  // namespace view_round_test

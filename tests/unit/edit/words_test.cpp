@@ -5,6 +5,7 @@
 #include <string>
 
 #include "engine/base/error.h"
+#include "engine/edit/request/checked_request.h"
 #include "engine/edit/request/decide_mode.h"
 #include "engine/edit/request/request.h"
 #include "engine/edit/request/vocabulary.h"
@@ -29,7 +30,7 @@ EditRequest valid(const std::string& source, const std::string& prompt, const st
     request.source = source;
     request.prompt = prompt;
     request.target = target;
-    return edit::validated(request);
+    return edit::check(request).plain();
 }
 
 /// Writes down the sentences it is asked for; all fit all pictures.
@@ -148,7 +149,7 @@ DOCTEST_TEST_CASE("every word of a phrase must be known to a model with a fixed 
     DOCTEST_CHECK(language::unknown_word(known, "top hat") == "top");
     const auto refused = [&](const EditRequest& request) {
         try {
-            edit::require_known_words(request, known, {}, false);
+            edit::require_known_words(edit::check(request), known, {}, false);
             return std::string();
         } catch (const Error& error) { return error.message(); }
     };

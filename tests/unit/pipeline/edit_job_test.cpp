@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 
+#include "engine/edit/request/checked_request.h"
 #include "engine/io/project/load_scene.h"
 #include "engine/laboratory/synth/without_ground.h"
 #include "engine/pipeline/models/installed.h"
@@ -256,7 +257,7 @@ DOCTEST_TEST_CASE(
 DOCTEST_TEST_CASE("the front is read off the scene where the recipe leaves it open") {
     EditRecipe recipe = bear_recipe(false);
     recipe.request.views = 8;
-    recipe.request = edit::validated(recipe.request);
+    recipe.request = edit::check(recipe.request).plain();
     RunContext workplace(load_scene(assets_path() / "scenes/bear/scene.ply"), load_recipe_model({}),
                          recipe.job);
     const auto found = [&](const std::string& front) {
@@ -434,7 +435,7 @@ DOCTEST_TEST_CASE("stages: each is a value that names what it follows from, and 
     recipe.request.target = "blue";
     recipe.request.views = 6;
     recipe.request.iterations = 3;
-    recipe.request = edit::validated(recipe.request);
+    recipe.request = edit::check(recipe.request).plain();
     RunContext workplace(load_scene(assets_path() / "scenes/bear/scene.ply"), load_recipe_model({}),
                          recipe.job);
     const Views views = choose_views(workplace.scene(), recipe, {});

@@ -6,6 +6,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/edit/request/checked_request.h"
 #include "engine/pipeline/run/recipe.h"
 #include "tests/test_paths.h"
 
@@ -20,7 +21,7 @@ pipeline::EditRecipe plain() {
     pipeline::EditRecipe recipe;
     recipe.request.source = "bear";
     recipe.request.prompt = "a blue bear on the grass";
-    recipe.request = edit::validated(recipe.request);
+    recipe.request = edit::check(recipe.request).plain();
     return recipe;
 }
 
@@ -127,7 +128,7 @@ DOCTEST_TEST_CASE("a target that is left to be guessed is the one that was guess
     auto recipe = plain();
     const auto guessed = pipeline::search_key(recipe);
     recipe.request.target.clear();
-    recipe.request = edit::validated(recipe.request);
+    recipe.request = edit::check(recipe.request).plain();
     DOCTEST_CHECK(pipeline::search_key(recipe) == guessed);
 }
 

@@ -13,7 +13,7 @@
 
 namespace gse::edit {
 
-/// Colour, display values in [0,1], of the ground that a validated request makes of another ("snow" for the
+/// Colour, display values in [0,1], of the ground that a completed request makes of another ("snow" for the
 /// grass). None if it makes something else, if that ground has no usual colour, or if the sentence says its
 /// colour ("red sand").
 std::optional<std::array<float, 3>> usual_look(const EditRequest& request, EditMode mode,
