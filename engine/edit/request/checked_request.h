@@ -36,8 +36,8 @@ private:
     bool target_open_ = false;
 };
 
-/// The one guess of a target: fills in an open one where a source is named, with `news.read_target`, else
-/// with the word of the sentence that is new beside what was said.
+/// Fills in an open target where a source is named. The only place that guesses a target. It takes
+/// `news.read_target`, else the word of the sentence that is new beside `news.said`.
 EditRequest with_target(EditRequest request, const News& news);
 
 /// Completes the words and checks all values. Throws Error (InvalidArgument): an empty prompt, neither source
