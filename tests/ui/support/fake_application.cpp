@@ -108,7 +108,10 @@ FakeApplication::FakeApplication(Situation situation)
     if (situation == Situation::ResultWaiting) make_work(false);
     if (situation != Situation::Scene) {
         model_.search.number = 1;
-        model_.search.confidence = {0.74, 0.81, 0.68, 0.22};
+        model_.search.confidence = {
+            0.74,
+            {{"views_agree", 0.81, "the views agree to {}", "The views agree to {}."},
+             {"attention_inside", 0.68, "{} of the attention is inside", "{} of the attention is inside."}}};
         model_.search.front = 345;
     }
     if (situation == Situation::Failed) {
