@@ -110,7 +110,7 @@ FakeApplication::FakeApplication(Situation situation)
         model_.search.number = 1;
         model_.search.confidence = {
             0.74,
-            {{"views_agree", 0.81, "the views agree to {}", "The views agree to {}."},
+            {{"agreement", 0.81, "the views agree to {}", "The views agree to {}."},
              {"attention_inside", 0.68, "{} of the attention is inside", "{} of the attention is inside."}}};
         model_.search.front = 345;
     }
