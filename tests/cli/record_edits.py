@@ -100,7 +100,7 @@ RENAMED = {
     "left_out": "excluded_views", "look_again": "prune_added", "look_again_tau": "prune_added_threshold",
 }
 # Keys that hold times, memory, paths or versions, and one of a setting that is gone.
-LEFT_OUT = {"seconds", "peak_rss_mb", "version", "model", "scene", "cameras", "lora", "cached", "polish_steps"}
+LEFT_OUT = {"seconds", "class_seconds", "peak_rss_mb", "version", "model", "scene", "cameras", "lora", "cached", "polish_steps"}
 
 def canonical(value, key=""):
     """The report with its keys under their new names, without what differs from run to run."""
