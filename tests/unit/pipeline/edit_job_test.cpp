@@ -238,7 +238,7 @@ DOCTEST_TEST_CASE(
         DOCTEST_REQUIRE(job->found());
         const auto& bits = *job->located().label.bits;
         DOCTEST_CHECK(std::count(bits.begin(), bits.end(), std::uint8_t{1}) * 10 >= std::ssize(bits) * 8);
-        DOCTEST_CHECK(job->located().confidence.share < 0.7);  // the ground is seen, too
+        DOCTEST_CHECK(job->located().confidence.part("labelled_share") < 0.7);  // the ground is seen, too
         // Least blue of a corner: the sky's, or that of the background or of the thing from near by.
         const auto sky = [](const EditJob& of) {
             float least = 1;
