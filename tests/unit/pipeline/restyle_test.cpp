@@ -214,7 +214,7 @@ DOCTEST_TEST_CASE("a ground that the model cannot restyle gets the colour that s
         recipe.request.prompt = std::string("a bear on the ") + word;
         recipe.request.target = word;
         const auto found = edited(recipe, false);
-        DOCTEST_CHECK(found.asked == std::vector<bool>{true, true});  // never the model itself
+        DOCTEST_CHECK(found.asked == std::vector<bool>{true});  // in the scene; the colour takes no model
         DOCTEST_REQUIRE(found.judged.size() == 1);
         DOCTEST_CHECK_FALSE(found.judged[0].is_poor());
         DOCTEST_CHECK(found.judged[0].score.has_value() == (recipe.request.target == "snow"));
