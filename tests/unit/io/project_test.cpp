@@ -32,7 +32,8 @@ template <class F> std::string with_description(const std::string& project, F&& 
     std::vector<std::string> names{description.thumbnail, description.base_member};
     for (const auto& edit : description.stack) names.insert(names.end(), {edit.delta, edit.thumbnail});
     for (const auto& label : description.labels)
-        names.insert(names.end(), {label.weight, label.manual, label.absent});
+        names.insert(names.end(),
+                     {label.weight, label.manual, label.absent, label.probability, label.coverage});
     change(json);
     const std::string text = json.dump();
     std::vector<std::string> contents;
