@@ -18,6 +18,19 @@
 #endif
 
 namespace gse::app {
+namespace {
+
+/// Help without the options of EarlierNames.
+class HelpFormatter final : public CLI::Formatter {
+public:
+    std::string make_group(std::string group, bool is_positional,
+                           std::vector<const CLI::Option*> options) const override {
+        if (group == EarlierNames) return {};
+        return CLI::Formatter::make_group(std::move(group), is_positional, std::move(options));
+    }
+};
+
+}  // namespace
 
 std::string option_name(const std::string& field) {
     std::string name = "--" + field;
@@ -54,6 +67,7 @@ JobControl CommandContext::job() const {
 
 int run_command_line(const Program& program, int argc, char** argv) {
     CLI::App app{program.about};
+    app.formatter(std::make_shared<HelpFormatter>());
     app.set_version_flag("--version", fmt::format("{} {}", program.name, GSE_VERSION));
     app.require_subcommand(0, 1);
     CommandContext context;

@@ -33,6 +33,10 @@ struct Program {
 /// Parses and runs; returns the exit code. Throws gse::Error for failures of the command itself.
 int run_command_line(const Program& program, int argc, char** argv);
 
+/// Group of options that are read and not shown in helps. (CLI11's own hidden group leaves an option without
+/// a name in error messages.)
+constexpr const char* EarlierNames = "Earlier names";
+
 /// "guidance_scale" -> "--guidance-scale".
 std::string option_name(const std::string& field);
 
@@ -68,7 +72,7 @@ template <class P> void bind_retired_fields(CLI::App& command) {
                 .add_option_function<std::string>(
                     option_name(std::string(field.name)),
                     [&field](const std::string&) { note_retired_field(field.name); })
-                ->group("");
+                ->group(EarlierNames);
 }
 
 /// One option per field, and a hidden one for every name that it had before; a prefix ("--dreambooth-") where
@@ -82,7 +86,7 @@ void bind_fields(CLI::App& command, P& parameters, const std::string& group,
             if (std::string(name) == renamed.now)
                 add_field_option(command, prefix + option_name(renamed.before).substr(2), value, help,
                                  range...)
-                    ->group("");  // read, not shown
+                    ->group(EarlierNames);
     });
     bind_retired_fields<P>(command);
 }

@@ -140,7 +140,10 @@ class BadOptions(ProgramTest):
             self.assertNotIn(before + " ", text)
             self.assertIn(now + " ", text)
             for option in (before, now):
-                self.refuse_edit(["--source", "bear", "--prompt", "a red bear", option, value], option)
+                process = self.edit("--source", "bear", "--prompt", "a red bear", option, value)
+                self.assertEqual(process.returncode, 2)
+                self.assertIn(f"{option}: Value {value} not in range", process.stderr)
+                self.assertFalse((self.folder / "out").exists())
         self.refuse_edit(["--source", "bear", "--prompt", "a red bear", "--target", "red", "--left-out", "3, 99"], "view 99", "excluded_views")
         for before in ("--focus", "--rivals", "--left-out", "--look-again"):
             self.assertNotIn(before, text)
