@@ -163,6 +163,26 @@ void check_instruction_run(Margins& margins, const BundleFolder& folder, const G
                  io.tensor(name + ".image"), EditedImage);
 }
 
+/// A ReLU whose input rounds to the other side of zero changes the gradient in its receptive field. Which
+/// ones do depends on the processor's order of summation: 131 of 18,432 elements on one, none on others.
+constexpr double KinkedShare = 0.02;   // elements that may be beyond the tolerance
+constexpr double KinkedError = 0.005;  // of the whole gradient, relative in the Euclidean norm
+
+void check_kinked_gradient(const torch::Tensor& actual, const torch::Tensor& expected) {
+    const auto wanted = expected.to(torch::kFloat64), error = (actual.to(torch::kFloat64) - wanted).abs();
+    const auto beyond = (error > GradientTolerance * largest(wanted)).to(torch::kFloat64).mean();
+    DOCTEST_CHECK(beyond.item<double>() <= KinkedShare);
+    DOCTEST_CHECK((error.norm() / wanted.norm()).item<double>() <= KinkedError);
+}
+
+/// In double precision no input of a ReLU is near enough to zero to matter.
+void check_exact_gradient(Margins& margins, TinyAutoencoder tiny, const SafetensorsFile& io) {
+    tiny->to(torch::kFloat64);
+    const auto image = io.tensor("image").to(torch::kFloat64).requires_grad_(true);
+    (tiny->encode(image) * io.tensor("G").to(torch::kFloat64)).sum().backward();
+    margins.near_relative("grad_image in double", image.grad(), io.tensor("grad_image"), GradientTolerance);
+}
+
 void check_tiny(Margins& margins, const TinyAutoencoder& tiny, const SafetensorsFile& io) {
     auto image = io.tensor("image").requires_grad_(true);
     const auto encoded = tiny->encode(image);
@@ -170,7 +190,7 @@ void check_tiny(Margins& margins, const TinyAutoencoder& tiny, const Safetensors
     margins.near_relative("scaled_latents_01", (encoded / 6 + 0.5).clamp(0, 1),
                           io.tensor("scaled_latents_01"), OutputTolerance);
     (encoded * io.tensor("G")).sum().backward();
-    margins.near_relative("grad_image", image.grad(), io.tensor("grad_image"), GradientTolerance);
+    check_kinked_gradient(image.grad(), io.tensor("grad_image"));
     const auto decoded = tiny->decode(io.tensor("encoded"));
     margins.near_relative("decoded", decoded, io.tensor("decoded"), OutputTolerance);
     margins.near_relative("decoded_clamped", decoded.clamp(0, 1), io.tensor("decoded_clamped"),
@@ -278,6 +298,7 @@ DOCTEST_TEST_CASE("taesd: both halves under both names, and gradients") {
     Margins margins("taesd");
     const auto io = golden.tensors();
     check_tiny(margins, load_tiny_autoencoder(golden.folder), io);
+    check_exact_gradient(margins, load_tiny_autoencoder(golden.folder), io);
     const ScratchFolder scratch;
     write_diffusers_names(golden, scratch.path());
     check_tiny(margins, load_tiny_autoencoder(scratch.path()), io);
