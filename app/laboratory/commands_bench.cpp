@@ -37,6 +37,12 @@
 namespace gse::app {
 namespace {
 
+/// Prints a report, and writes it where a file is named.
+template <class Json> void hand_over(const Json& json, const std::filesystem::path& output) {
+    if (!output.empty()) write_file(output, json.dump(2) + "\n");
+    print_json(json, 2);
+}
+
 /// Every setting of a subject, over generated scenes: figures and a picture in a folder.
 struct SweepOutput {
     std::filesystem::path folder;
@@ -98,8 +104,7 @@ void add_raster_bench(CLI::App& bench, CommandContext& context) {
         if (options->skips)
             json["skips"] = skip_report(raster::bench_skips(scene.gaussians.spans(), cameras,
                                                             options->settings, options->labelled_shares));
-        if (!options->output.empty()) write_file(options->output, json.dump(2) + "\n");
-        print_json(json, 2);
+        hand_over(json, options->output);
     });
 }
 
@@ -172,8 +177,7 @@ void add_clip_bench(CLI::App& bench, CommandContext& context) {
             throw Error(ErrorCode::NotFound, "the model has no image-text encoder",
                         "its folder needs a folder clip with config.json and model.safetensors");
         const auto json = bench_clip(*score, options->parameters, context.job());
-        if (!options->output.empty()) write_file(options->output, json.dump(2) + "\n");
-        print_json(json, 2);
+        hand_over(json, options->output);
     });
 }
 
@@ -300,8 +304,7 @@ void add_preview_bench(CLI::App& bench, CommandContext& context) {
         auto json = bench_preview(scene, options->bench);
         if (json.contains("native"))
             json["native"]["moving"] = bench_moving(scene, options->bench.width, options->bench.height);
-        if (!options->output.empty()) write_file(options->output, json.dump(2) + "\n");
-        print_json(json, 2);
+        hand_over(json, options->output);
     });
 }
 #endif

@@ -43,33 +43,39 @@ struct CostProfile {
         f("work_mb", self.work_mb, "Memory that a search or an edit takes beside the model and the scene.",
           any);
         f("question", self.question, "One picture searched for one word.", any);
-        f("question_tflop", self.question_tflop, "Operations of that.", any);
+        f("question_tflop", self.question_tflop, "Operations of one picture searched for one word, 10^12.",
+          any);
         f("rounds", self.rounds,
           "How often all views were searched: moving in on what was found means once more.", any);
         f("pass", self.pass, "One pass of the UNet over one picture, in a search.", any);
-        f("pass_tflop", self.pass_tflop, "Operations of that.", any);
+        f("pass_tflop", self.pass_tflop, "Operations of one pass of the UNet in a search, 10^12.", any);
         f("draws_place", self.draws_place,
           "1 where the model draws what is added to see where it goes, 0 where it does not.", any);
         f("restyles", self.supports_appearance_editing,
           "1 where the model gives things another look by a network that is shown them, 0 where it does not.",
           any);
         f("place_step", self.place_step,
-          "One guided denoising step of a view that is drawn for that, with its share of encoding and "
-          "decoding.",
+          "One guided denoising step of a view drawn for the place of an addition, with its share of "
+          "encoding "
+          "and decoding.",
           any);
-        f("place_step_tflop", self.place_step_tflop, "Operations of that.", any);
+        f("place_step_tflop", self.place_step_tflop,
+          "Operations of one denoising step of a view drawn for the place, 10^12.", any);
         f("idea", self.idea, "The pictures before the edit.", any);
-        f("idea_tflop", self.idea_tflop, "Operations of that.", any);
+        f("idea_tflop", self.idea_tflop, "Operations of the pictures before the edit, 10^12.", any);
         f("begin", self.begin, "Work of the loop before its first step.", any);
         f("guidance", self.guidance, "The model's part of a step.", any);
-        f("guidance_tflop", self.guidance_tflop, "Operations of that.", any);
+        f("guidance_tflop", self.guidance_tflop, "Operations of the model's part of a step, 10^12.", any);
         f("redraw", self.redraw, "One guided denoising step of one redrawn view.", any);
-        f("redraw_tflop", self.redraw_tflop, "Operations of that.", any);
+        f("redraw_tflop", self.redraw_tflop, "Operations of one denoising step of a redrawn view, 10^12.",
+          any);
         f("redraw_view", self.redraw_view, "One redrawn view beside its steps: encoding and decoding.", any);
-        f("redraw_view_tflop", self.redraw_view_tflop, "Operations of that.", any);
+        f("redraw_view_tflop", self.redraw_view_tflop,
+          "Operations of one redrawn view beside its steps, 10^12.", any);
         f("redraw_early", self.redraw_early,
           "One redrawn view in a round that is not the last: a tiny autoencoder does for it.", any);
-        f("redraw_early_tflop", self.redraw_early_tflop, "Operations of that.", any);
+        f("redraw_early_tflop", self.redraw_early_tflop,
+          "Operations of one redrawn view in an early round, 10^12.", any);
         f("raster", self.raster, "The rest of a step.", any);
         f("rows", self.rows, "Splats of the scene that was measured.", Range{1, 1e12});
         f("refresh", self.refresh, "One mask that follows the edit.", any);
@@ -79,7 +85,8 @@ struct CostProfile {
           any);
         f("finish", self.finish, "Checking and packing the result.", any);
         f("tune_step", self.tune_step, "One step of learning the scene.", any);
-        f("tune_step_tflop", self.tune_step_tflop, "Operations of that, without gradients.", any);
+        f("tune_step_tflop", self.tune_step_tflop,
+          "Operations of one step of learning, 10^12, without gradients.", any);
     }
 };
 
@@ -129,7 +136,7 @@ void measure_search(CostProfile& measured, const EditJob& job, double seconds);
 /// Measures costs by a run of the loop; nothing when it was too short. If views led it, `measured` may hold
 /// known costs of its parts.
 void measure_loop(CostProfile& measured, const EditJob& job, int least_steps);
-/// Whether the steps of the job's loop were measured, by the method it is led by.
+/// Tells whether the steps of the job's loop were measured, by the method it is led by.
 bool steps_measured(const CostProfile& measured, const EditJob& job);
 /// Runs a few steps of the loop, or redraws a few views, for their time; the result is dropped. Nothing where
 /// the loop cannot run.
