@@ -1,5 +1,6 @@
-"""Runs one module of unittest for CTest: run_unittest.py MODULE. What was skipped ("[skip] ...") makes the exit code 77, which
-CTest shows as skipped. Where CI is set, data or a model that "is not there" is a failure."""
+"""Runs one module of unittest for CTest: run_unittest.py MODULE. What was skipped ("[skip] ...") makes the
+exit code 77, which CTest shows as skipped. Where CI is set, data or a model that "is not there" is a
+failure."""
 import os
 import sys
 import unittest
@@ -9,7 +10,8 @@ SKIP_CODE = 77
 
 def main():
     sys.path.insert(0, os.getcwd())
-    result = unittest.TextTestRunner(verbosity=2).run(unittest.defaultTestLoader.loadTestsFromName(sys.argv[1]))
+    tests = unittest.defaultTestLoader.loadTestsFromName(sys.argv[1])
+    result = unittest.TextTestRunner(verbosity=2).run(tests)
     skipped = [f"{test}: {reason}" for test, reason in result.skipped if reason.startswith("[skip]")]
     for line in skipped:
         print(line, file=sys.stderr)

@@ -1,5 +1,5 @@
-"""Runs a command on an X display of its own (Xvfb): with_display.py COMMAND...  Returns the command's exit code. Without Xvfb the
-command runs on whatever display there is."""
+"""Runs a command on an X display of its own (Xvfb): with_display.py COMMAND...  Returns the command's exit
+code. Without Xvfb the command runs on whatever display there is."""
 import os
 import shutil
 import subprocess
@@ -11,7 +11,8 @@ def main():
     if shutil.which("Xvfb") is None:
         return subprocess.run(command).returncode
     reader, writer = os.pipe()
-    server = subprocess.Popen(["Xvfb", "-displayfd", str(writer), "-screen", "0", "1280x720x24", "-nolisten", "tcp", "-noreset"],
+    server = subprocess.Popen(["Xvfb", "-displayfd", str(writer), "-screen", "0", "1280x720x24", "-nolisten",
+                               "tcp", "-noreset"],
                               pass_fds=[writer], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     os.close(writer)
     try:

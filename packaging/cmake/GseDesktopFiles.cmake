@@ -1,4 +1,5 @@
-# Desktop file and MIME types in desktop/ of the build folder: templates, filled in with the table of scene formats.
+# Desktop file and MIME types in desktop/ of the build folder: templates, filled in with the table of scene
+# formats.
 add_executable(gse_desktop_files ${CMAKE_SOURCE_DIR}/packaging/desktop_files.cpp)
 target_link_libraries(gse_desktop_files PRIVATE gse_io)
 foreach(name gseditpro.desktop gseditpro-mime.xml)

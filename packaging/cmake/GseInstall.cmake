@@ -1,4 +1,5 @@
-# What is installed where (the program looks for the rest in ../lib/gseditpro and ../share/gseditpro), and the Debian package.
+# What is installed where (the program looks for the rest in ../lib/gseditpro and ../share/gseditpro), and the
+# Debian package.
 install(TARGETS gseditpro RUNTIME DESTINATION bin)
 foreach(plugin gse_media gse_neural_plugin)
   if(TARGET ${plugin})
@@ -13,10 +14,12 @@ install(DIRECTORY ${CMAKE_SOURCE_DIR}/assets/ DESTINATION share/gseditpro
 include(GseDesktopFiles)
 install(FILES ${CMAKE_BINARY_DIR}/desktop/gseditpro.desktop DESTINATION share/applications)
 install(FILES ${CMAKE_SOURCE_DIR}/packaging/gseditpro.svg DESTINATION share/icons/hicolor/scalable/apps)
-install(FILES ${CMAKE_BINARY_DIR}/desktop/gseditpro-mime.xml DESTINATION share/mime/packages RENAME gseditpro.xml)
+install(FILES ${CMAKE_BINARY_DIR}/desktop/gseditpro-mime.xml DESTINATION share/mime/packages
+  RENAME gseditpro.xml)
 install(FILES ${CMAKE_SOURCE_DIR}/packaging/copyright DESTINATION share/doc/gseditpro)
 
-# One changelog of all pages, newest first. Debian wants it packed, with nothing in it that differs from build to build.
+# One changelog of all pages, newest first. Debian wants it packed, with nothing in it that differs from build
+# to build.
 file(GLOB changelog_pages CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/packaging/changelog/*.md)
 list(SORT changelog_pages COMPARE NATURAL ORDER DESCENDING)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${changelog_pages})
@@ -57,7 +60,8 @@ set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-# Not linked, so not found by dpkg-shlibdeps: the window's font and graphics; and what makes it fast or work without a GPU.
+# Not linked, so not found by dpkg-shlibdeps: the window's font and graphics; and what makes it fast or work
+# without a GPU.
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "fonts-dejavu-core, libvulkan1")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libopenblas0-pthread, mesa-vulkan-drivers")
 include(CPack)

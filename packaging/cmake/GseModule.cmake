@@ -1,6 +1,6 @@
-# gse_module(NAME DEPS a b [ROOMS r s] [LIBS x y] [EXCLUDE f]): the library gse_NAME from every .cpp of the calling folder
-# and of its sub-folders ROOMS (kernels with their own flags are added by the folder itself), linked to the modules it may
-# use according to the table of arrows (tests/lint).
+# gse_module(NAME DEPS a b [ROOMS r s] [LIBS x y] [EXCLUDE f]): the library gse_NAME from every .cpp of the
+# calling folder and of its sub-folders ROOMS (kernels with their own flags are added by the folder itself),
+# linked to the modules it may use according to the table of arrows (tests/lint).
 function(gse_module name)
   cmake_parse_arguments(arg "" "" "DEPS;ROOMS;LIBS;EXCLUDE" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)

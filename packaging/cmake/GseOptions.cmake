@@ -14,7 +14,8 @@ if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
 endif()
 
-# Several sources in one: most of a compile is reading the same headers. Off in the preset for changing one file at a time.
+# Several sources in one: most of a compile is reading the same headers. Off in the preset for changing one
+# file at a time.
 option(GSE_UNITY "Compile the sources of a library in groups" ON)
 set(CMAKE_UNITY_BUILD ${GSE_UNITY})
 set(CMAKE_UNITY_BUILD_BATCH_SIZE 10)
@@ -30,12 +31,14 @@ add_library(gse_flags INTERFACE)
 target_compile_options(gse_flags INTERFACE -Wall -Wextra -Wshadow -Wno-unused-parameter -ffp-contract=off)
 target_include_directories(gse_flags INTERFACE ${CMAKE_SOURCE_DIR})
 if(GSE_SANITIZE)
-  target_compile_options(gse_flags INTERFACE -fsanitize=${GSE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_compile_options(gse_flags INTERFACE -fsanitize=${GSE_SANITIZE} -fno-omit-frame-pointer
+    -fno-sanitize-recover=all)
   target_link_options(gse_flags INTERFACE -fsanitize=${GSE_SANITIZE})
   target_compile_definitions(gse_flags INTERFACE GSE_SANITIZED=1)
 endif()
 if(GSE_FUZZ)
-  target_compile_options(gse_flags INTERFACE -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all)
+  target_compile_options(gse_flags INTERFACE -fsanitize=fuzzer-no-link,address,undefined
+    -fno-sanitize-recover=all)
   target_link_options(gse_flags INTERFACE -fsanitize=address,undefined)
   target_compile_definitions(gse_flags INTERFACE GSE_SANITIZED=1)
 endif()
@@ -47,7 +50,8 @@ find_package(nlohmann_json REQUIRED)
 find_package(glm REQUIRED)
 find_package(PkgConfig REQUIRED)
 if(GSE_OPENCV)
-  # Debian keeps OpenCVConfig.cmake in libopencv-dev, which pulls in hundreds of packages; the four libraries do.
+  # Debian keeps OpenCVConfig.cmake in libopencv-dev, which pulls in hundreds of packages; the four libraries
+  # do.
   find_path(GSE_OPENCV_INCLUDE opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)
   add_library(gse_opencv INTERFACE)
   target_include_directories(gse_opencv SYSTEM INTERFACE ${GSE_OPENCV_INCLUDE})

@@ -1,5 +1,6 @@
-# gse_shaders(TARGET files...): compiles GLSL to SPIR-V and adds it to the target as C++ arrays: name.comp becomes
-# gse::shaders::name_comp in "shaders/name_comp.h" of the build folder. NAME:file.comp:-DX=1 makes a variant NAME_comp.
+# gse_shaders(TARGET files...): compiles GLSL to SPIR-V and adds it to the target as C++ arrays: name.comp
+# becomes gse::shaders::name_comp in "shaders/name_comp.h" of the build folder. NAME:file.comp:-DX=1 makes a
+# variant NAME_comp.
 find_program(GSE_GLSLANG glslangValidator REQUIRED)
 function(gse_shaders target)
   set(folder ${CMAKE_BINARY_DIR}/generated/shaders)
@@ -24,11 +25,13 @@ function(gse_shaders target)
     endif()
     set(output ${folder}/${symbol}.h)
     add_custom_command(OUTPUT ${output}
-      COMMAND ${GSE_GLSLANG} --quiet --target-env vulkan1.2 -I${CMAKE_SOURCE_DIR}/shaders ${defines} --vn ${symbol}
+      COMMAND ${GSE_GLSLANG} --quiet --target-env vulkan1.2 -I${CMAKE_SOURCE_DIR}/shaders ${defines} --vn
+        ${symbol}
               -o ${output}.raw ${CMAKE_SOURCE_DIR}/shaders/${file}
       COMMAND ${CMAKE_COMMAND} -DINPUT=${output}.raw -DOUTPUT=${output} -DFILE=${file}
               -P ${CMAKE_SOURCE_DIR}/packaging/cmake/WrapShader.cmake
-      DEPENDS ${CMAKE_SOURCE_DIR}/shaders/${file} ${includes} ${CMAKE_SOURCE_DIR}/packaging/cmake/WrapShader.cmake
+      DEPENDS ${CMAKE_SOURCE_DIR}/shaders/${file} ${includes}
+        ${CMAKE_SOURCE_DIR}/packaging/cmake/WrapShader.cmake
       COMMENT "Shader ${symbol}" VERBATIM)
     target_sources(${target} PRIVATE ${output})
   endforeach()

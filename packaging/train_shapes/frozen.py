@@ -7,8 +7,8 @@ import torch.nn.functional as F
 
 
 class TextEncoder(nn.Module):
-    """CLIP's text encoder (engine/neural/diffusion/text_encoder.cpp): token ids [B,T] to the last hidden states [B,T,D]. Only the embeddings of its last
-    `fresh` tokens are learned."""
+    """CLIP's text encoder (engine/neural/diffusion/text_encoder.cpp): token ids [B,T] to the last hidden states
+    [B,T,D]. Only the embeddings of its last `fresh` tokens are learned."""
 
     SPEED = 4   # by how much faster than the network
 

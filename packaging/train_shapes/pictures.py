@@ -1,5 +1,7 @@
-"""Pictures in the GPU's memory, and batches of them. Views of one scene are denoised together (MVDream, Shi et al. 2023), some of them clean;
-most groups are shown the scene as it was before the edit, as inpainting models are (Rombach et al. 2022)."""
+"""Pictures in the GPU's memory, and batches of them.
+
+Views of one scene are denoised together (MVDream, Shi et al. 2023), some of them clean. Most groups are shown
+the scene as it was before the edit, as inpainting models are (Rombach et al. 2022)."""
 import math
 import os
 import queue
@@ -20,7 +22,9 @@ LARGEST_MARGIN = 5
 
 
 def read_shard(path):
-    """The arrays of a file of `gseditpro-lab train-starter --pictures-only` (engine/laboratory/training/picture_shards.h)."""
+    """Arrays of a file of `gseditpro-lab train-starter --pictures-only`.
+
+    The layout is that of engine/laboratory/training/picture_shards.h."""
     raw = np.fromfile(path, np.uint8)
     magic, n, side, cells, wordings, words = (int(value) for value in raw[:24].view(np.int32))
     if magic != 0x32485347 or (side, cells, wordings, words) != (SIDE, CELLS, WORDINGS, TOKENS - 2):

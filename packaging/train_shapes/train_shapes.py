@@ -1,5 +1,7 @@
-"""Trains what draws new things on a GPU, in minutes (assets/models/starter/TRAINING.md). `gseditpro-lab train-starter --pictures-only` draws the pictures,
-also while this runs. Needs PyTorch; without a GPU it is slow, and good for --check only."""
+"""Trains the network for new objects on a GPU, in minutes (assets/models/starter/TRAINING.md).
+
+`gseditpro-lab train-starter --pictures-only` draws the pictures, also while this runs. Needs PyTorch; without
+a GPU it is slow, and good for --check only."""
 import argparse
 import json
 import math
@@ -29,7 +31,8 @@ def arguments():
     parser = argparse.ArgumentParser(description=__doc__)
     add = parser.add_argument
     add("--model", default="assets/models/starter", help="starter folder to begin from")
-    add("--pictures", default=".training/pictures", help="folder of gseditpro-lab train-starter --pictures-only")
+    add("--pictures", default=".training/pictures",
+        help="folder of gseditpro-lab train-starter --pictures-only")
     add("--out", required=True, help="starter folder to write")
     add("--seconds", type=float, default=430, help="of training")
     add("--decoder-seconds", type=float, default=0, help="of training the VAE's decoder first")

@@ -1,6 +1,6 @@
-"""The network that draws new things (engine/neural/diffusion/unet.cpp), with the parameter names of diffusers' UNet2DConditionModel.
+"""Network for new objects (engine/neural/diffusion/unet.cpp), with the parameter names of diffusers.
 
-Tensors are [B,C,h,w] and [B,tokens,C]; norms sum in fp32 whatever the type.
+The names are those of UNet2DConditionModel. Tensors are [B,C,h,w] and [B,tokens,C]; norms sum in fp32 whatever the type.
 """
 import math
 

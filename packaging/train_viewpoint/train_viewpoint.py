@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
-"""Trains the classifier that tells from where a picture shows a thing (engine/neural/clip/viewpoint_model.h), on a processor or a GPU, from
-pictures that `gseditpro-lab train-starter --pictures-only` has drawn, and writes it into a starter model's folder. Needs PyTorch and NumPy."""
+"""Trains the classifier of viewpoints (engine/neural/clip/viewpoint_model.h), on a processor or a GPU.
+
+Its pictures are drawn by `gseditpro-lab train-starter --pictures-only`. It is written into a starter model's
+folder. Needs PyTorch and NumPy."""
 import argparse
 import glob
 import json
@@ -60,7 +62,8 @@ class Pictures:
     def __init__(self, folder, device):
         shards = [read_shard(path) for path in sorted(glob.glob(f"{folder}/shard-*.bin"))]
         if not shards:
-            raise SystemExit(f"{folder} has no training pictures: draw them with gseditpro-lab train-starter --pictures-only")
+            raise SystemExit(f"{folder} has no training pictures: draw them with "
+                             "gseditpro-lab train-starter --pictures-only")
         joined = lambda name: np.concatenate([shard[name] for shard in shards])
         self.after, self.before, self.device = joined("after"), joined("before"), device
         fronts = joined("front")

@@ -16,19 +16,22 @@ SHARED = pathlib.Path(os.environ.get("GSE_SHARED") or os.environ.get("GSE_SHARED
 
 def run(*arguments, timeout=600):
     """Runs the program; returns the finished process with text output."""
-    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, errors="surrogateescape",
+    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True,
+                          errors="surrogateescape",
                           timeout=timeout)
 
 
 def run_laboratory(*arguments, timeout=600):
     """Runs gseditpro-lab; returns the finished process with text output."""
-    return subprocess.run([LABORATORY, *map(str, arguments)], capture_output=True, text=True, errors="surrogateescape",
+    return subprocess.run([LABORATORY, *map(str, arguments)], capture_output=True, text=True,
+                          errors="surrogateescape",
                           timeout=timeout)
 
 
 def ply_bytes(rows, names=None, count=None, header_extra=""):
     """A binary 3DGS PLY of SH degree 0 with these float rows."""
-    names = names or ["x", "y", "z", "nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1",
+    names = names or ["x", "y", "z", "nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0",
+                      "scale_1",
                       "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"]
     header = "ply\nformat binary_little_endian 1.0\n" + header_extra
     header += f"element vertex {len(rows) if count is None else count}\n"
@@ -45,7 +48,8 @@ def grid_rows(side=6):
 def can_mount():
     """Whether this user may have file systems of his own."""
     try:
-        return subprocess.run(["unshare", "--user", "--map-root-user", "--mount", "sh", "-c", "mount -t tmpfs none /mnt"],
+        return subprocess.run(["unshare", "--user", "--map-root-user", "--mount", "sh", "-c",
+                               "mount -t tmpfs none /mnt"],
                               capture_output=True).returncode == 0
     except FileNotFoundError:
         return False
@@ -75,10 +79,12 @@ class ProgramTest(unittest.TestCase):
         return json.loads(process.stdout)
 
     def assert_one_sentence(self, process, *words):
-        """Exit code not 0, one line on stderr that begins with the program's name, and the given words in it."""
+        """Exit code not 0, one line on stderr that begins with the program's name, and the given words in
+        it."""
         self.assertNotEqual(process.returncode, 0, process.stdout)
         self.assertGreater(process.returncode, 0, "ended by a signal")
-        lines = [line for line in process.stderr.splitlines() if line.startswith(("gseditpro: ", "gseditpro-lab: "))]
+        lines = [line for line in process.stderr.splitlines()
+                 if line.startswith(("gseditpro: ", "gseditpro-lab: "))]
         self.assertEqual(len(lines), 1, process.stderr)
         for word in words:
             self.assertIn(word.lower(), lines[0].lower())

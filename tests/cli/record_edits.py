@@ -5,9 +5,9 @@
     record_edits.py --compare BEFORE.json AFTER.json
     record_edits.py --list
 
-Recording runs each recipe once, headless and without the answer cache. The record holds the exit code, the sha256 of scene.ply and
-source.ply, and the report in a canonical form. Times, memory, paths and versions are left out of it.
-Comparing prints one line per recipe and field that differs, and exits 1 where there is one.
+Recording runs each recipe once, headless and without the answer cache. The record holds the exit code, the
+sha256 of scene.ply and source.ply, and the report in a canonical form. Times, memory, paths and versions are
+left out of it. Comparing prints one line per recipe and field that differs, and exits 1 where there is one.
 """
 import argparse
 import hashlib
@@ -29,7 +29,7 @@ CAMERAS = str(ROOT / "assets/scenes/bear/cameras.json")
 FILM = ["--turntable-size", "32", "--turntable-frames", "2"]   # the film is no part of the record
 MISSING = "not there"
 
-# ---- recipes ---------------------------------------------------------------------------------------------------------
+# ---- recipes ----------------------------------------------------------------------------------------------
 
 
 def bear(sentence, *arguments, source="bear", scene=BEAR):
@@ -43,13 +43,16 @@ def scan(path, source, sentence, *arguments):
 
 
 SDS = ["--method", "sds", "--iterations", "40"]
-TUNED = ["--dreambooth", "--dreambooth-steps", "6", "--dreambooth-class-images", "2", "--dreambooth-class-steps", "2"]
+TUNED = ["--dreambooth", "--dreambooth-steps", "6", "--dreambooth-class-images", "2",
+         "--dreambooth-class-steps", "2"]
 HAT = "a bear wearing a blue hat on the grass"
 
-# {out}: the folder of another recipe's results; such a recipe stands behind the one that it needs. {lora}: a LoRA with random weights.
+# {out}: the folder of another recipe's results; such a recipe stands behind the one that it needs. {lora}: a
+# LoRA with random weights.
 RECIPES = {
     "recolour": bear("a blue bear on the grass"),
-    "material": bear("a golden bear on the grass", "--method", "auto", "--mode", "modify", "--target", "golden"),
+    "material": bear("a golden bear on the grass", "--method", "auto", "--mode", "modify", "--target",
+                     "golden"),
     "draft": bear("a wooden bear on the grass", "--quality", "draft", "--method", "views"),
     "fine": bear("a stone bear on the grass", "--quality", "fine"),
     "ground": bear("a bear on the snow", source="grass"),
@@ -60,12 +63,14 @@ RECIPES = {
     "replace_fine": bear("a green frog on the grass", "--mode", "replace", "--quality", "fine"),
     "replace_draft": bear("a snowman on the grass", "--quality", "draft", "--shape-rounds", "2"),
     "worn": bear(HAT),
-    "worn_draft": bear("a bear wearing a pink spotted scarf on the grass", "--quality", "draft", "--mode", "add", "--target", "scarf"),
+    "worn_draft": bear("a bear wearing a pink spotted scarf on the grass", "--quality", "draft", "--mode",
+                       "add", "--target", "scarf"),
     "flames": bear("a bear in flames on the grass"),
     "beside": bear("a bear with a red ball beside it on the grass"),
     "under": bear("a bear with a red ball under it on the grass", "--quality", "draft"),
     "worn_again": bear("a bear wearing a golden hat", "--use-label", source="hat", scene="{worn}/edit.gsep"),
-    "instead_of_hat": bear("a bear wearing a golden crown", "--use-label", source="hat", scene="{worn}/edit.gsep"),
+    "instead_of_hat": bear("a bear wearing a golden crown", "--use-label", source="hat",
+                           scene="{worn}/edit.gsep"),
     "box": bear("a red toy on the grass", "--cut-out", ".25,.1,.75,.9", source="toy"),
     "box_ground": bear("a bear on the sand", "--cut-out", ".1,.6,.9,.95", source="ground"),
     "sds": bear("a golden bear on the grass", *SDS),
@@ -74,9 +79,12 @@ RECIPES = {
     "dreambooth": bear("a green bear on the grass", *TUNED),
     "dreambooth_lora": bear("a green bear on the grass", *TUNED, "--dreambooth-rank", "4", *SDS),
     "few_steps": bear("a green bear on the grass", "--lora", "{lora}"),
-    "thresholds": bear("a purple bear on the grass", "--tau", "0.55", "--left-out", "3, 17", "--attention-threshold", "0.4",
-                       "--keep-mass", "0.3", "--fallback-mass", "0.4", "--second-look", "1", "--rivals", "grass", "--no-focus"),
-    "fit": bear("a yellow bear on the grass", "--strength", "1.2", "--colour-coupling", "0.5", "--view-strength", "0.6",
+    "thresholds": bear("a purple bear on the grass", "--tau", "0.55", "--left-out", "3, 17",
+                       "--attention-threshold", "0.4",
+                       "--keep-mass", "0.3", "--fallback-mass", "0.4", "--second-look", "1", "--rivals",
+                       "grass", "--no-focus"),
+    "fit": bear("a yellow bear on the grass", "--strength", "1.2", "--colour-coupling", "0.5",
+                "--view-strength", "0.6",
                 "--rounds", "2", "--background", "grey", "--front", "none", "--image-size", "64"),
     "cameras": bear("a white bear on the grass", "--cameras", CAMERAS, "--up", "y"),
     "everything": bear("a red bear on the grass", "--no-localize", "--quality", "draft"),
@@ -87,20 +95,24 @@ RECIPES = {
     "refused_search": bear("a red bear on the grass", "--least-confidence", "0.999"),
     "scan_word": scan("scenes/statue_st-peter.sog", "statue", "a golden statue"),
     "scan_replace": scan("scenes/plant_lastchance.splat", "vase", "a yellow mushroom"),
-    "scan_box": scan("scenes/person_biker.compressed.ply", "man", "a man wearing a red hat", "--cut-out", ".41,.03,.59,.97,270,15,1"),
-    "scan_cut_out": scan("real/scenes/vase_flowers.splat", "vase", "a blue vase", "--up", "z", "--least-confidence", "0"),
+    "scan_box": scan("scenes/person_biker.compressed.ply", "man", "a man wearing a red hat", "--cut-out",
+                     ".41,.03,.59,.97,270,15,1"),
+    "scan_cut_out": scan("real/scenes/vase_flowers.splat", "vase", "a blue vase", "--up", "z",
+                         "--least-confidence", "0"),
 }
 
-# ---- the canonical report --------------------------------------------------------------------------------------------
+# ---- the canonical report ---------------------------------------------------------------------------------
 
 # Keys of a report that had another name before: old name -> new name.
 RENAMED = {
     "rivals": "competing_words", "second_look": "retry_passes", "keep_mass": "min_cluster_mass",
-    "fallback_mass": "min_segment_attention", "evidence_px": "coverage_px", "focus": "reframe_views", "tau": "label_threshold",
+    "fallback_mass": "min_segment_attention", "evidence_px": "coverage_px", "focus": "reframe_views",
+           "tau": "label_threshold",
     "left_out": "excluded_views", "look_again": "prune_added", "look_again_tau": "prune_added_threshold",
 }
 # Keys that hold times, memory, paths or versions, and one of a setting that is gone.
-LEFT_OUT = {"seconds", "class_seconds", "peak_rss_mb", "version", "model", "scene", "cameras", "lora", "cached", "polish_steps"}
+LEFT_OUT = {"seconds", "class_seconds", "peak_rss_mb", "version", "model", "scene", "cameras", "lora",
+            "cached", "polish_steps"}
 
 def canonical(value, key=""):
     """The report with its keys under their new names, without what differs from run to run."""
@@ -122,7 +134,8 @@ def sha256(data):
 
 
 def evidence_sums(folder):
-    """One sum for the pictures of each kind: the renders of all views, the attention of all views, and so on."""
+    """One sum for the pictures of each kind: the renders of all views, the attention of all views, and so
+    on."""
     kinds = {}
     for path in sorted(folder.glob("*")):
         kind = path.stem.split("_")[-1] if path.stem.startswith("view_") else path.stem
@@ -143,7 +156,7 @@ def record_folder(folder):
     entry["report_sum"] = sha256(json.dumps(entry["report"], sort_keys=True).encode())
     return entry
 
-# ---- recording -------------------------------------------------------------------------------------------------------
+# ---- recording --------------------------------------------------------------------------------------------
 
 
 def lora_bytes(rank=2, size=0.05):
@@ -154,10 +167,12 @@ def lora_bytes(rank=2, size=0.05):
     for layer in sorted(name for name in shapes if name.endswith("attn2.to_v.weight")):
         stem = "lora_unet_" + layer.removesuffix(".weight").replace(".", "_")
         rows, columns = shapes[layer]["shape"]
-        for name, shape in (("lora_down.weight", [rank, columns]), ("lora_up.weight", [rows, rank]), ("alpha", [])):
+        for name, shape in (("lora_down.weight", [rank, columns]), ("lora_up.weight", [rows, rank]),
+                            ("alpha", [])):
             count = shape[0] * shape[1] if shape else 1
             values = [draw.gauss(0, size) if shape else float(rank) for _ in range(count)]
-            header[f"{stem}.{name}"] = {"dtype": "F32", "shape": shape, "data_offsets": [len(data), len(data) + 4 * count]}
+            header[f"{stem}.{name}"] = {"dtype": "F32", "shape": shape,
+                                        "data_offsets": [len(data), len(data) + 4 * count]}
             data += struct.pack(f"<{count}f", *values)
     text = json.dumps(header).encode()
     return struct.pack("<Q", len(text)) + text + data
@@ -166,20 +181,23 @@ def lora_bytes(rank=2, size=0.05):
 def filled(argument, results):
     """The argument with the paths of files that the recording itself makes."""
     for name in ("lora", *RECIPES):
-        argument = argument.replace("{" + name + "}", str(results / ("lcm.safetensors" if name == "lora" else name)))
+        argument = argument.replace("{" + name + "}",
+                                    str(results / ("lcm.safetensors" if name == "lora" else name)))
     return argument
 
 
 def record(program, name, results):
     """Runs one recipe; returns its part of the record."""
     out = results / name
-    command = [program, "-q", "edit", *(filled(argument, results) for argument in RECIPES[name]), *FILM, "--headless", "--no-cache",
+    command = [program, "-q", "edit", *(filled(argument, results) for argument in RECIPES[name]), *FILM,
+               "--headless", "--no-cache",
                "--out", str(out)]
     process = subprocess.run(command, capture_output=True, text=True, errors="replace")
     entry = {"exit_code": process.returncode}
     if process.returncode != 0:
         entry["message"] = process.stderr.replace(str(results), "").strip().splitlines()
-    folders = sorted(path for path in out.iterdir() if path.is_dir() and path.name.isdigit()) if out.exists() else []
+    folders = sorted(path for path in out.iterdir() if path.is_dir()
+                     and path.name.isdigit()) if out.exists() else []
     found = pathlib.Path(str(out) + ".search")
     for folder in folders or [found if found.exists() else out]:
         entry["/".join(["results", folder.name] if folders else ["results"])] = record_folder(folder)
@@ -192,7 +210,8 @@ def needed(name):
 
 
 def record_all(program, names, results, out):
-    """Runs the recipes in order. The record is written after each: one that is stopped holds what was reached."""
+    """Runs the recipes in order. The record is written after each: one that is stopped holds what was
+    reached."""
     (results / "lcm.safetensors").write_bytes(lora_bytes())
     wanted = set(names) | {other for name in names for other in needed(name)}
     sums = {}
@@ -202,7 +221,7 @@ def record_all(program, names, results, out):
         out.write_text(json.dumps(sums, indent=1) + "\n")
         print(f"{name}: exit code {sums[name]['exit_code']}, {time.monotonic() - begin:.1f} s", flush=True)
 
-# ---- comparing -------------------------------------------------------------------------------------------------------
+# ---- comparing --------------------------------------------------------------------------------------------
 
 
 def leaves(value, path=""):
@@ -223,7 +242,8 @@ def field_of(path):
 
 
 def differences(before, after):
-    """Lines about the recipes and fields that differ. A recipe that only one of the records holds is a difference."""
+    """Lines about the recipes and fields that differ. A recipe that only one of the records holds is a
+    difference."""
     lines = []
     for name in [*before, *(name for name in after if name not in before)]:
         if name not in before or name not in after:
@@ -248,11 +268,14 @@ def compare(before, after):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", nargs="?", help="gseditpro")
     parser.add_argument("--out", type=pathlib.Path, help="file for the record")
-    parser.add_argument("--only", nargs="+", default=list(RECIPES), choices=list(RECIPES), metavar="NAME", help="recipes to run")
-    parser.add_argument("--keep", type=pathlib.Path, help="folder for the results themselves; without it they are deleted")
+    parser.add_argument("--only", nargs="+", default=list(RECIPES), choices=list(RECIPES), metavar="NAME",
+                        help="recipes to run")
+    parser.add_argument("--keep", type=pathlib.Path,
+                        help="folder for the results themselves; without it they are deleted")
     parser.add_argument("--compare", nargs=2, metavar=("BEFORE", "AFTER"), help="records to compare")
     parser.add_argument("--list", action="store_true", help="print the recipes")
     options = parser.parse_args()

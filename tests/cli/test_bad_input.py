@@ -62,8 +62,10 @@ HOSTILE = SHARED / "data/hostile"
 @unittest.skipUnless(HOSTILE.exists(), f"[skip] {HOSTILE} is not there")
 class HostileFiles(ProgramTest):
     def test_bombs_and_deep_trees(self):
-        self.assert_one_sentence(run("info", HOSTILE / "sog_bomb268M.sog"), "268402689 splats", "cannot hold so much")
-        self.assert_one_sentence(run("info", HOSTILE / "spz4_bomb400M.spz"), "400000000 splats", "cannot hold so much")
+        self.assert_one_sentence(run("info", HOSTILE / "sog_bomb268M.sog"), "268402689 splats",
+                                 "cannot hold so much")
+        self.assert_one_sentence(run("info", HOSTILE / "spz4_bomb400M.spz"), "400000000 splats",
+                                 "cannot hold so much")
         self.assert_one_sentence(run("info", HOSTILE / "lod_deep"), "levels deep", "lod_deep")
 
     def test_control_characters_are_escaped(self):
@@ -75,15 +77,18 @@ class HostileFiles(ProgramTest):
     def test_names_longer_than_the_system_takes(self):
         long_name = "A" * 5000 + ".ply"
         scene = ASSETS / "scenes/bear/scene.ply"
-        for arguments in ([long_name], [scene, "--cameras", long_name], [scene, "--model", long_name], [scene, "--taesd", long_name]):
-            process = run("edit", *arguments, "--source", "bear", "--prompt", "a blue bear", "--out", self.folder / "out")
+        for arguments in ([long_name], [scene, "--cameras", long_name], [scene, "--model", long_name],
+                          [scene, "--taesd", long_name]):
+            process = run("edit", *arguments, "--source", "bear", "--prompt", "a blue bear", "--out",
+                          self.folder / "out")
             self.assertIn(process.returncode, (1, 2), process.stderr[:300])
             self.assertNotIn("please report", process.stderr)
             self.assertIn("AAAA", process.stderr)   # which one
 
     def test_recipes_of_the_wrong_type(self):
         for name in ["recipe_ver_null.json", "recipe_ver_str.json"]:
-            self.assert_one_sentence(run("edit", "--recipe", HOSTILE / name, "--out", self.folder / "out"), name, "recipe", "version", "null" if "null" in name else "number")
+            self.assert_one_sentence(run("edit", "--recipe", HOSTILE / name, "--out", self.folder / "out"),
+                                     name, "recipe", "version", "null" if "null" in name else "number")
         self.assertEqual(self.folder_listing(), [])
 
 
@@ -107,7 +112,8 @@ class ManyScenes(ProgramTest):
         limit = 3 << 30
         process = subprocess.run([PROGRAM, "info", str(path)], capture_output=True, text=True, timeout=600,
                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
-        self.assertRegex(self.assert_one_sentence(process, "are free"), r"needs \d+(\.\d+)? GB of memory, and \d+(\.\d+)? [MG]B")
+        self.assertRegex(self.assert_one_sentence(process, "are free"),
+                         r"needs \d+(\.\d+)? GB of memory, and \d+(\.\d+)? [MG]B")
 
 
 class BadOptions(ProgramTest):
@@ -130,12 +136,15 @@ class BadOptions(ProgramTest):
                           self.folder / "no_model"], "no_model")
 
     def test_a_view_to_be_left_out_that_is_not_there_is_told_before_any_work(self):
-        self.refuse_edit(["--source", "bear", "--prompt", "a red bear", "--target", "red", "--excluded-views", "3, 99"], "view 99", "excluded_views")
+        self.refuse_edit(["--source", "bear", "--prompt", "a red bear", "--target", "red", "--excluded-views",
+                          "3, 99"], "view 99", "excluded_views")
 
     def test_options_of_before_are_read_and_not_shown(self):
         text = run("edit", "--help").stdout
-        for before, now, value in (("--tau", "--label-threshold", "2"), ("--keep-mass", "--min-cluster-mass", "2"),
-                                   ("--fallback-mass", "--min-segment-attention", "2"), ("--second-look", "--retry-passes", "-1"),
+        for before, now, value in (("--tau", "--label-threshold", "2"),
+                                   ("--keep-mass", "--min-cluster-mass", "2"),
+                                   ("--fallback-mass", "--min-segment-attention", "2"),
+                                   ("--second-look", "--retry-passes", "-1"),
                                    ("--evidence-px", "--coverage-px", "-1")):
             self.assertNotIn(before + " ", text)
             self.assertIn(now + " ", text)
@@ -144,7 +153,8 @@ class BadOptions(ProgramTest):
                 self.assertEqual(process.returncode, 2)
                 self.assertIn(f"{option}: Value {value} not in range", process.stderr)
                 self.assertFalse((self.folder / "out").exists())
-        self.refuse_edit(["--source", "bear", "--prompt", "a red bear", "--target", "red", "--left-out", "3, 99"], "view 99", "excluded_views")
+        self.refuse_edit(["--source", "bear", "--prompt", "a red bear", "--target", "red", "--left-out",
+                          "3, 99"], "view 99", "excluded_views")
         for before in ("--focus", "--rivals", "--left-out", "--look-again"):
             self.assertNotIn(before, text)
 
@@ -152,7 +162,8 @@ class BadOptions(ProgramTest):
         blocker = self.write("file", b"x")
         process = run("convert", self.scene, blocker / "new.ply")
         self.assert_one_sentence(process, "file")
-        process = run("edit", self.scene, "--source", "bear", "--prompt", "a red bear", "--target", "red", "--out",
+        process = run("edit", self.scene, "--source", "bear", "--prompt", "a red bear", "--target", "red",
+                      "--out",
                       blocker / "out")
         self.assert_one_sentence(process, "file")
 
@@ -167,7 +178,8 @@ class BadOptions(ProgramTest):
 
     def test_every_number_is_finite_and_in_its_range(self):
         """NaN lies in no range, whichever option it is given to."""
-        for start, command, first in [(run, "edit", [self.scene]), (run, "locate", [self.scene]), (run, "render", [self.scene, "p.png"]),
+        for start, command, first in [(run, "edit", [self.scene]), (run, "locate", [self.scene]),
+                                      (run, "render", [self.scene, "p.png"]),
                                       (run, "turntable", [self.scene, "p.mp4"]), (run_laboratory, "eval", []),
                                       (run_laboratory, "train-starter", [])]:
             text = start(command, "--help").stdout
@@ -185,16 +197,21 @@ class BadOptions(ProgramTest):
 
     def test_recipe_fields_are_named(self):
         seed = {"version": 1, "request": {"prompt": "a red bear", "source": "bear", "target": "red"}}
-        for part, name, value, word in [("request", "rate_sh", None, "null"), ("request", "rate_colour", 1e300, "0 to 10"),
-                                        ("request", "iterations", 2.5, "2.5"), ("request", "iterations", "many", "many"),
+        for part, name, value, word in [("request", "rate_sh", None, "null"),
+                                        ("request", "rate_colour", 1e300, "0 to 10"),
+                                        ("request", "iterations", 2.5, "2.5"),
+                                        ("request", "iterations", "many", "many"),
                                         ("request", "seed", -1, "-1"), ("request", "prompt", 5, "text"),
-                                        ("request", "reframe_views", 1, "true or false"), ("job", "threads", 4294967297, "threads"),
-                                        ("guidance", "weight", True, "true"), ("dreambooth", "steps", [], "list")]:
+                                        ("request", "reframe_views", 1, "true or false"),
+                                        ("job", "threads", 4294967297, "threads"),
+                                        ("guidance", "weight", True, "true"),
+                                        ("dreambooth", "steps", [], "list")]:
             recipe = json.loads(json.dumps(seed))
             recipe.setdefault(part, {})[name] = value
             path = self.write("recipe.json", json.dumps(recipe).encode())
             self.refuse_edit(["--recipe", path], name, word, "recipe.json")
-        for recipe in [{**seed, "request": []}, {**seed, "job": None}, {**seed, "guidance": "x"}, {**seed, "version": [1]},
+        for recipe in [{**seed, "request": []}, {**seed, "job": None}, {**seed, "guidance": "x"},
+                       {**seed, "version": [1]},
                        {**seed, "version": "1"}, {**seed, "request": {"no_such": 1}}, []]:
             path = self.write("recipe.json", json.dumps(recipe).encode())
             self.refuse_edit(["--recipe", path], "recipe")
@@ -206,7 +223,8 @@ class BadOptions(ProgramTest):
             self.assertEqual(run(*arguments).returncode, 2)
 
 
-@unittest.skipUnless((ASSETS / "models/starter/model_index.json").exists(), "[skip] the starter model is not there")
+@unittest.skipUnless((ASSETS / "models/starter/model_index.json").exists(),
+                     "[skip] the starter model is not there")
 class BadModels(ProgramTest):
     def copy_model(self):
         target = self.folder / "model"
@@ -220,7 +238,8 @@ class BadModels(ProgramTest):
 
     def refuse_model(self, model, *words):
         scene = self.write("scene.ply", ply_bytes(grid_rows()))
-        process = run("edit", scene, "--source", "bear", "--prompt", "a red bear", "--target", "red", "--model", model,
+        process = run("edit", scene, "--source", "bear", "--prompt", "a red bear", "--target", "red",
+                      "--model", model,
                       "--out", self.folder / "out")
         self.assert_one_sentence(process, *words)
         self.assertFalse((self.folder / "out").exists())
@@ -241,7 +260,8 @@ class BadModels(ProgramTest):
         model = self.copy_model()
 
         def drop_last(header, body):
-            name = max((key for key in header if key != "__metadata__"), key=lambda key: header[key]["data_offsets"][1])
+            name = max((key for key in header if key != "__metadata__"),
+                       key=lambda key: header[key]["data_offsets"][1])
             begin = header.pop(name)["data_offsets"][0]
             self.dropped = name
             return body[:begin]

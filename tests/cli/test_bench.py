@@ -17,7 +17,8 @@ class Benches(ProgramTest):
         return process, report
 
     def test_raster_measures_every_kernel(self):
-        process, report = self.subject("raster", "--splats", 300, "--width", 48, "--height", 48, "--views", 1, "--repetitions", 1)
+        process, report = self.subject("raster", "--splats", 300, "--width", 48, "--height", 48, "--views", 1,
+                                       "--repetitions", 1)
         self.assertIn("default", process.stdout)
         self.assertEqual(sum(point["default"] for point in report["points"]), 1)
         self.assertIn("scalar", {point["curve"] for point in report["points"]})
@@ -29,11 +30,13 @@ class Benches(ProgramTest):
         self.assertEqual([cause["cause"] for cause in report["causes"]], ["needles", "few pixels"])
         self.assertIn("0 with a value that is not finite; 0 in which", process.stdout)
         out = self.folder / "none"
-        self.assert_one_sentence(run_laboratory("-q", "bench", "stability", "--causes", "weather", "--out", out), "weather")
+        self.assert_one_sentence(run_laboratory("-q", "bench", "stability", "--causes", "weather", "--out",
+                                                out), "weather")
         self.assertFalse(out.exists())
 
     def test_preview_measures_qualities(self):
-        _, report = self.subject("preview", "--backend", "native", "--splats", 300, "--size", "64x48", "--frames", 2,
+        _, report = self.subject("preview", "--backend", "native", "--splats", 300, "--size", "64x48",
+                                 "--frames", 2,
                                  "--sh-degrees", "0", "--scales", "0.5")
         errors = {point["name"]: point["rms_error"] for point in report["points"]}
         self.assertEqual(set(errors), {"full", "SH 0", "antialiased", "size 0.5", "SH 0, size 0.5"})
@@ -43,8 +46,10 @@ class Benches(ProgramTest):
             self.assertGreater(errors[name], 10 * errors["full"], name)
 
     def test_scale_stops_at_its_limits(self):
-        process, report = self.subject("scale", "--no-search", "--splats", "1000 20000000", "--sizes", "16 32", "--views", "3 6",
-                                       "--shares", "1", "--usual-splats", 200, "--usual-size", 32, "--repetitions", 1,
+        process, report = self.subject("scale", "--no-search", "--splats", "1000 20000000", "--sizes",
+                                       "16 32", "--views", "3 6",
+                                       "--shares", "1", "--usual-splats", 200, "--usual-size", 32,
+                                       "--repetitions", 1,
                                        "--limit-seconds", 0.5)   # 20,000 times the first point
         series = {entry["of"]: entry for entry in report["series"]}
         self.assertEqual(series["splats"]["left_out"], [20000000])
@@ -52,7 +57,8 @@ class Benches(ProgramTest):
         self.assertEqual([size for size, _ in series["side"]["costs"][0]["points"]], [16, 32])
 
     def test_locate_keeps_the_error_of_every_scene(self):
-        _, report = self.subject("locate", "--scenes", 2, "--views", "6", "--repeats", "", "--levels", "", "--img2img", "", "--no-parts")
+        _, report = self.subject("locate", "--scenes", 2, "--views", "6", "--repeats", "", "--levels", "",
+                                 "--img2img", "", "--no-parts")
         self.assertEqual([point["name"] for point in report["points"]], ["as set", "6"])
         for point in report["points"]:
             errors = point["per_case"]["error"]
@@ -61,7 +67,8 @@ class Benches(ProgramTest):
 
     def test_all_leaves_a_page_that_needs_nothing_else(self):
         out = self.folder / "all"
-        process = run_laboratory("-q", "bench", "all", "--subjects", "raster", "--raster-splats", 300, "--out", out)
+        process = run_laboratory("-q", "bench", "all", "--subjects", "raster", "--raster-splats", 300,
+                                 "--out", out)
         self.assertEqual(process.returncode, 0, process.stderr)
         page = (out / "index.html").read_text()
         self.assertEqual(len(re.findall(r'<img [^>]*src="data:image/png;base64,[A-Za-z0-9+/]+=*">', page)), 1)
@@ -73,9 +80,12 @@ class Benches(ProgramTest):
 
     def test_wrong_settings_leave_nothing(self):
         out = self.folder / "none"
-        self.assert_one_sentence(run_laboratory("-q", "bench", "raster", "--kernels", "sse", "--splats", 10, "--out", out), "sse")
-        self.assert_one_sentence(run_laboratory("-q", "bench", "scale", "--sizes", "big", "--out", out), "sizes", "big")
-        self.assert_one_sentence(run_laboratory("-q", "bench", "all", "--subjects", "weather", "--out", out), "weather")
+        self.assert_one_sentence(run_laboratory("-q", "bench", "raster", "--kernels", "sse", "--splats", 10,
+                                                "--out", out), "sse")
+        self.assert_one_sentence(run_laboratory("-q", "bench", "scale", "--sizes", "big", "--out", out),
+                                 "sizes", "big")
+        self.assert_one_sentence(run_laboratory("-q", "bench", "all", "--subjects", "weather", "--out", out),
+                                 "weather")
         self.assertFalse(out.exists())
 
 

@@ -16,7 +16,8 @@ class Commands(ProgramTest):
         self.assertRegex(run("--version").stdout, r"gseditpro \d+\.\d+")
         self.assertRegex(run_laboratory("--version").stdout, r"gseditpro-lab \d+\.\d+")
         artist = ["info", "convert", "adjust", "cameras", "render", "turntable", "locate", "edit", "project"]
-        for start, command in [(run, name) for name in artist] + [(run_laboratory, name) for name in LABORATORY_COMMANDS]:
+        for start, command in [(run, name) for name in artist] + [(run_laboratory, name)
+                                                                  for name in LABORATORY_COMMANDS]:
             process = start(command, "--help")
             self.assertEqual(process.returncode, 0)
             lines = process.stdout.splitlines()
@@ -41,12 +42,14 @@ class Commands(ProgramTest):
         process = run("edit", "--polish-steps", 20, "--help")
         self.assertEqual(process.returncode, 0, process.stderr)
         self.assertNotIn("polish", process.stdout)
-        process = run("edit", "missing.ply", "--polish-steps", 20, "--source", "bear", "--prompt", "a red bear")
+        process = run("edit", "missing.ply", "--polish-steps", 20, "--source", "bear", "--prompt",
+                      "a red bear")
         self.assertIn("polish_steps", process.stderr)
         self.assertIn("ignored", process.stderr)
 
     def test_starting_loads_neither_networks_nor_codecs(self):
-        linked = subprocess.run([PROGRAM], env={**os.environ, "LD_TRACE_LOADED_OBJECTS": "1"}, capture_output=True, text=True).stdout
+        linked = subprocess.run([PROGRAM], env={**os.environ, "LD_TRACE_LOADED_OBJECTS": "1"},
+                                capture_output=True, text=True).stdout
         self.assertIn("libc.so", linked)
         for library in ["torch", "gomp", "opencv_imgcodecs", "opencv_videoio", "avcodec", "gdal"]:
             self.assertNotIn(f"lib{library}", linked)
@@ -64,7 +67,8 @@ class Commands(ProgramTest):
 
     def test_convert_there_and_back(self):
         source = self.write("scene.ply", ply_bytes(grid_rows()))
-        for name, *options in [("a.compressed.ply",), ("b.splat",), ("c.spz",), ("d.sog",), ("e.spz", "--spz-version", 4), ("f.spz", "--spz-version", 2)]:
+        for name, *options in [("a.compressed.ply",), ("b.splat",), ("c.spz",), ("d.sog",),
+                               ("e.spz", "--spz-version", 4), ("f.spz", "--spz-version", 2)]:
             process = run("convert", source, self.folder / name, *options)
             self.assertEqual(process.returncode, 0, process.stderr)
             self.assertEqual(self.info(self.folder / name)["splats"], 216)
@@ -82,8 +86,10 @@ class Commands(ProgramTest):
         self.assertNotEqual(body(self.folder / "grey.ply"), body(source))
         self.assertEqual(run("adjust", source, self.folder / "same.ply").returncode, 0)
         self.assertEqual(body(self.folder / "same.ply"), body(source))
-        self.assert_one_sentence(run("adjust", source, self.folder / "new.ply", "--use-label", "--hue", 20), "no label")
-        self.assertIn("--saturation", run("adjust", source, self.folder / "new.ply", "--saturation", 9).stderr)
+        self.assert_one_sentence(run("adjust", source, self.folder / "new.ply", "--use-label", "--hue", 20),
+                                 "no label")
+        self.assertIn("--saturation",
+                      run("adjust", source, self.folder / "new.ply", "--saturation", 9).stderr)
         self.assert_one_sentence(run("adjust", source, source, "--hue", 20), "input itself")
         self.assertFalse((self.folder / "new.ply").exists())
 
@@ -92,11 +98,13 @@ class Commands(ProgramTest):
         self.assertEqual(run("convert", source, self.folder / "new.spz", "--spz-version", 4).returncode, 0)
         self.assertEqual((self.folder / "new.spz").read_bytes()[:8], b"NGSP\4\0\0\0")
         for version in [2, 3]:
-            self.assertEqual(run("convert", source, self.folder / "old.spz", "--spz-version", version).returncode, 0)
+            self.assertEqual(run("convert", source, self.folder / "old.spz", "--spz-version",
+                                 version).returncode, 0)
             raw = gzip.decompress((self.folder / "old.spz").read_bytes())
             self.assertEqual(raw[:8], b"NGSP" + bytes([version, 0, 0, 0]))
         for version in [1, 5, "four"]:
-            self.assertNotEqual(run("convert", source, self.folder / "none.spz", "--spz-version", version).returncode, 0)
+            self.assertNotEqual(run("convert", source, self.folder / "none.spz", "--spz-version",
+                                    version).returncode, 0)
         self.assertFalse((self.folder / "none.spz").exists())
 
     def test_cameras_there_and_back_in_both_forms(self):
@@ -117,12 +125,14 @@ class Commands(ProgramTest):
                 flat = lambda value: sum(value, []) if isinstance(value[0], list) else value
                 for a, b in zip(flat(one[key]), flat(other[key])):
                     self.assertAlmostEqual(a, b, places=9)
-        self.assert_one_sentence(run("cameras", source, self.folder / "cameras.txt", "--orbit", 5), "cameras.json")
+        self.assert_one_sentence(run("cameras", source, self.folder / "cameras.txt", "--orbit", 5),
+                                 "cameras.json")
         self.assertFalse((self.folder / "cameras.txt").exists())
 
     def test_info_tells_how_a_picture_was_made(self):
         source = self.write("scene.ply", ply_bytes(grid_rows()))
-        self.assertEqual(run("render", source, self.folder / "a.png", "--width", 64, "--height", 48).returncode, 0)
+        self.assertEqual(run("render", source, self.folder / "a.png", "--width", 64, "--height",
+                             48).returncode, 0)
         process = run("info", self.folder / "a.png")
         self.assertEqual(process.returncode, 0, process.stderr)
         self.assertIn("64 x 48", process.stdout)
@@ -133,11 +143,13 @@ class Commands(ProgramTest):
 
     def test_synth_is_reproducible_and_labelled(self):
         for name in ["one.ply", "two.ply"]:
-            process = run_laboratory("synth", self.folder / name, "--object", "bear", "--accessory", "hat", "--seed", 7)
+            process = run_laboratory("synth", self.folder / name, "--object", "bear", "--accessory", "hat",
+                                     "--seed", 7)
             self.assertEqual(process.returncode, 0, process.stderr)
         self.assertEqual((self.folder / "one.ply").read_bytes(), (self.folder / "two.ply").read_bytes())
         self.assertTrue(self.info(self.folder / "one.ply")["labels"])
-        process = run_laboratory("synth", self.folder / "edited.ply", "--object", "bear", "--seed", 7, "--edit", "a blue bear")
+        process = run_laboratory("synth", self.folder / "edited.ply", "--object", "bear", "--seed", 7,
+                                 "--edit", "a blue bear")
         self.assertIn("blue bear", process.stdout)
 
     def test_render_and_turntable(self):
@@ -145,10 +157,12 @@ class Commands(ProgramTest):
         process = run("render", scene, self.folder / "picture.png", "--width", 96, "--height", 64)
         self.assertEqual(process.returncode, 0, process.stderr)
         self.assertEqual((self.folder / "picture.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
-        process = run("turntable", scene, self.folder / "turn.mp4", "--width", 96, "--height", 64, "--frames", 6)
+        process = run("turntable", scene, self.folder / "turn.mp4", "--width", 96, "--height", 64, "--frames",
+                      6)
         self.assertEqual(process.returncode, 0, process.stderr)
         self.assertIn(b"ftyp", (self.folder / "turn.mp4").read_bytes()[:16])
-        process = run("turntable", scene, self.folder / "frames", "--width", 96, "--height", 64, "--frames", 3)
+        process = run("turntable", scene, self.folder / "frames", "--width", 96, "--height", 64, "--frames",
+                      3)
         self.assertEqual(process.returncode, 0, process.stderr)
         self.assertEqual(len(list((self.folder / "frames").glob("*.png"))), 3)
 
@@ -165,12 +179,16 @@ class Commands(ProgramTest):
             self.assertEqual((share["picture_difference"], share["gradient_difference"]), (0, 0))
 
     def test_bench_speed_prints_the_readme_table(self):
-        process = run_laboratory("bench", "speed", "--splats", 300, 500, "--views", 2, "--repetitions", 1, "--size", "64x48",
-                      "--preview-size", "96x64", "--scenes-out", self.folder / "scenes", "--out", self.folder / "table.md")
+        process = run_laboratory("bench", "speed", "--splats", 300, 500, "--views", 2, "--repetitions", 1,
+                                 "--size", "64x48",
+                      "--preview-size", "96x64", "--scenes-out", self.folder / "scenes", "--out",
+                                 self.folder / "table.md")
         self.assertEqual(process.returncode, 0, process.stderr)
         self.assertEqual((self.folder / "table.md").read_text(), process.stdout)
-        rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in process.stdout.splitlines() if line.startswith("| ")]
-        self.assertEqual(rows[0], ["what", "splats", "picture", "processor time", "error against double precision"])
+        rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in process.stdout.splitlines()
+                if line.startswith("| ")]
+        self.assertEqual(rows[0],
+                         ["what", "splats", "picture", "processor time", "error against double precision"])
         for splats in ["300", "500"]:
             for what, size in [("rasterizer, forward", "64 x 48"), ("rasterizer, backward", "64 x 48")]:
                 row = next(row for row in rows if row[0] == what and row[1] == splats)
@@ -188,7 +206,8 @@ class Commands(ProgramTest):
 
     @unittest.skipUnless((SHARED / "data/scenes").is_dir(), "[skip] the shared scenes are not there")
     def test_every_shared_scene_opens(self):
-        scenes = [path for path in sorted((SHARED / "data/scenes").iterdir()) if path.is_file() or path.name.endswith("sog")]
+        scenes = [path for path in sorted((SHARED / "data/scenes").iterdir()) if path.is_file()
+                  or path.name.endswith("sog")]
         self.assertGreater(len(scenes), 5)
         for path in scenes:
             if path.suffix == ".txt":

@@ -1,4 +1,5 @@
-"""locate and edit with the bundled model: the promised files, the promised numbers, the same bytes from the recipe."""
+"""locate and edit with the bundled model: the promised files, the promised numbers, the same bytes from the
+recipe."""
 import json
 import os
 import pathlib
@@ -12,7 +13,8 @@ from program import PROGRAM, SHARED, ProgramTest, can_mount, run, run_in_namespa
 
 ASSETS = pathlib.Path(__file__).resolve().parents[2] / "assets"
 MODEL = ASSETS / "models/starter"
-QUICK = ["--views", 6, "--image-size", 64, "--attention-repeats", 1, "--iterations", 20, "--turntable-frames", 3,
+QUICK = ["--views", 6, "--image-size", 64, "--attention-repeats", 1, "--iterations", 20, "--turntable-frames",
+         3,
          "--turntable-size", 64]
 
 
@@ -39,12 +41,15 @@ class Edits(ProgramTest):
     def test_the_promised_files(self):
         out = self.folder / "out"
         self.edit(out)
-        for name in ["scene.ply", "source.ply", "report.json", "recipe.json", "before_after.mp4", "before_after.png", "edit.gsep",
-                     "evidence/index.json", "evidence/view_000_attention.png", "evidence/view_000_points.png"]:
+        for name in ["scene.ply", "source.ply", "report.json", "recipe.json", "before_after.mp4",
+                     "before_after.png", "edit.gsep",
+                     "evidence/index.json", "evidence/view_000_attention.png",
+                     "evidence/view_000_points.png"]:
             self.assertTrue((out / name).is_file(), name)
         self.assertEqual([path.name for path in self.folder.iterdir()], ["out"])
         report = json.loads((out / "report.json").read_text())
-        for key in ["splats", "labelled", "changed_outside_label", "nonfinite", "psnr_outside_db", "seconds", "peak_rss_mb"]:
+        for key in ["splats", "labelled", "changed_outside_label", "nonfinite", "psnr_outside_db", "seconds",
+                    "peak_rss_mb"]:
             self.assertIn(key, report)
         self.assertEqual(report["changed_outside_label"], 0)
         self.assertEqual(report["nonfinite"], 0)
@@ -57,7 +62,8 @@ class Edits(ProgramTest):
     def test_the_project_shows_the_edited_scene_and_its_label_is_edited_further(self):
         out = self.folder / "out"
         self.edit(out)
-        self.assertEqual(run("project", out / "edit.gsep", "--export", self.folder / "exported.ply").returncode, 0)
+        self.assertEqual(run("project", out / "edit.gsep", "--export",
+                             self.folder / "exported.ply").returncode, 0)
         self.assertEqual((self.folder / "exported.ply").read_bytes(), (out / "scene.ply").read_bytes())
         summary = json.loads(run("project", out / "edit.gsep", "--json").stdout)
         self.assertEqual([edit["name"] for edit in summary["edits"]], ["a blue bear on the grass"])
@@ -72,10 +78,12 @@ class Edits(ProgramTest):
         if not scene.exists():
             self.skipTest(f"[skip] {scene} is not there")
         out = self.folder / "out"
-        process = run("-q", "edit", scene, "--source", "bear", "--prompt", "a blue bear on the grass", "--target", "blue",
+        process = run("-q", "edit", scene, "--source", "bear", "--prompt", "a blue bear on the grass",
+                      "--target", "blue",
                       "--out", out, *QUICK, "--no-gate", "--least-confidence", 0)
         self.assertEqual(process.returncode, 0, process.stderr)
-        self.assertEqual(len([line for line in process.stderr.splitlines() if "cannot be drawn" in line]), 1, process.stderr)
+        self.assertEqual(len([line for line in process.stderr.splitlines() if "cannot be drawn" in line]), 1,
+                         process.stderr)
         report = json.loads((out / "report.json").read_text())
         self.assertGreater(report["nonfinite_before"], 246)
         self.assertEqual(report["nonfinite"], report["nonfinite_before"])
@@ -98,7 +106,8 @@ class Edits(ProgramTest):
         self.assertGreater(len(kept), 0)
         self.assertTrue(all(any(row == other for other in remaining) for row in kept))
 
-    @unittest.skipUnless((MODEL / "clip/config.json").exists(), "[skip] the starter model has no image-text encoder")
+    @unittest.skipUnless((MODEL / "clip/config.json").exists(),
+                         "[skip] the starter model has no image-text encoder")
     def test_the_gate_scores_its_pictures(self):
         out = self.folder / "gated"
         self.edit(out, "--gate", "--method", "sds")
@@ -109,7 +118,8 @@ class Edits(ProgramTest):
         for i in range(4):
             self.assertTrue((out / f"evidence/gate_{i}.png").is_file())
 
-    @unittest.skipUnless((MODEL / "clip/config.json").exists(), "[skip] the starter model has no image-text encoder")
+    @unittest.skipUnless((MODEL / "clip/config.json").exists(),
+                         "[skip] the starter model has no image-text encoder")
     def test_redrawn_views_are_judged_as_they_are(self):
         out = self.folder / "judged"
         self.edit(out, "--gate")
@@ -121,7 +131,8 @@ class Edits(ProgramTest):
 
     def test_redrawn_views_are_part_of_the_evidence(self):
         out = self.folder / "views"
-        self.edit(out, "--method", "views", "--edited-views", 3, "--rounds", 2, "--fit-steps", 8, "--view-steps", 2)
+        self.edit(out, "--method", "views", "--edited-views", 3, "--rounds", 2, "--fit-steps", 8,
+                  "--view-steps", 2)
         report = json.loads((out / "report.json").read_text())
         self.assertEqual([entry["round"] for entry in report["targets"]], [0, 1])
         for entry in report["targets"]:
@@ -142,10 +153,12 @@ class Edits(ProgramTest):
         scene = self.folder / os.fsdecode(b"b\xe4r.ply")
         shutil.copy(ASSETS / "scenes/bear/scene.ply", scene)
         self.edit(first, scene=scene)
-        self.assertIn("b%E4r.ply", json.loads((first / "recipe.json").read_text(encoding="utf-8"))["job"]["scene"])
+        self.assertIn("b%E4r.ply",
+                      json.loads((first / "recipe.json").read_text(encoding="utf-8"))["job"]["scene"])
         process = run("-q", "edit", "--recipe", first / "recipe.json", "--out", second)
         self.assertEqual(process.returncode, 0, process.stderr)
-        for name in ["scene.ply", "source.ply", "recipe.json", "before_after.png", "evidence/view_000_attention.png"]:
+        for name in ["scene.ply", "source.ply", "recipe.json", "before_after.png",
+                     "evidence/view_000_attention.png"]:
             self.assertEqual((first / name).read_bytes(), (second / name).read_bytes(), name)
 
     def test_variations_are_edits_from_other_seeds_and_one_picture_to_choose_from(self):
@@ -165,14 +178,16 @@ class Edits(ProgramTest):
         self.assertEqual([report["changed_outside_label"] for report in reports], [0, 0])
         # None may take the place of its own scene, and then nothing is begun.
         before = (out / "1/scene.ply").read_bytes()
-        process = run("-q", "edit", out / "2/scene.ply", "--prompt", "a blue bear", "--source", "bear", "--out", out, "--variations", 2, *QUICK)
+        process = run("-q", "edit", out / "2/scene.ply", "--prompt", "a blue bear", "--source", "bear",
+                      "--out", out, "--variations", 2, *QUICK)
         self.assertNotEqual(process.returncode, 0)
         self.assertIn("--out", process.stderr)
         self.assertEqual((out / "1/scene.ply").read_bytes(), before)
 
     def test_another_sentence_is_not_bound_to_the_target_and_mode_of_the_recipe(self):
         out = self.folder / "golden"
-        process = run("-q", "edit", "--demo", "--headless", "--prompt", "a golden bear on the grass", "--out", out,
+        process = run("-q", "edit", "--demo", "--headless", "--prompt", "a golden bear on the grass", "--out",
+                      out,
                       *QUICK)
         self.assertEqual(process.returncode, 0, process.stderr)
         request = json.loads((out / "recipe.json").read_text())["request"]
@@ -196,7 +211,8 @@ class Edits(ProgramTest):
         self.assertEqual((out / "notes.txt").read_text(), "mine")
         self.assertEqual(out.stat().st_mode & 0o777, 0o750)
         self.assertEqual([path.name for path in self.folder.iterdir()], ["out"])
-        process = run("locate", ASSETS / "scenes/bear/scene.ply", "--source", "bear", "--prompt", "a red bear", "--out", out)
+        process = run("locate", ASSETS / "scenes/bear/scene.ply", "--source", "bear", "--prompt",
+                      "a red bear", "--out", out)
         self.assert_one_sentence(process, "edited scene")
 
     def test_the_folder_of_the_scene_itself_is_refused(self):
@@ -206,7 +222,8 @@ class Edits(ProgramTest):
         (self.folder / "link").symlink_to(self.folder)
         for command in ["edit", "locate"]:
             for out in [self.folder, self.folder / "link"]:
-                process = run(command, scene, "--source", "bear", "--prompt", "a blue bear", "--target", "blue", "--out", out)
+                process = run(command, scene, "--source", "bear", "--prompt", "a blue bear", "--target",
+                              "blue", "--out", out)
                 self.assert_one_sentence(process, "folder of the scene itself")
                 self.assertEqual(process.returncode, 2)
         self.assertEqual(scene.read_bytes(), before)
@@ -217,8 +234,10 @@ class Edits(ProgramTest):
             self.skipTest("[skip] this user may not mount file systems (unshare --user --mount)")
         (self.folder / "out").mkdir()
         for options, words in [("ro", "Read-only"), ("size=300k", "the results need about")]:
-            process = run_in_namespace('mount -t tmpfs -o "$1" none "$2"; shift; shift; "$0" "$@"', options, self.folder / "out",
-                                       "edit", ASSETS / "scenes/bear/scene.ply", "--source", "bear", "--prompt", "a blue bear",
+            process = run_in_namespace('mount -t tmpfs -o "$1" none "$2"; shift; shift; "$0" "$@"', options,
+                                       self.folder / "out",
+                                       "edit", ASSETS / "scenes/bear/scene.ply", "--source", "bear",
+                                       "--prompt", "a blue bear",
                                        "--target", "blue", "--out", self.folder / "out", *QUICK)
             self.assert_one_sentence(process, words)
             self.assertNotIn("editing", process.stderr)
@@ -228,12 +247,17 @@ class Edits(ProgramTest):
         if not can_mount():
             self.skipTest("[skip] this user may not mount file systems (unshare --user --mount)")
         (self.folder / "out").mkdir()
-        # More than the estimate before the edit, which cannot know all; less than both scenes and the pictures.
+        # More than the estimate before the edit, which cannot know all; less than both scenes and the
+        # pictures.
         room = 2 * (ASSETS / "scenes/bear/scene.ply").stat().st_size // 1024 + 90
-        process = run_in_namespace('mount -t tmpfs -o "size=$1k" none "$2"; cd "$2"; shift; shift; "$0" "$@" || echo "exit $?"; '
-                                   'find . -name "*.ply" | sort; "$0" info */scene.ply', room, self.folder / "out", "-q", "edit",
-                                   ASSETS / "scenes/bear/scene.ply", "--source", "bear", "--prompt", "a blue bear on the grass",
-                                   "--target", "blue", "--front", 0, "--no-gate", "--out", self.folder / "out", *QUICK)
+        process = run_in_namespace('mount -t tmpfs -o "size=$1k" none "$2"; cd "$2"; shift; shift; '
+                                   '"$0" "$@" || echo "exit $?"; '
+                                   'find . -name "*.ply" | sort; "$0" info */scene.ply', room,
+                                   self.folder / "out", "-q", "edit",
+                                   ASSETS / "scenes/bear/scene.ply", "--source", "bear", "--prompt",
+                                   "a blue bear on the grass",
+                                   "--target", "blue", "--front", 0, "--no-gate", "--out",
+                                   self.folder / "out", *QUICK)
         self.assertIn("exit 1", process.stdout, process.stderr)
         self.assertIn("./out.kept/scene.ply", process.stdout)
         self.assertIn("is kept in", process.stderr)

@@ -10,12 +10,15 @@ MODEL = ASSETS / "models/starter"
 QUICK = ["--views", 6, "--held-out-views", 3, "--attention-repeats", 1, "--iterations", 12]
 CHANGE_KEYS = ["iou", "weighted_iou", "mask_iou", "mask_boundary_f", "label_iou", "label_boundary_f"]
 ADD_KEYS = ["place_recall", "place_precision", "place_iou", "changed_recall", "changed_precision"]
-EDIT_KEYS = ["l1_before", "l1_after", "l1_reduction", "psnr_inside_before_db", "psnr_inside_db", "ssim_inside",
-             "psnr_outside_db", "ssim_outside", "leak_rate", "own_leak_rate", "drift", "inconsistency", "direction"]
+EDIT_KEYS = ["l1_before", "l1_after", "l1_reduction", "psnr_inside_before_db", "psnr_inside_db",
+             "ssim_inside",
+             "psnr_outside_db", "ssim_outside", "leak_rate", "own_leak_rate", "drift", "inconsistency",
+             "direction"]
 
 
 def without_measured_cost(value):
-    """The report without what depends on the machine's mood: times and memory, and the file whose text holds them."""
+    """The report without what depends on the machine's mood: times and memory, and the file whose text holds
+    them."""
     if isinstance(value, dict):
         return {key: without_measured_cost(entry) for key, entry in value.items()
                 if key not in ("seconds", "edit_seconds", "peak_rss_mb", "eval.txt")}
@@ -27,7 +30,8 @@ def without_measured_cost(value):
 @unittest.skipUnless((MODEL / "model_index.json").exists(), "[skip] the starter model is not there")
 class Evaluations(ProgramTest):
     def evaluate(self, out, *arguments):
-        process = run_laboratory("-q", "eval", "--out", out, "--edits", 2, "--kinds", "recolour add", *QUICK, *arguments)
+        process = run_laboratory("-q", "eval", "--out", out, "--edits", 2, "--kinds", "recolour add", *QUICK,
+                                 *arguments)
         self.assertEqual(process.returncode, 0, process.stderr)
         return process, json.loads((out / "eval.json").read_text())
 
@@ -48,8 +52,10 @@ class Evaluations(ProgramTest):
                 self.assertGreater(edit["seconds"][stage], 0)
             if not report["text_image_score"]:
                 self.assertIsNone(edit["direction"])
-        for name in ("existing_weighted_iou", "change_l1_reduction", "added_place_recall", "psnr_outside_db", "leak_rate",
-                     "drift", "change_success", "added_visible", "no_localization_worse", "no_pseudo_gt_worse"):
+        for name in ("existing_weighted_iou", "change_l1_reduction", "added_place_recall", "psnr_outside_db",
+                     "leak_rate",
+                     "drift", "change_success", "added_visible", "no_localization_worse",
+                     "no_pseudo_gt_worse"):
             self.assertIn("goal", report["summary"][name])
         self.assertEqual([entry["name"] for entry in report["summary"]["ablation_means"]],
                          ["full", "no_localization", "no_pseudo_gt", "no_gate", "static_mask", "no_anchor"])
@@ -61,10 +67,12 @@ class Evaluations(ProgramTest):
         _, second = self.evaluate(self.folder / "second", "--seed", 9)
         self.assertEqual(without_measured_cost(first), without_measured_cost(second))
         _, other = self.evaluate(self.folder / "other", "--seed", 10)
-        self.assertNotEqual([edit["prompt"] for edit in first["edits"]], [edit["prompt"] for edit in other["edits"]])
+        self.assertNotEqual([edit["prompt"] for edit in first["edits"]],
+                            [edit["prompt"] for edit in other["edits"]])
 
     def test_a_real_scene_without_truth(self):
-        process = run_laboratory("-q", "eval", "--out", self.folder / "out", "--edits", 0, *QUICK, "--json", "--scenes",
+        process = run_laboratory("-q", "eval", "--out", self.folder / "out", "--edits", 0, *QUICK, "--json",
+                                 "--scenes",
                       f"{ASSETS / 'scenes/bear/scene.ply'}:bear:a blue bear on the grass:blue")
         self.assertEqual(process.returncode, 0, process.stderr)
         report = json.loads(process.stdout)
@@ -78,14 +86,18 @@ class Evaluations(ProgramTest):
 
     def test_bench_edit_draws_a_curve_per_method(self):
         out = self.folder / "bench"
-        process = run_laboratory("-q", "bench", "edit", "--out", out, "--edits", 2, "--kinds", "recolour material", "--seed", 55, *QUICK,
-                      "--edited-views", 2, "--view-steps", 2, "--fit-steps", 10, "--sds", "6 12 rest", "--restyle-steps", 2, "--redraws", "2x2x1 3x1x2 draft")
+        process = run_laboratory("-q", "bench", "edit", "--out", out, "--edits", 2, "--kinds",
+                                 "recolour material", "--seed", 55, *QUICK,
+                      "--edited-views", 2, "--view-steps", 2, "--fit-steps", 10, "--sds", "6 12 rest",
+                                 "--restyle-steps", 2, "--redraws", "2x2x1 3x1x2 draft")
         self.assertEqual(process.returncode, 0, process.stderr)
         report = json.loads((out / "edit.json").read_text())
-        curves = {curve["method"]: {point["name"]: point for point in curve["points"]} for curve in report["curves"]}
+        curves = {curve["method"]: {point["name"]: point for point in curve["points"]}
+                  for curve in report["curves"]}
         self.assertEqual(set(curves["sds"]), {"6", "12", "until at rest"})
         self.assertEqual(set(curves["views"]), {"normal", "2x2x1", "3x1x2", "draft"})
-        self.assertEqual([name for points in curves.values() for name in points if points[name]["default"]], ["12", "normal"])
+        self.assertEqual([name for points in curves.values() for name in points if points[name]["default"]],
+                         ["12", "normal"])
         self.assertIn("2x2x1", process.stdout)
         ran = [point for points in curves.values() for point in points.values() if point["ran"] > 0]
         for point in ran:
@@ -95,22 +107,28 @@ class Evaluations(ProgramTest):
             self.assertTrue(-1 <= point["error_removed"] <= 1)
         if ran:
             self.assertLess(curves["sds"]["6"]["tflop"], curves["sds"]["12"]["tflop"])
-            self.assertLess(curves["views"]["2x2x1"]["unet"], curves["views"]["3x1x2"]["unet"])   # 4 and 6 denoising steps
+            # 4 and 6 denoising steps
+            self.assertLess(curves["views"]["2x2x1"]["unet"], curves["views"]["3x1x2"]["unet"])
             self.assertEqual(curves["views"]["normal"]["unet"], curves["views"]["2x2x1"]["unet"])
-            self.assertLess(curves["views"]["draft"]["unet"], curves["views"]["2x2x1"]["unet"])   # one view instead of two
+            # one view instead of two
+            self.assertLess(curves["views"]["draft"]["unet"], curves["views"]["2x2x1"]["unet"])
             self.assertLessEqual(curves["sds"]["until at rest"]["unet"], curves["sds"]["12"]["unet"])
         self.assertTrue((out / "pareto.png").read_bytes().startswith(b"\x89PNG"))
         self.assertIn("pareto.png", report["files"])
         for points in ["8x6", "8x6x1x", "eight"]:
-            self.assert_one_sentence(run_laboratory("-q", "bench", "edit", "--out", self.folder / "none", "--redraws", points), "8x4x1")
-        self.assert_one_sentence(run_laboratory("-q", "bench", "edit", "--out", self.folder / "none", "--redraws", "8000x6x1"), "edited_views")
+            self.assert_one_sentence(run_laboratory("-q", "bench", "edit", "--out", self.folder / "none",
+                                                    "--redraws", points), "8x4x1")
+        self.assert_one_sentence(run_laboratory("-q", "bench", "edit", "--out", self.folder / "none",
+                                                "--redraws", "8000x6x1"), "edited_views")
         self.assertFalse((self.folder / "none").exists())
 
     def test_wrong_settings_leave_nothing(self):
         out = self.folder / "out"
         self.assert_one_sentence(run_laboratory("-q", "eval", "--out", out, "--kinds", "melt"), "melt")
-        self.assert_one_sentence(run_laboratory("-q", "eval", "--out", out, "--mode", "sometimes"), "sometimes")
-        self.assert_one_sentence(run_laboratory("-q", "eval", "--out", out, "--edits", 0, "--scenes", "/no/scene.ply"), "no such scene")
+        self.assert_one_sentence(run_laboratory("-q", "eval", "--out", out, "--mode", "sometimes"),
+                                 "sometimes")
+        self.assert_one_sentence(run_laboratory("-q", "eval", "--out", out, "--edits", 0, "--scenes",
+                                                "/no/scene.ply"), "no such scene")
         self.assertEqual(self.folder_listing(), [])
 
 

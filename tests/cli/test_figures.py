@@ -16,11 +16,13 @@ class Figures(ProgramTest):
         self.assertEqual(process.returncode, 0, process.stderr)
         report = json.loads((out / "eval.json").read_text())
         summary = report["summary"]
-        return report["edits"], {name: summary[name]["value"] for name in summary if isinstance(summary[name], dict)}
+        return report["edits"], {name: summary[name]["value"] for name in summary
+                                 if isinstance(summary[name], dict)}
 
     def test_with_cameras_that_know_where_the_thing_is(self):
         """At the size of a quick run."""
-        _, figures = self.figures("--oracle-views", "--seed", 5, "--edits", 4, "--kinds", "recolour add", "--views", 12,
+        _, figures = self.figures("--oracle-views", "--seed", 5, "--edits", 4, "--kinds", "recolour add",
+                                  "--views", 12,
                                   "--image-size", 64, "--iterations", 150)
         self.assertEqual(figures["failed"], 0)
         self.assertGreaterEqual(figures["existing_weighted_iou"], 0.7)
@@ -29,7 +31,8 @@ class Figures(ProgramTest):
         self.assertEqual(figures["drift"], 0)
 
     def test_as_a_user_begins(self):
-        """Scene, source and sentence, all else as it is set: the new word is found, and the thing it changes."""
+        """Scene, source and sentence, all else as it is set: the new word is found, and the thing it
+        changes."""
         edits, figures = self.figures("--seed", 6, "--edits", 8, "--kinds", "recolour ground")
         self.assertLessEqual(figures["failed"], 1)
         self.assertGreaterEqual(sum(edit.get("guessed", {}).get("right", False) for edit in edits), 7)

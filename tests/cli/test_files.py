@@ -1,5 +1,5 @@
-"""Whatever happens to a write (full disk, other disk, read-only place, kill), nothing that was there is lost, nothing half-done
-is seen, and the program says one sentence with an exit code."""
+"""Whatever happens to a write (full disk, other disk, read-only place, kill), nothing that was there is lost,
+nothing half-done is seen, and the program says one sentence with an exit code."""
 import json
 import math
 import os
@@ -46,7 +46,8 @@ class FilesTest(ProgramTest):
         yield "project.ply", ["project", CORPUS / "whole.gsep", "--export", self.folder / "out/project.ply"]
 
     def frames(self, count, *more):
-        return ["-q", "turntable", self.scene, self.folder / "out/frames", "--width", 32, "--height", 32, "--frames", count, *more]
+        return ["-q", "turntable", self.scene, self.folder / "out/frames", "--width", 32, "--height", 32,
+                "--frames", count, *more]
 
     def out_listing(self):
         return sorted(path.name for path in (self.folder / "out").iterdir())
@@ -113,7 +114,8 @@ class Faults(FilesTest):
             self.assertEqual(run(*self.frames(3)).returncode, 0)
             self.assertEqual(self.check_frames(), 3)
             self.assertEqual(self.out_listing(), ["frames"])
-            self.assertEqual([path.name for path in (self.folder / "out/frames").iterdir() if path.name[0] == "."], [])
+            self.assertEqual([path.name for path in (self.folder / "out/frames").iterdir()
+                              if path.name[0] == "."], [])
             if process.returncode == 0:
                 break
             self.assertEqual(process.returncode, -signal.SIGKILL)
@@ -122,7 +124,8 @@ class Faults(FilesTest):
 
 
 class Places(FilesTest):
-    """Results at mount points, on other disks and in read-only parents; real file systems in a namespace of our own."""
+    """Results at mount points, on other disks and in read-only parents; real file systems in a namespace of
+    our own."""
 
     def setUp(self):
         super().setUp()
@@ -131,11 +134,14 @@ class Places(FilesTest):
 
     def test_a_mount_point_as_output(self):
         (self.folder / "out/frames").mkdir()
-        process = run_in_namespace('mount -t tmpfs -o size=20m none "$5"; "$0" "$@"; "$0" "$@"; ls -A "$5"; ls -A "$5/.."',
-                                    "-q", "turntable", self.scene, "--frames=2", self.folder / "out/frames", "--width=32",
+        process = run_in_namespace('mount -t tmpfs -o size=20m none "$5"; "$0" "$@"; "$0" "$@"; '
+                                   'ls -A "$5"; ls -A "$5/.."',
+                                    "-q", "turntable", self.scene, "--frames=2", self.folder / "out/frames",
+                                   "--width=32",
                                     "--height=32")
         self.assertEqual(process.returncode, 0, process.stderr)
-        self.assertEqual(process.stdout.splitlines()[-4:], ["frame_0000.png", "frame_0001.png", "frames.json", "frames"])
+        self.assertEqual(process.stdout.splitlines()[-4:],
+                         ["frame_0000.png", "frame_0001.png", "frames.json", "frames"])
 
     def test_a_link_to_another_disk_as_output(self):
         (self.folder / "disk").mkdir()
@@ -143,7 +149,8 @@ class Places(FilesTest):
         (self.folder / "out/film.mp4").symlink_to(self.folder / "disk/film.mp4")
         script = ('mount -t tmpfs -o size=20m none "$1"; shift; mkdir there; for i in 1 2; do '
                   '"$0" -q turntable "$1" out/frames --frames 2 --width 32 --height 32; '
-                  '"$0" -q turntable "$1" out/film.mp4 --frames 2 --width 32 --height 32; done; ls -A disk disk/there')
+                  '"$0" -q turntable "$1" out/film.mp4 --frames 2 --width 32 --height 32; done; '
+                  'ls -A disk disk/there')
         script = f'cd "{self.folder}"; ' + script.replace("mkdir there", "mkdir disk/there")
         process = run_in_namespace(script, self.folder / "disk", self.scene)
         self.assertEqual(process.returncode, 0, process.stderr)
@@ -171,17 +178,20 @@ class Places(FilesTest):
     def test_a_writable_folder_in_a_read_only_parent(self):
         script = ('cd "$2"; mkdir -p parent/frames; mount -t tmpfs none parent; mkdir parent/frames; '
                   'mount -t tmpfs none parent/frames; mount -o remount,ro none parent; '
-                  'for i in 1 2; do "$0" -q turntable "$1" parent/frames --frames 2 --width 32 --height 32; done; ls -A parent/frames; '
-                  'set +e; "$0" -q turntable "$1" parent/other --frames 2 --width 32 --height 32; echo "exit $?"')
+                  'for i in 1 2; do "$0" -q turntable "$1" parent/frames --frames 2 --width 32 --height 32; '
+                  'done; ls -A parent/frames; set +e; '
+                  '"$0" -q turntable "$1" parent/other --frames 2 --width 32 --height 32; echo "exit $?"')
         process = run_in_namespace(script, self.scene, self.folder)
         lines = process.stdout.splitlines()
-        self.assertEqual(lines[-4:], ["frame_0000.png", "frame_0001.png", "frames.json", "exit 1"], process.stderr)
+        self.assertEqual(lines[-4:], ["frame_0000.png", "frame_0001.png", "frames.json", "exit 1"],
+                         process.stderr)
         self.assertIn("Read-only file system", process.stderr)
 
 
 class Outputs(FilesTest):
     def test_a_full_or_closed_stdout_is_said(self):
-        for command in [["info", self.scene], ["info", self.scene, "--json"], ["--help"], ["convert", self.scene, self.folder / "a.spz"]]:
+        for command in [["info", self.scene], ["info", self.scene, "--json"], ["--help"],
+                        ["convert", self.scene, self.folder / "a.spz"]]:
             with open("/dev/full", "w") as full:
                 process = run_with(command, stdout=full)
             self.assert_one_sentence(process, "No space left")
@@ -197,7 +207,8 @@ class Outputs(FilesTest):
 
     def test_a_full_stderr_ends_nothing(self):
         with open("/dev/full", "w") as full:
-            process = run_with(["turntable", self.scene, self.folder / "a.mp4", "--width", 32, "--height", 32, "--frames", 2], stderr=full)
+            process = run_with(["turntable", self.scene, self.folder / "a.mp4", "--width", 32, "--height", 32,
+                                "--frames", 2], stderr=full)
         self.assertEqual(process.returncode, 0)
 
     def test_the_limit_for_file_sizes_is_said(self):
@@ -205,7 +216,8 @@ class Outputs(FilesTest):
             place = self.write(f"out/{name}", b"old")
             command = (["convert", self.scene, place] if name == "a.ply" else
                        ["turntable", self.scene, place, "--width", 64, "--height", 64, "--frames", 20])
-            process = run_with(command, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000)))
+            process = run_with(command,
+                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000)))
             self.assert_one_sentence(process, "File too large")
             self.assertEqual(process.returncode, 1)
             self.assertEqual(place.read_bytes(), b"old")
@@ -213,8 +225,10 @@ class Outputs(FilesTest):
 
     def test_pipes_and_devices_are_no_input_and_no_output(self):
         os.mkfifo(self.folder / "pipe.ply")
-        for arguments in [["info", self.folder / "pipe.ply"], ["info", "/dev/zero"], ["edit", "--recipe", self.folder / "pipe.ply"],
-                          ["turntable", self.scene, self.folder / "a.mp4", "--path", self.folder / "pipe.ply"],
+        for arguments in [["info", self.folder / "pipe.ply"], ["info", "/dev/zero"],
+                          ["edit", "--recipe", self.folder / "pipe.ply"],
+                          ["turntable", self.scene, self.folder / "a.mp4", "--path",
+                           self.folder / "pipe.ply"],
                           ["project", self.folder / "pipe.ply"]]:
             process = run_with(arguments, stdin=subprocess.DEVNULL)
             self.assert_one_sentence(process, "device" if "/dev/zero" in arguments else "pipe")
@@ -245,7 +259,8 @@ class Outputs(FilesTest):
 
     def test_frames_of_others_are_not_replaced(self):
         self.write("out/frame_0001.png", b"a photo")
-        process = run("turntable", self.scene, self.folder / "out", "--frames", 3, "--width", 32, "--height", 32)
+        process = run("turntable", self.scene, self.folder / "out", "--frames", 3, "--width", 32, "--height",
+                      32)
         self.assert_one_sentence(process, "frame_0001.png", "no earlier run")
         self.assertEqual((self.folder / "out/frame_0001.png").read_bytes(), b"a photo")
         self.assertEqual(self.out_listing(), ["frame_0001.png"])
@@ -257,13 +272,16 @@ class Outputs(FilesTest):
         shutil.copy(self.scene, os.fsdecode(scene))
 
         def run_bytes(*arguments):
-            return subprocess.run([PROGRAM, *[a if isinstance(a, bytes) else str(a) for a in arguments]], capture_output=True, timeout=600)
+            return subprocess.run([PROGRAM, *[a if isinstance(a, bytes) else str(a) for a in arguments]],
+                                  capture_output=True, timeout=600)
 
         for name in [b"n\xe9w.spz", b"n\xe9w.compressed.ply"]:
             self.assertEqual(run_bytes("convert", scene, folder + b"/" + name).returncode, 0)
         for command in [["render", scene, folder + b"/p\xef.png", "--width", 32, "--height", 32],
-                        ["turntable", scene, folder + b"/f\xef.mp4", "--width", 32, "--height", 32, "--frames", 2],
-                        ["turntable", scene, folder + b"/fr\xef", "--width", 32, "--height", 32, "--frames", 2]]:
+                        ["turntable", scene, folder + b"/f\xef.mp4", "--width", 32, "--height", 32,
+                         "--frames", 2],
+                        ["turntable", scene, folder + b"/fr\xef", "--width", 32, "--height", 32, "--frames",
+                         2]]:
             process = run_bytes(*command)
             self.assertEqual(process.returncode, 0, process.stderr)
         process = run_bytes("info", scene, "--json")

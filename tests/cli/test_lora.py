@@ -10,7 +10,8 @@ from program import ProgramTest, run, run_laboratory
 ASSETS = pathlib.Path(__file__).resolve().parents[2] / "assets"
 MODEL = ASSETS / "models/starter"
 SCENE = ASSETS / "scenes/bear/scene.ply"
-QUICK = ["--views", 4, "--image-size", 64, "--attention-repeats", 1, "--iterations", 4, "--fit-steps", 4, "--edited-views", 2,
+QUICK = ["--views", 4, "--image-size", 64, "--attention-repeats", 1, "--iterations", 4, "--fit-steps", 4,
+         "--edited-views", 2,
          "--turntable-frames", 2, "--turntable-size", 64, "--no-gate", "--no-focus"]
 RANK = 2
 
@@ -29,7 +30,8 @@ def safetensors_bytes(tensors):
 def model_shapes():
     with (MODEL / "unet/diffusion_pytorch_model.safetensors").open("rb") as file:
         length = struct.unpack("<Q", file.read(8))[0]
-        return {name: entry["shape"] for name, entry in json.loads(file.read(length)).items() if name != "__metadata__"}
+        return {name: entry["shape"] for name,
+                entry in json.loads(file.read(length)).items() if name != "__metadata__"}
 
 
 def lora_bytes(size=0.2, layers="attn2.to_v", rows=None):
@@ -41,7 +43,8 @@ def lora_bytes(size=0.2, layers="attn2.to_v", rows=None):
             continue
         stem = "lora_unet_" + name.removesuffix(".weight").replace(".", "_")
         out, inner = (rows or shape[0]), shape[1]
-        tensors[f"{stem}.lora_down.weight"] = ([RANK, inner], [draw.gauss(0, size) for _ in range(RANK * inner)])
+        tensors[f"{stem}.lora_down.weight"] = ([RANK, inner],
+                                               [draw.gauss(0, size) for _ in range(RANK * inner)])
         tensors[f"{stem}.lora_up.weight"] = ([out, RANK], [draw.gauss(0, size) for _ in range(RANK * out)])
         tensors[f"{stem}.alpha"] = ([], [float(RANK)])
     assert tensors
@@ -51,7 +54,8 @@ def lora_bytes(size=0.2, layers="attn2.to_v", rows=None):
 @unittest.skipUnless((MODEL / "model_index.json").exists(), "[skip] the starter model is not there")
 class Loras(ProgramTest):
     def edit(self, out, *arguments):
-        return run("-q", "edit", SCENE, "--source", "bear", "--prompt", "a blue bear on the grass", "--target", "blue",
+        return run("-q", "edit", SCENE, "--source", "bear", "--prompt", "a blue bear on the grass",
+                   "--target", "blue",
                    "--front", 0, "--method", "views", "--out", out, *QUICK, *arguments)
 
     def edited(self, name, *arguments):
@@ -75,7 +79,8 @@ class Loras(ProgramTest):
         self.assertEqual(process.returncode, 0, process.stderr)
         self.assertEqual((again / "scene.ply").read_bytes(), (both / "scene.ply").read_bytes())
         # What stands on the command line takes the place of the recipe's.
-        process = run("-q", "edit", "--recipe", both / "recipe.json", "--no-gate", "--lora", f"{style}:0", "--out", again)
+        process = run("-q", "edit", "--recipe", both / "recipe.json", "--no-gate", "--lora", f"{style}:0",
+                      "--out", again)
         self.assertEqual(process.returncode, 0, process.stderr)
         self.assertEqual(json.loads((again / "recipe.json").read_text())["job"]["lora"], [f"{style}:0"])
         self.assertEqual((again / "scene.ply").read_bytes(), (plain / "scene.ply").read_bytes())
@@ -95,7 +100,8 @@ class Loras(ProgramTest):
     def test_bad_ones_end_the_command_before_any_work(self):
         cases = {"gone.safetensors": (None, ["no lora file", "gone.safetensors"]),
                  "other.safetensors": (lora_bytes(rows=3), ["shape", "other.safetensors"]),
-                 "weights.safetensors": (safetensors_bytes({"conv_in.weight": ([1], [0.0])}), ["no lora", "weights.safetensors"]),
+                 "weights.safetensors": (safetensors_bytes({"conv_in.weight": ([1], [0.0])}),
+                                         ["no lora", "weights.safetensors"]),
                  "empty.safetensors": (safetensors_bytes({}), ["no tensors"]),
                  "cut.safetensors": (lora_bytes()[:200], ["damaged", "cut.safetensors"]),
                  "pickle.pt": (b"\x80\x02}q", [".safetensors"])}
@@ -105,11 +111,14 @@ class Loras(ProgramTest):
                 path.write_bytes(data)
             before = self.folder_listing()
             for command in ("edit", "locate"):
-                process = run("-q", command, SCENE, "--source", "bear", "--prompt", "a blue bear", "--lora", path, "--out",
+                process = run("-q", command, SCENE, "--source", "bear", "--prompt", "a blue bear", "--lora",
+                              path, "--out",
                               self.folder / "out", *(QUICK if command == "edit" else []))
                 self.assert_one_sentence(process, *words)
-            self.assert_one_sentence(run_laboratory("-q", "eval", "--edits", 1, "--lora", path, "--out", self.folder / "out"), *words)
-            self.assert_one_sentence(run_laboratory("-q", "bench", "search", "--scenes", 1, "--lora", path), *words)
+            self.assert_one_sentence(run_laboratory("-q", "eval", "--edits", 1, "--lora", path, "--out",
+                                                    self.folder / "out"), *words)
+            self.assert_one_sentence(run_laboratory("-q", "bench", "search", "--scenes", 1, "--lora", path),
+                                     *words)
             self.assertEqual(self.folder_listing(), before)
         good = self.write("good.safetensors", lora_bytes())
         self.assert_one_sentence(self.edit(self.folder / "out", "--lora", f"{good}:50"), "strength", "50")

@@ -31,8 +31,10 @@ class Project(ProgramTest):
         self.assertEqual(written["labels"], ["label 1"])
 
     def test_errors_are_one_sentence(self):
-        self.assert_one_sentence(run("project", WHOLE, "--export", self.folder / "a.ply", "--label", "nope"), "label 1")
-        self.assert_one_sentence(run("project", REFERENCE, "--export", self.folder / "b.ply"), "not there any more")
+        self.assert_one_sentence(run("project", WHOLE, "--export", self.folder / "a.ply", "--label", "nope"),
+                                 "label 1")
+        self.assert_one_sentence(run("project", REFERENCE, "--export", self.folder / "b.ply"),
+                                 "not there any more")
         self.assertFalse(json.loads(run("project", REFERENCE, "--json").stdout)["scene_found"])
         self.assert_one_sentence(run("project", self.write("c.gsep", WHOLE.read_bytes()[:4000])), "zip")
         self.assert_one_sentence(run("project", self.folder / "none.gsep"), "does not exist")

@@ -7,10 +7,12 @@ import unittest
 
 import record_edits
 
-REPORT = {"mode": "modify", "labelled": 2994, "psnr_outside_db": 70.9, "seconds": {"total": 4.1}, "peak_rss_mb": 312.5,
+REPORT = {"mode": "modify", "labelled": 2994, "psnr_outside_db": 70.9, "seconds": {"total": 4.1},
+          "peak_rss_mb": 312.5,
           "losses": [{"iteration": 0, "anchor": 0.0}, {"iteration": 1, "anchor": 0.5}],
           "settings_from": [{"field": "request.tau", "value": 0.5, "source": "user"}],
-          "files": {"scene.ply": {"bytes": 9, "fnv1a": "17"}, "evidence/index.json": {"bytes": 3, "fnv1a": "4"}}}
+          "files": {"scene.ply": {"bytes": 9, "fnv1a": "17"},
+                    "evidence/index.json": {"bytes": 3, "fnv1a": "4"}}}
 
 
 class Records(unittest.TestCase):
@@ -26,7 +28,8 @@ class Records(unittest.TestCase):
         (results / "scene.ply").write_bytes(scene)
         (results / "report.json").write_text(json.dumps(REPORT if report is None else report))
         path = self.folder / f"{name}.json"
-        path.write_text(json.dumps({"recolour": {"exit_code": code, "results": record_edits.record_folder(results)}}))
+        path.write_text(json.dumps({"recolour": {"exit_code": code,
+                                                 "results": record_edits.record_folder(results)}}))
         return path
 
     def differences(self, before, after):
@@ -51,8 +54,11 @@ class Records(unittest.TestCase):
         lines = self.differences(before, after)
         self.assertTrue(all(line.startswith("recolour: ") for line in lines), lines)
         fields = [line.split(": ")[1] for line in lines]
-        self.assertEqual(sorted(fields), ["exit_code", "results.report.files", "results.report.labelled", "results.report.losses.anchor",
-                                          "results.report.settings_from.label_threshold", "results.scene.ply"])
+        self.assertEqual(sorted(fields),
+                         ["exit_code", "results.report.files", "results.report.labelled",
+                          "results.report.losses.anchor",
+                                          "results.report.settings_from.label_threshold",
+                          "results.scene.ply"])
         self.assertIn("0.0 -> 0.25 (and 1 more)", lines[fields.index("results.report.losses.anchor")])
         self.assertEqual(record_edits.compare(before, after), 1)
 

@@ -91,8 +91,10 @@ class Scale(ProgramTest):
         reports = []
         for factor in (1, 1e-2, 1e4):
             out = self.folder / f"out_{factor}"
-            process = run("-q", "edit", self.bear(factor), "--source", "bear", "--prompt", "a blue bear on the grass", "--target",
-                          "blue", "--out", out, "--views", 6, "--image-size", 64, "--attention-repeats", 1, "--iterations", 20,
+            process = run("-q", "edit", self.bear(factor), "--source", "bear", "--prompt",
+                          "a blue bear on the grass", "--target",
+                          "blue", "--out", out, "--views", 6, "--image-size", 64, "--attention-repeats", 1,
+                          "--iterations", 20,
                           "--turntable-frames", 3, "--turntable-size", 64, "--no-gate")
             self.assertEqual(process.returncode, 0, process.stderr)
             report = json.loads((out / "report.json").read_text())

@@ -1,5 +1,5 @@
-"""Searches with the bundled model: words nobody knows, words the scene does not show, labels made by hand, sentences too long
-to be read."""
+"""Searches with the bundled model: words nobody knows, words the scene does not show, labels made by hand,
+sentences too long to be read."""
 import json
 import pathlib
 import struct
@@ -29,13 +29,15 @@ class Searches(ProgramTest):
         return run("edit", scene, "--out", self.folder / "out", *QUICK, *arguments)
 
     def test_an_unknown_source_is_refused_before_work(self):
-        process = self.edit("--source", "sign", "--prompt", "a golden sign on the grass", "--target", "golden")
+        process = self.edit("--source", "sign", "--prompt", "a golden sign on the grass", "--target",
+                            "golden")
         line = self.assert_one_sentence(process, '"sign"', "label it by hand instead", "bear", "grass")
         self.assertNotIn('"in"', line)
         self.assertEqual(self.folder_listing(), [])
         # Before the scene is read: what is wrong with it is not even noticed.
         nothing = self.write("empty.ply", b"")
-        process = self.edit("--source", "baer", "--prompt", "a golden baer", "--target", "golden", scene=nothing)
+        process = self.edit("--source", "baer", "--prompt", "a golden baer", "--target", "golden",
+                            scene=nothing)
         self.assert_one_sentence(process, '"baer"', 'use "bear"')
 
     def test_an_unknown_target_is_refused_before_work(self):
@@ -52,15 +54,18 @@ class Searches(ProgramTest):
         self.assertLess(report["labelled"], 3200)
         process = run("edit", "--recipe", self.folder / "out/recipe.json", "--out", self.folder / "again")
         self.assertEqual(process.returncode, 0, process.stderr)
-        self.assertEqual((self.folder / "again/scene.ply").read_bytes(), (self.folder / "out/scene.ply").read_bytes())
-        process = self.edit("--source", "thingummy", "--prompt", "a golden thingummy", "--cut-out", "0.5,0.1,0.4,0.9")
+        self.assertEqual((self.folder / "again/scene.ply").read_bytes(),
+                         (self.folder / "out/scene.ply").read_bytes())
+        process = self.edit("--source", "thingummy", "--prompt", "a golden thingummy", "--cut-out",
+                            "0.5,0.1,0.4,0.9")
         self.assert_one_sentence(process, "--cut-out", "left before right")
         process = self.edit("--source", "thingummy", "--prompt", "a golden thingummy", *box, "--use-label")
         self.assert_one_sentence(process, "--use-label and --cut-out", "leave one of them out")
 
     def test_the_pictures_say_which_word_is_new(self):
         scene = self.folder / "hat.ply"
-        process = run_laboratory("-q", "synth", scene, "--object", "bear", "--material", "red", "--accessory", "hat", "--ground", "snow")
+        process = run_laboratory("-q", "synth", scene, "--object", "bear", "--material", "red", "--accessory",
+                                 "hat", "--ground", "snow")
         self.assertEqual(process.returncode, 0, process.stderr)
         # By the words alone the hat would be it; the scene shows one.
         process = run("locate", scene, "--out", self.folder / "out", *LOOK, "--source", "bear", "--prompt",
@@ -77,9 +82,11 @@ class Searches(ProgramTest):
 
     def test_a_label_by_hand_needs_no_known_word(self):
         found = self.folder / "found"
-        process = run("-q", "locate", BEAR, "--out", found, *LOOK, "--source", "bear", "--prompt", "a golden bear")
+        process = run("-q", "locate", BEAR, "--out", found, *LOOK, "--source", "bear", "--prompt",
+                      "a golden bear")
         self.assertEqual(process.returncode, 0, process.stderr)
-        process = run("-q", "edit", found / "source.ply", "--use-label", "--out", self.folder / "out", *QUICK, "--source",
+        process = run("-q", "edit", found / "source.ply", "--use-label", "--out", self.folder / "out", *QUICK,
+                      "--source",
                       "thingummy", "--prompt", "a golden thingummy on the grass", "--target", "golden")
         self.assertEqual(process.returncode, 0, process.stderr)
         report = json.loads((self.folder / "out/report.json").read_text())
@@ -96,20 +103,24 @@ class Searches(ProgramTest):
         self.assertGreater(green[1], green[0] + 0.3)
 
     def test_use_label_needs_a_label(self):
-        process = self.edit("--use-label", "--source", "sign", "--prompt", "a golden sign", "--target", "golden")
+        process = self.edit("--use-label", "--source", "sign", "--prompt", "a golden sign", "--target",
+                            "golden")
         self.assert_one_sentence(process, "labelled", "label")
 
     def test_every_search_has_its_confidence(self):
-        process = run("locate", BEAR, "--out", self.folder / "out", *LOOK, "--source", "bear", "--prompt", "a golden bear")
+        process = run("locate", BEAR, "--out", self.folder / "out", *LOOK, "--source", "bear", "--prompt",
+                      "a golden bear")
         self.assertEqual(process.returncode, 0, process.stderr)
         report = json.loads((self.folder / "out/report.json").read_text())
-        self.assertGreater(report["confidence"], json.loads((self.folder / "out/recipe.json").read_text())["request"]["least_confidence"])
+        recipe = json.loads((self.folder / "out/recipe.json").read_text())
+        self.assertGreater(report["confidence"], recipe["request"]["least_confidence"])
         for part in ("agreement", "attention_inside", "labelled_share"):
             self.assertTrue(0 < report["confidence_of"][part] <= 1, part)
         self.assertIn(f"confidence {report['confidence']:.2f}", process.stdout)
 
     def test_a_word_the_scene_does_not_show_labels_nothing_and_leaves_its_evidence(self):
-        process = run("locate", BEAR, "--out", self.folder / "out", *LOOK, "--source", "car", "--prompt", "a golden car",
+        process = run("locate", BEAR, "--out", self.folder / "out", *LOOK, "--source", "car", "--prompt",
+                      "a golden car",
                       "--least-confidence", 0.99)
         self.assert_one_sentence(process, '"car"', "confidence", "0.99")
         report = json.loads((self.folder / "out/report.json").read_text())
@@ -118,13 +129,15 @@ class Searches(ProgramTest):
         self.assertEqual(sum(columns(self.folder / "out/source.ply", "label")["label"]), 0)
         index = json.loads((self.folder / "out/evidence/index.json").read_text())
         self.assertEqual(len(index), 6)
-        self.assertTrue(all((self.folder / f"out/evidence/view_{view:03}_attention.png").is_file() for view in range(6)))
+        self.assertTrue(all((self.folder / f"out/evidence/view_{view:03}_attention.png").is_file()
+                            for view in range(6)))
 
     def test_an_edit_that_finds_nothing_keeps_earlier_results_and_shows_what_it_saw(self):
         out = self.folder / "out"
         out.mkdir()
         (out / "notes.txt").write_bytes(b"earlier")
-        process = self.edit("--source", "car", "--prompt", "a golden car", "--target", "golden", "--least-confidence", 0.99)
+        process = self.edit("--source", "car", "--prompt", "a golden car", "--target", "golden",
+                            "--least-confidence", 0.99)
         self.assert_one_sentence(process, '"car"', "out.search")
         self.assertEqual((out / "notes.txt").read_bytes(), b"earlier")
         self.assertEqual([path.name for path in out.iterdir()], ["notes.txt"])
@@ -132,7 +145,8 @@ class Searches(ProgramTest):
         self.assertEqual(len(index), 6)
 
     def test_the_view_says_where_its_search_failed(self):
-        process = run("locate", BEAR, "--out", self.folder / "out", *LOOK, "--source", "bear", "--prompt", "a golden bear",
+        process = run("locate", BEAR, "--out", self.folder / "out", *LOOK, "--source", "bear", "--prompt",
+                      "a golden bear",
                       "--attention-threshold", 0.999, "--dbscan-min-samples", 100)
         line = self.assert_one_sentence(process, '"bear" was found in only', "lower the attention threshold")
         self.assertNotIn("--", line.split("gseditpro: ")[1])
@@ -141,7 +155,8 @@ class Searches(ProgramTest):
 
     def test_a_sentence_too_long_is_said_where_it_is_cut(self):
         long = "a bear on the grass " + "with a tree and a house " * 5
-        process = run("locate", BEAR, "--out", self.folder / "out", *LOOK, "--source", "bear", "--target", "bear", "--prompt", long)
+        process = run("locate", BEAR, "--out", self.folder / "out", *LOOK, "--source", "bear", "--target",
+                      "bear", "--prompt", long)
         self.assertEqual(process.returncode, 0, process.stderr)
         self.assertIn("reads 30 words", process.stderr)
         process = self.edit("--source", "bear", "--prompt", long + "wearing a crown", "--target", "crown")
@@ -149,7 +164,8 @@ class Searches(ProgramTest):
 
     def test_bench_locate_measures_a_point_per_setting(self):
         out = self.folder / "locate"
-        process = run_laboratory("-q", "bench", "locate", "--scenes", 1, "--kinds", "recolour", "--views", 6, "--repeats", "", "--levels", "0.3 0.6",
+        process = run_laboratory("-q", "bench", "locate", "--scenes", 1, "--kinds", "recolour", "--views", 6,
+                                 "--repeats", "", "--levels", "0.3 0.6",
                       "--img2img", "", "--no-parts", "--out", out)
         self.assertEqual(process.returncode, 0, process.stderr)
         points = {point["name"]: point for point in json.loads((out / "locate.json").read_text())["points"]}
@@ -160,8 +176,10 @@ class Searches(ProgramTest):
         self.assertLess(points["6"]["unet"], points["as set"]["unet"])
         self.assertLess(points["as set"]["unet"], points["0.3 0.6"]["unet"])
         self.assertTrue((out / "locate.png").read_bytes().startswith(b"\x89PNG"))
-        self.assert_one_sentence(run_laboratory("-q", "bench", "locate", "--scenes", 1, "--kinds", "add", "--out", self.folder / "none"), "added")
-        self.assert_one_sentence(run_laboratory("-q", "bench", "locate", "--scenes", 1, "--levels", "2", "--out", self.folder / "none"), "levels")
+        self.assert_one_sentence(run_laboratory("-q", "bench", "locate", "--scenes", 1, "--kinds", "add",
+                                                "--out", self.folder / "none"), "added")
+        self.assert_one_sentence(run_laboratory("-q", "bench", "locate", "--scenes", 1, "--levels", "2",
+                                                "--out", self.folder / "none"), "levels")
         self.assertFalse((self.folder / "none").exists())
 
 

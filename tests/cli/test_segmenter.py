@@ -1,4 +1,5 @@
-"""SAM's weights on the command line: named in report and recipe, and bad ones end the command with a sentence."""
+"""SAM's weights on the command line: named in report and recipe, and bad ones end the command with a
+sentence."""
 import json
 import pathlib
 import unittest
@@ -11,10 +12,12 @@ WEIGHTS = SHARED / "goldens/sam/sam_original.pth"
 QUICK = ["--views", 4, "--image-size", 64, "--attention-repeats", 1, "--no-focus"]
 
 
-@unittest.skipUnless((ASSETS / "models/starter/model_index.json").exists(), "[skip] the starter model is not there")
+@unittest.skipUnless((ASSETS / "models/starter/model_index.json").exists(),
+                     "[skip] the starter model is not there")
 class Segmenter(ProgramTest):
     def locate(self, *arguments):
-        return run("-q", "locate", SCENE, "--source", "bear", "--prompt", "a blue bear on the grass", "--front", 0, *QUICK, *arguments)
+        return run("-q", "locate", SCENE, "--source", "bear", "--prompt", "a blue bear on the grass",
+                   "--front", 0, *QUICK, *arguments)
 
     @unittest.skipUnless(WEIGHTS.exists(), "[skip] the reference's weights are not there")
     def test_report_and_recipe_name_it(self):
@@ -28,7 +31,8 @@ class Segmenter(ProgramTest):
         self.assertEqual(pathlib.Path(recipe["job"]["segmenter"]).resolve(), WEIGHTS.resolve())
 
     def test_bad_weights_are_refused_and_nothing_is_written(self):
-        cases = (("gone.pth", None, "does not exist"), ("bad.safetensors", b"no weights", "segmenter cannot be used"),
+        cases = (("gone.pth", None, "does not exist"),
+                 ("bad.safetensors", b"no weights", "segmenter cannot be used"),
                  ("evil.pkl", b"\x80\x02cposix\nsystem\n.", "format before PyTorch 1.6"))
         for name, content, expected in cases:
             with self.subTest(name):

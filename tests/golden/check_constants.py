@@ -1,5 +1,6 @@
-"""Changes, one after the other, everything that a reference case states beside its tensors, and asks that its tests then fail:
-a constant that is written into a test would not notice. With --some, one of each case: the rest is for the full run.
+"""Changes, one after the other, everything that a reference case states beside its tensors, and asks that its
+tests then fail: a constant that is written into a test would not notice. With --some, one of each case: the
+rest is for the full run.
 check_constants.py TEST_PROGRAM SHARED_FOLDER [--some]"""
 import json
 import os
@@ -10,8 +11,10 @@ import tempfile
 
 SKIP_CODE = 77
 # Cases whose constants are compared, and the tests that read them.
-CASES = {"dreambooth": "dreambooth: without prior*,dreambooth: UNet and text*", "schedulers": "schedulers: *", "sds": "sds: *",
-         "pipeline_sd1": "pipeline_sd1: *", "lcm": "lcm: *", "ip2p": "ip2p: *", "taesd_img2img": "taesd_img2img: *"}
+CASES = {"dreambooth": "dreambooth: without prior*,dreambooth: UNet and text*", "schedulers": "schedulers: *",
+         "sds": "sds: *",
+         "pipeline_sd1": "pipeline_sd1: *", "lcm": "lcm: *", "ip2p": "ip2p: *",
+         "taesd_img2img": "taesd_img2img: *"}
 # What has no effect because of what stands beside it: a text guidance of 1 turns the picture's off too.
 WITHOUT_EFFECT = {("ip2p", "nocfg", "image_guidance_scale")}
 # AdamW does not see the length of a gradient unless it is shorter than its epsilon.
@@ -78,7 +81,8 @@ def main():
                 (copy / case / "case.json").write_text(json.dumps(changed(stated, path)))
                 noticed = run(program, copy, tests).returncode != 0
             failures += not noticed
-            print(f"{'noticed ' if noticed else 'NOT READ'} {case}: {'.'.join(map(str, path))} = {value}", flush=True)
+            print(f"{'noticed ' if noticed else 'NOT READ'} {case}: {'.'.join(map(str, path))} = {value}",
+                  flush=True)
     return 1 if failures else 0
 
 

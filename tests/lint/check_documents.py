@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Holds the documents to what is there: length of the README, links, cited sections, commands and options of the programs."""
+"""Holds the documents to what is there: length of the README, links, cited sections, commands and options of
+the programs."""
 import pathlib
 import re
 import shlex
@@ -10,19 +11,21 @@ import tempfile
 README_LINES = 200
 MEAN_WORDS, MOST_WORDS = 15, 30   # of a sentence in the README and the guide
 PROGRAMS = {"gseditpro", "gseditpro-lab"}
-WRAPPERS = {"packaging/run": "gseditpro", "build/release/gseditpro": "gseditpro", "build/release/gseditpro-lab": "gseditpro-lab"}
+WRAPPERS = {"packaging/run": "gseditpro", "build/release/gseditpro": "gseditpro",
+            "build/release/gseditpro-lab": "gseditpro-lab"}
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 FENCE = re.compile(r"^```.*?^```", re.M | re.S)
 COMMAND_FENCE = re.compile(r"^```sh\n(.*?)^```", re.M | re.S)
 CODE = re.compile(r"`([^`]+)`")
-GONE = re.compile(r"(?<![\w/])(?:method|views|formats|starter|ux|goldens)\.md\b")   # studies that are not in the repository
+# studies that are not in the repository
+GONE = re.compile(r"(?<![\w/])(?:method|views|formats|starter|ux|goldens)\.md\b")
 CITATION = re.compile(r"\b([A-Z]{4,})\.md, \"?([A-Z][\w ,-]*)")
 SOURCES = ("app", "ui", "engine", "shaders", "tests", "packaging")
 SUFFIXES = {".h", ".cpp", ".cu", ".inl", ".comp", ".py", ".cmake"}
 
 
 class Programs:
-    """What `--help` of the programs lists: program -> command -> options."""
+    """Options that `--help` of the programs lists: program -> command -> options."""
 
     def __init__(self, paths):
         self.paths = {pathlib.Path(path).name: path for path in paths}
@@ -63,7 +66,7 @@ def headings(path):
 
 
 def citable(path):
-    """What sources may cite of a document: its headings, and the first cells of its tables ("SKIPS.md, E5")."""
+    """Places of a document that sources may cite: headings, and first cells of tables ("SKIPS.md, E5")."""
     cells = re.findall(r"^\| *([\w ]+?) *\|", path.read_text(), re.M)
     return {title.lower() for title in headings(path) + cells}
 
@@ -172,7 +175,8 @@ def check_guide(root, programs):
     """The guide as HTML: it can be made, and its links lead somewhere."""
     with tempfile.TemporaryDirectory() as folder:
         run = subprocess.run([sys.executable, str(root / "packaging/guide"), programs.paths["gseditpro"],
-                              str(next((root / "ui").rglob("keys.h"), root)), folder], capture_output=True, text=True)
+                              str(next((root / "ui").rglob("keys.h"), root)), folder], capture_output=True,
+                             text=True)
         if run.returncode != 0:
             yield f"packaging/guide: {run.stderr.strip()}"
             return
@@ -198,7 +202,9 @@ def check(root, program_paths):
         artists = path == root / "README.md" or path.parent == root / "assets/guide"
         if artists:
             yield from check_prose(root, path)
-        if program_paths and (artists or path.name in {"CONTRIBUTING.md", "FIGURES.md", "METHOD.md", "ARCHITECTURE.md"}):
+        if program_paths and (artists
+                              or path.name in {"CONTRIBUTING.md", "FIGURES.md", "METHOD.md",
+                                               "ARCHITECTURE.md"}):
             yield from check_commands(root, path, programs)
     yield from check_citations(root, titles)
     if program_paths:
@@ -207,12 +213,16 @@ def check(root, program_paths):
 
 def self_test():
     """Every rule is broken once in a small tree; each must be seen."""
-    good = {"README.md": "# A\n\nShort text with `--out`, [b](B.md#second-part).\n\n```sh\ngseditpro edit --out x   # why\n```\n",
+    good = {"README.md": "# A\n\nShort text with `--out`, [b](B.md#second-part).\n\n"
+                         "```sh\ngseditpro edit --out x   # why\n```\n",
             "B.md": "# Second part\n", "engine/METHOD.md": "# M\n\n## Label voting\n",
             "engine/a.h": "// METHOD.md, Label voting.\n", "assets/guide/index.md": "# G\n\nText.\n"}
-    broken = [("README.md", "Short", "Short\n" * 201), ("README.md", "Short", "Short " + "word " * 40), ("README.md", "B.md", "C.md"),
-              ("README.md", "second-part", "third"), ("README.md", "edit --out", "edt --out"), ("README.md", "edit --out", "edit --ot"),
-              ("README.md", "`--out`", "`--ou`"), ("engine/a.h", "Label voting", "Label counting"), ("engine/a.h", "METHOD.md", "views.md")]
+    broken = [("README.md", "Short", "Short\n" * 201), ("README.md", "Short", "Short " + "word " * 40),
+              ("README.md", "B.md", "C.md"),
+              ("README.md", "second-part", "third"), ("README.md", "edit --out", "edt --out"),
+              ("README.md", "edit --out", "edit --ot"),
+              ("README.md", "`--out`", "`--ou`"), ("engine/a.h", "Label voting", "Label counting"),
+              ("engine/a.h", "METHOD.md", "views.md")]
     missed = 0
     for name, before, after in [("README.md", "Short", "Short")] + broken:
         with tempfile.TemporaryDirectory() as folder:
@@ -221,9 +231,11 @@ def self_test():
                 (root / other).parent.mkdir(parents=True, exist_ok=True)
                 (root / other).write_text(text.replace(before, after) if other == name else text)
             program = pathlib.Path(folder) / "gseditpro"
-            program.write_text('#!/bin/sh\nif [ "$1" = edit ]; then echo "  --out TEXT"; else printf "Subcommands:\\n  edit  x\\n"; fi\n')
+            program.write_text('#!/bin/sh\nif [ "$1" = edit ]; then echo "  --out TEXT"; '
+                           'else printf "Subcommands:\\n  edit  x\\n"; fi\n')
             program.chmod(0o755)
-            seen = [problem for problem in check(root, [str(program)]) if not problem.startswith("packaging/guide")]
+            seen = [problem for problem in check(root, [str(program)])
+                    if not problem.startswith("packaging/guide")]
         if bool(seen) != (before != after):
             missed += 1
             print(f"{name}: {before} -> {after}: {seen}")

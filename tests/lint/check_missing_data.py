@@ -1,4 +1,5 @@
-"""Data or machinery that is missing is seen: a test program without it returns the skip code, or fails where CI is set.
+"""Data or machinery that is missing is seen: a test program without it returns the skip code, or fails where
+CI is set.
 check_missing_data.py [--display PROGRAM] [--device PROGRAM] [--plug-in PROGRAM CASE] [DATA_PROGRAM...]"""
 import argparse
 import os
@@ -38,7 +39,8 @@ def checks_of(arguments, folder):
         checks.append(Check([arguments.device], {"VK_ICD_FILENAMES": "/none", "VK_DRIVER_FILES": "/none"}))
     if arguments.plug_in:
         program, case = arguments.plug_in
-        copied = folder / "tests" / pathlib.Path(program).name   # the plug-in is looked for in the folder above
+        # the plug-in is looked for in the folder above
+        copied = folder / "tests" / pathlib.Path(program).name
         copied.parent.mkdir()
         shutil.copy(program, copied)
         checks.append(Check([copied, f"-tc={case}"]))
@@ -59,12 +61,13 @@ def main():
             for ci, wanted in (("", SKIP_CODE), ("true", check.in_ci)):
                 environment = {**os.environ, "CI": ci, **nothing, **check.lacks}
                 environment = {key: value for key, value in environment.items() if value or key == "CI"}
-                process = subprocess.run(check.command, cwd=folder, env=environment, capture_output=True, text=True)
+                process = subprocess.run(check.command, cwd=folder, env=environment, capture_output=True,
+                                         text=True)
                 said = process.stdout + process.stderr
                 if process.returncode != wanted:
                     print(f"{check.command[0]} with CI={ci!r} returned {process.returncode}\n{said}")
                     wrong += 1
-                elif "[skip]" not in said and "nothing may be skipped" not in said and "is not there" not in said:
+                elif not any(text in said for text in ("[skip]", "nothing may be skipped", "is not there")):
                     print(f"{check.command[0]} does not say what is missing")
                     wrong += 1
     return 1 if wrong else 0

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Checks what the desktop reads: desktop file, MIME types and icon are well formed and speak of each other.
-check_packaging.py SOURCE BUILD: the icon lies in SOURCE/packaging, the files that are made of templates in BUILD/desktop."""
+check_packaging.py SOURCE BUILD: the icon lies in SOURCE/packaging, the files that are made of templates in
+BUILD/desktop."""
 import configparser
 import pathlib
 import re
@@ -9,8 +10,10 @@ import tempfile
 import xml.etree.ElementTree as xml
 
 MIME = "{http://www.freedesktop.org/standards/shared-mime-info}"
-# What the Desktop Entry Specification asks of an application, and what file managers need to open files with it.
-DESKTOP_KEYS = {"Type": "Application", "Name": None, "Comment": None, "Exec": None, "Icon": None, "Categories": None,
+# What the Desktop Entry Specification asks of an application, and what file managers need to open files with
+# it.
+DESKTOP_KEYS = {"Type": "Application", "Name": None, "Comment": None, "Exec": None, "Icon": None,
+                "Categories": None,
                 "MimeType": None, "Terminal": "false"}
 LISTS = {"Categories", "MimeType", "Keywords"}
 PROJECT = "*.gsep"
@@ -112,16 +115,21 @@ def check(root):
 
 
 def self_test(folders):
-    """Every rule is broken once in a copy; each must be seen. Which endings have a type is a matter of tests/unit/io."""
+    """Every rule is broken once in a copy; each must be seen. Which endings have a type is a matter of
+    tests/unit/io."""
     cases = {
-        "gseditpro.desktop": [("Type=Application", "Type=Link"), ("Terminal=false", "Terminal=true"), ("open %f", "open"),
-                              ("Icon=gseditpro", "Icon=other"), ("model/x-spz;", ""), ("3DGraphics;", "3DGraphics"),
+        "gseditpro.desktop": [("Type=Application", "Type=Link"), ("Terminal=false", "Terminal=true"),
+                              ("open %f", "open"),
+                              ("Icon=gseditpro", "Icon=other"), ("model/x-spz;", ""),
+                              ("3DGraphics;", "3DGraphics"),
                               ("[Desktop Entry]", "[Entry]")],
-        "gseditpro-mime.xml": [("</mime-info>", ""), ('<glob pattern="*.sog" weight="60"/>', ""), ('"*.gsep"', '"*.gse"'),
+        "gseditpro-mime.xml": [("</mime-info>", ""), ('<glob pattern="*.sog" weight="60"/>', ""),
+                               ('"*.gsep"', '"*.gse"'),
                                ("<comment>GSEditPro project</comment>", ""), ("model/x-ksplat", "model/x-k"),
                                ("shared-mime-info\"", "other\"")],
         "GseInstall.cmake": [("TARGETS gseditpro RUNTIME", "TARGETS gseditpro gseditpro-lab RUNTIME"),
-                             ("gse_media gse_neural_plugin", "gse_media gse_neural_plugin gse_starter_plugin")],
+                             ("gse_media gse_neural_plugin",
+                              "gse_media gse_neural_plugin gse_starter_plugin")],
         "gseditpro.svg": [("</svg>", ""), ('id="fur"', 'id="hair"'), ("viewBox", "box")],
     }
     missed = 0
@@ -157,7 +165,8 @@ def check_places(folders):
 if __name__ == "__main__":
     test = sys.argv[1] == "--self-test"
     source, build = map(pathlib.Path, sys.argv[2:4] if test else sys.argv[1:3])
-    folders = {"packaging": source / "packaging", "packaging/cmake": source / "packaging/cmake", "desktop": build / "desktop"}
+    folders = {"packaging": source / "packaging", "packaging/cmake": source / "packaging/cmake",
+               "desktop": build / "desktop"}
     if test:
         sys.exit(1 if self_test(folders) else 0)
     violations = check_places(folders)

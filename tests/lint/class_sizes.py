@@ -2,7 +2,8 @@
 import re
 
 HEAD = re.compile(r"\b(?:class|struct)\s+([A-Za-z_]\w*)(?:\s+final)?\s*(?::(?!:)[^;{}()]*)?\{")
-NO_MEMBER = re.compile(r"^(using|typedef|friend|static_assert|enum|class|struct|union|static\s+constexpr|constexpr)\b")
+NO_MEMBER = re.compile(
+    r"^(using|typedef|friend|static_assert|enum|class|struct|union|static\s+constexpr|constexpr)\b")
 NESTED = re.compile(r"^(template\s*<[^{]*>\s*)?(class|struct|union|enum)\b")
 
 
@@ -61,7 +62,8 @@ def sizes_of(body):
             plain = without_arguments(head)
             index = end_of(body, index)
             if NESTED.match(head):      # "struct { ... } name;" is a member
-                statement = "nested " if re.match(r"\s*\w", body[index:]) and not body[index:].lstrip().startswith(
+                statement = "nested " if re.match(r"\s*\w",
+                                                  body[index:]) and not body[index:].lstrip().startswith(
                     ("public", "private", "protected")) else ""
                 if not statement:
                     index = body.find(";", index) + 1 or len(body)

@@ -6,11 +6,14 @@ import re
 import struct
 import zipfile
 
-NUMBERS = [b"0", b"-1", b"1e308", b"-1e308", b"1e39", b"4294967296", b"18446744073709551615", b"9007199254740993", b"0.5",
+NUMBERS = [b"0", b"-1", b"1e308", b"-1e308", b"1e39", b"4294967296", b"18446744073709551615",
+           b"9007199254740993", b"0.5",
            b"null", b"true", b"[]", b"{}", b'"text"', b"1e-320", b"NaN", b"-0"]
-WORDS = [b"\x1b[31m\x1b]0;x\x07", b"\\u0000\\u001b[2J", b"../../../../etc/passwd", b"/dev/zero", b"\xff\xfe\xfd", b"%s%n",
+WORDS = [b"\x1b[31m\x1b]0;x\x07", b"\\u0000\\u001b[2J", b"../../../../etc/passwd", b"/dev/zero",
+         b"\xff\xfe\xfd", b"%s%n",
          "\u202eevil".encode(), b"A" * 5000, b""]
-INTEGERS = [0, 1, 0x7f, 0x80, 0xff, 0x7fff, 0xffff, 0x7fffffff, 0x80000000, 0xffffffff, 1 << 40, (1 << 63) - 1, (1 << 64) - 1]
+INTEGERS = [0, 1, 0x7f, 0x80, 0xff, 0x7fff, 0xffff, 0x7fffffff, 0x80000000, 0xffffffff, 1 << 40,
+            (1 << 63) - 1, (1 << 64) - 1]
 FLOATS = [float("nan"), float("inf"), float("-inf"), 1e30, -1e30, 1e-45, 88.8, 3.4e38]
 
 
@@ -67,7 +70,9 @@ def change_text(data, random):
             found = list(re.finditer(rb'"[^"\\]*"\s*:', data))
             if found:   # an entry goes, or comes again with another value
                 place = random.choice(found)
-                data = data[:place.start()] + random.choice([b"", b'"x": 1,', place.group(0) + b" [1],"]) + data[place.start():]
+                data = data[:place.start()] + random.choice([b"", b'"x": 1,',
+                                                             place.group(0)
+                                                             + b" [1],"]) + data[place.start():]
         else:
             data = change_bytes(data, random)
     return data
@@ -109,7 +114,8 @@ def change_zip(data, random):
                     content = change_text(content, random)
                 else:
                     content = change_bytes(content, random)
-            target.writestr(zipfile.ZipInfo(name), content, random.choice([zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED]))
+            target.writestr(zipfile.ZipInfo(name), content,
+                            random.choice([zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED]))
     return out.getvalue()
 
 
@@ -121,7 +127,9 @@ def change_gzip(data, random):
         return change_bytes(data, random)
     content = change_bytes(content, random)
     if random.random() < 0.2:   # a count of millions, and the zeros to go with it
-        content = content[:8] + struct.pack("<I", random.choice([1 << 20, 1 << 24, 1 << 31])) + content[12:16] + bytes(1 << 22)
+        content = content[:8] + struct.pack("<I",
+                                            random.choice([1 << 20, 1 << 24,
+                                                           1 << 31])) + content[12:16] + bytes(1 << 22)
     return gzip.compress(content, 9, mtime=0)
 
 

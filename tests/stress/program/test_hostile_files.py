@@ -1,7 +1,7 @@
-"""The real program over hostile files of every format, under a limit of memory and of time: whatever is in a file, the answer
-is a result or one sentence, never a signal, an "unexpected failure", a raw control character or more memory than the file's
-size allows. GSE_STRESS_FILES sets the number of files per format; GSE_STRESS_SEED the seed; files that fail are kept in
-GSE_STRESS_KEEP (or the temporary folder)."""
+"""The real program over hostile files of every format, under a limit of memory and of time: whatever is in a
+file, the answer is a result or one sentence, never a signal, an "unexpected failure", a raw control character
+or more memory than the file's size allows. GSE_STRESS_FILES sets the number of files per format;
+GSE_STRESS_SEED the seed; files that fail are kept in GSE_STRESS_KEEP (or the temporary folder)."""
 import json
 import os
 import pathlib
@@ -30,7 +30,9 @@ ADDRESS_SPACE = 6 << 30          # bytes; libraries and thread stacks take most 
 LARGEST_RSS = 900 << 10          # kilobytes: the program itself, and what a small file may claim
 CPU_SECONDS = 60
 SANITIZED = os.environ.get("GSE_SANITIZED", "0") == "1"   # shadow memory does not fit any limit
-ENVIRONMENT = {**os.environ, "GSE_CACHE_DIR": os.devnull, "OPENBLAS_CORETYPE": os.environ.get("OPENBLAS_CORETYPE", "Haswell"), "OPENBLAS_NUM_THREADS": "1"}
+ENVIRONMENT = {**os.environ, "GSE_CACHE_DIR": os.devnull,
+               "OPENBLAS_CORETYPE": os.environ.get("OPENBLAS_CORETYPE", "Haswell"),
+               "OPENBLAS_NUM_THREADS": "1"}
 
 
 def limit():
@@ -45,7 +47,8 @@ class Result:
 
     def __init__(self, arguments, folder):
         with open(folder / "stdout", "wb") as out, open(folder / "stderr", "wb") as err:
-            process = subprocess.Popen([PROGRAM, *map(str, arguments)], stdin=subprocess.DEVNULL, stdout=out, stderr=err,
+            process = subprocess.Popen([PROGRAM, *map(str, arguments)], stdin=subprocess.DEVNULL, stdout=out,
+                                       stderr=err,
                                        env=ENVIRONMENT, preexec_fn=limit, cwd=folder)
             timer = threading.Timer(600, process.kill)
             timer.start()
@@ -72,7 +75,8 @@ class Result:
                 letters = text.decode()
             except UnicodeDecodeError:
                 return "output that is not UTF-8"
-            if any((letter < " " and letter != "\n") or "\x7f" <= letter < "\xa0" or letter == "\u202e" for letter in letters):
+            if any((letter < " " and letter != "\n") or "\x7f" <= letter < "\xa0" or letter == "\u202e"
+                   for letter in letters):
                 return "a raw control character"
         if not SANITIZED and self.rss > LARGEST_RSS:
             return f"{self.rss // 1024} MB of memory"
@@ -92,7 +96,8 @@ class HostileFiles(unittest.TestCase):
         complaint = result.complaint()
         if complaint is None:
             return
-        keep = pathlib.Path(os.environ.get("GSE_STRESS_KEEP", tempfile.gettempdir())) / f"gse-hostile-{self.id()}"
+        keep = pathlib.Path(os.environ.get("GSE_STRESS_KEEP",
+                                           tempfile.gettempdir())) / f"gse-hostile-{self.id()}"
         shutil.rmtree(keep, ignore_errors=True)
         keep.mkdir(parents=True)
         for path in paths:
@@ -160,7 +165,8 @@ class HostileFiles(unittest.TestCase):
                 continue
         self.assertTrue(seeds)
         tree = {"filenames": ["0/meta.json", "1/meta.json"],
-                "tree": {"children": [{"lods": {"0": {"file": 0}}}, {"children": [{"lods": {"0": {"file": 1}}}]}]}}
+                "tree": {"children": [{"lods": {"0": {"file": 0}}},
+                                      {"children": [{"lods": {"0": {"file": 1}}}]}]}}
         folders = []
         for number in range(FILES):
             folder = self.folder / f"scene{number:05}"
@@ -170,7 +176,8 @@ class HostileFiles(unittest.TestCase):
                 (folder / part).mkdir(parents=True)
                 for name, content in members.items():
                     if name == hostile and part == "1":
-                        content = mutate(content, [change_text] if name.endswith(".json") else [], self.random)
+                        content = mutate(content, [change_text] if name.endswith(".json") else [],
+                                         self.random)
                     (folder / part / pathlib.Path(name).name).write_bytes(content)
             text = json.dumps(tree).encode()
             (folder / "lod-meta.json").write_bytes(
@@ -192,7 +199,8 @@ class HostileFiles(unittest.TestCase):
         path = self.folder / "recipe.json"
         for _ in range(FILES):
             path.write_bytes(mutate(seed, [change_text, change_text], self.random))
-            self.run_one([path], "edit", self.folder / "none.ply", "--recipe", path, "--out", self.folder / "out")
+            self.run_one([path], "edit", self.folder / "none.ply", "--recipe", path, "--out",
+                         self.folder / "out")
             self.assertFalse((self.folder / "out").exists())
 
     def cameras(self, corpus, name):
@@ -200,8 +208,10 @@ class HostileFiles(unittest.TestCase):
         scene.write_bytes(self.corpus("ply")[-1])
         path = self.folder / name
         for _ in range(FILES):
-            path.write_bytes(mutate(self.random.choice(self.corpus(corpus)), [change_text, change_text], self.random))
-            self.run_one([path], "render", scene, self.folder / "out.png", "--cameras", path, "--view", 0, "--width", 8,
+            path.write_bytes(mutate(self.random.choice(self.corpus(corpus)), [change_text, change_text],
+                                    self.random))
+            self.run_one([path], "render", scene, self.folder / "out.png", "--cameras", path, "--view", 0,
+                         "--width", 8,
                          "--height", 8)
 
     def test_cameras_json(self):
@@ -211,23 +221,28 @@ class HostileFiles(unittest.TestCase):
         self.cameras("transforms", "transforms.json")
 
     def test_camera_paths(self):
-        key = {"time": 0.0, "position": [0, 0, -3], "rotation": [1, 0, 0, 0], "focal_length_mm": 30, "easing": "linear"}
-        seed = json.dumps({"version": 1, "clip_duration": 0.1, "keyframes": [key, {**key, "time": 0.1}]}).encode()
+        key = {"time": 0.0, "position": [0, 0, -3], "rotation": [1, 0, 0, 0], "focal_length_mm": 30,
+               "easing": "linear"}
+        seed = json.dumps({"version": 1, "clip_duration": 0.1,
+                           "keyframes": [key, {**key, "time": 0.1}]}).encode()
         scene = self.folder / "scene.ply"
         scene.write_bytes(self.corpus("ply")[-1])
         path = self.folder / "path.json"
         for _ in range(FILES):
             path.write_bytes(mutate(seed, [change_text, change_text], self.random))
-            self.run_one([path], "turntable", scene, self.folder / "frames", "--path", path, "--fps", 10, "--width", 16,
+            self.run_one([path], "turntable", scene, self.folder / "frames", "--path", path, "--fps", 10,
+                         "--width", 16,
                          "--height", 16)
 
     def test_models(self):
-        """Configurations, vocabularies and weights; each run loads the networks' library, so fewer of them."""
+        """Configurations, vocabularies and weights; each run loads the networks' library, so fewer of
+        them."""
         starter = ROOT / "assets/models/starter"
         if not (starter / "model_index.json").exists():
             self.skipTest("[skip] the starter model is not there")
         scene = ROOT / "assets/scenes/bear/scene.ply"
-        parts = ["model_index.json", "gseditpro.json", "unet/config.json", "vae/config.json", "text_encoder/config.json",
+        parts = ["model_index.json", "gseditpro.json", "unet/config.json", "vae/config.json",
+                 "text_encoder/config.json",
                  "scheduler/scheduler_config.json", "tokenizer/vocab.json", "tokenizer/merges.txt",
                  "tokenizer/tokenizer_config.json", "unet/diffusion_pytorch_model.safetensors",
                  "text_encoder/model.safetensors"]
@@ -246,7 +261,8 @@ class HostileFiles(unittest.TestCase):
                     place.write_bytes(mutate(file.read_bytes(), [way, way], self.random))
                 else:
                     place.symlink_to(file)
-            self.run_one([model / part], "locate", scene, "--model", model, "--source", "bear", "--prompt", "a blue bear",
+            self.run_one([model / part], "locate", scene, "--model", model, "--source", "bear", "--prompt",
+                         "a blue bear",
                          "--views", 1, "--image-size", 16, "--attention-repeats", 1, "--no-focus", "--out",
                          self.folder / "out")
 
@@ -254,7 +270,8 @@ class HostileFiles(unittest.TestCase):
         """Mapped into memory, it would end the program."""
         header = (b"ply\nformat binary_little_endian 1.0\nelement vertex 400000\n" +
                   b"".join(b"property float %s\n" % name for name in
-                           b"x y z f_dc_0 f_dc_1 f_dc_2 opacity scale_0 scale_1 scale_2 rot_0 rot_1 rot_2 rot_3".split()) +
+                           b"x y z f_dc_0 f_dc_1 f_dc_2 opacity "
+                           b"scale_0 scale_1 scale_2 rot_0 rot_1 rot_2 rot_3".split()) +
                   b"end_header\n")
         row = struct.pack("<14f", 0, 0, 0, 0, 0, 0, 3, -3, -3, -3, 1, 0, 0, 0)
         path = self.folder / "shrinking.ply"
@@ -281,11 +298,13 @@ class HostileFiles(unittest.TestCase):
         folder = SHARED / "data/hostile"
         if not folder.exists():
             self.skipTest(f"[skip] {folder} is not there")
-        self.look_at([path for path in sorted(folder.iterdir()) if path.is_dir() or path.suffix in (".ply", ".sog", ".spz")])
+        self.look_at([path for path in sorted(folder.iterdir()) if path.is_dir()
+                      or path.suffix in (".ply", ".sog", ".spz")])
         for path in sorted(folder.glob("*.gsep")):
             self.run_one([path], "project", path)
         for path in sorted(folder.glob("recipe*.json")):
-            self.run_one([path], "edit", self.folder / "none.ply", "--recipe", path, "--out", self.folder / "out")
+            self.run_one([path], "edit", self.folder / "none.ply", "--recipe", path, "--out",
+                         self.folder / "out")
 
 
 if __name__ == "__main__":

@@ -1,4 +1,5 @@
-# The editor without its window: what the panels ask for, done by the real application with the real starter model.
+# The editor without its window: what the panels ask for, done by the real application with the real starter
+# model.
 if(TARGET gse_window)
   target_link_libraries(${test_target} PRIVATE gse_app)
   set_target_properties(${test_target} PROPERTIES ENABLE_EXPORTS ON)

@@ -1,4 +1,5 @@
-"""The window survives other sizes, every way of showing splats, and the loss of its device; the validation layers stay silent."""
+"""The window survives other sizes, every way of showing splats, and the loss of its device; the validation
+layers stay silent."""
 import pathlib
 import time
 import unittest
@@ -6,7 +7,8 @@ import unittest
 from window import WindowTest
 
 
-MODES = ["Beauty", "Centres", "Rings", "Ellipsoids", "Depth", "Opacity", "Labels", "Label weight", "Attention", "Changed"]
+MODES = ["Beauty", "Centres", "Rings", "Ellipsoids", "Depth", "Opacity", "Labels", "Label weight",
+         "Attention", "Changed"]
 
 
 class Device(WindowTest):

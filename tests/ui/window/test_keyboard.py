@@ -1,4 +1,5 @@
-"""The real window by keys alone: the sample, the prompt, a search, menus; and what a start does and does not keep."""
+"""The real window by keys alone: the sample, the prompt, a search, menus; and what a start does and does not
+keep."""
 import time
 import unittest
 
@@ -22,7 +23,8 @@ class Keyboard(WindowTest):
         window.wait(lambda s: s["splats"] > 0 and not s["busy"], "the sample did not open", 60)
         window.key("p")   # into the prompt
         window.type("sentence", "a blue bear on the grass")
-        window.xdotool("key", "shift+Tab", "type", "--delay", "0", "bear")   # faster than frames are drawn: nothing is lost
+        # faster than frames are drawn: nothing is lost
+        window.xdotool("key", "shift+Tab", "type", "--delay", "0", "bear")
         self.assertEqual(window.steady("source"), "bear")
         self.assertEqual(window.state()["sentence"], "a blue bear on the grass")
         window.wait_widget("prompt.locate")   # enabled once both are in
@@ -52,7 +54,8 @@ class Keyboard(WindowTest):
         for _ in range(12):
             window.xdotool("key", "Right")
             time.sleep(0.1)
-        # A clear label stays as it is over a range of thresholds: the step of undo shows that the threshold moved.
+        # A clear label stays as it is over a range of thresholds: the step of undo shows that the threshold
+        # moved.
         window.wait(lambda s: s["undo_position"] > position, "the arrows did not move the threshold", 10)
         window.picture("22_threshold_by_keys")
         window.key("shift+F1")

@@ -1,4 +1,5 @@
-"""kill -9 at ten random moments of an editing session: every time the work of the last seconds before comes back."""
+"""kill -9 at ten random moments of an editing session: every time the work of the last seconds before comes
+back."""
 import random
 import time
 import unittest
@@ -50,10 +51,12 @@ class Recovery(WindowTest):
             window.click("tool.orbit")
             window.write("prompt.source", "bear")
             window.write("prompt.sentence", "a blue bear")
-            window.press("prompt.method.sds", lambda s: s["method"] == "sds", "the method was not chosen", 20)   # takes long enough
+            # takes long enough
+            window.press("prompt.method.sds", lambda s: s["method"] == "sds", "the method was not chosen", 20)
             window.click("prompt.edit")
             window.wait(lambda s: s["snapshots"] >= 1 or not s["job"]["running"], "no snapshot came")
-        pause = generator.uniform(0, 2 * LOST_SECONDS) + (LOST_SECONDS if kill == 0 else 0)   # later ones have the first's to fall back on
+        # later ones have the first's to fall back on
+        pause = generator.uniform(0, 2 * LOST_SECONDS) + (LOST_SECONDS if kill == 0 else 0)
         time.sleep(pause)
         if pause > LOST_SECONDS:
             self.expects_label = True

@@ -1,5 +1,5 @@
-"""An artist's first minutes in the real window: open, orbit, locate, correct, edit, pause, cancel, undo, compare, export, save,
-reopen."""
+"""An artist's first minutes in the real window: open, orbit, locate, correct, edit, pause, cancel, undo,
+compare, export, save, reopen."""
 import pathlib
 import time
 import unittest
@@ -51,11 +51,13 @@ class Session(WindowTest):
         window.click("attention.view.4")
         window.wait_widget("evidence.votes")
         window.picture("05b_view_with_attention")
-        window.press("evidence.votes", lambda s: s["left_out"] == "4", "the view was not left out", 30, pause=5)
+        window.press("evidence.votes", lambda s: s["left_out"] == "4", "the view was not left out", 30,
+                     pause=5)
         window.idle()
         window.picture("05c_left_out")
         window.key("ctrl+z")
-        window.wait(lambda s: s["left_out"] == "" and s["labelled"] == found, "undo did not put the view back", 20)
+        window.wait(lambda s: s["left_out"] == "" and s["labelled"] == found,
+                    "undo did not put the view back", 20)
         window.idle()
         window.key("Escape")
         window.click("tool.home")
@@ -67,7 +69,8 @@ class Session(WindowTest):
         window.scroll_to("pick.open", "panel.Labels")
         window.click("pick.open")
         window.scroll_to("pick.side.Above", "panel.Labels")
-        window.press("pick.side.Above", lambda s: s["picked"] > 0, "nothing is chosen by opacity", 20, pause=3)
+        window.press("pick.side.Above", lambda s: s["picked"] > 0, "nothing is chosen by opacity", 20,
+                     pause=3)
         window.picture("07b_chosen_by_opacity")
         window.scroll_to("pick.open", "panel.Labels")
         window.press("pick.open", lambda s: s["picked"] == 0, "what was chosen is still shown", 20, pause=3)
@@ -75,7 +78,8 @@ class Session(WindowTest):
         window.wait(lambda s: s["hidden"] == before - labelled, "the label was not isolated", 10)
         window.picture("07c_isolated")
         window.key("shift+h")
-        window.wait(lambda s: s["hidden"] == 0 and s["labelled"] == labelled, "what was hidden is not shown", 10)
+        window.wait(lambda s: s["hidden"] == 0 and s["labelled"] == labelled, "what was hidden is not shown",
+                    10)
 
     def corrects(self, window):
         found = window.state()["labelled"]
@@ -97,7 +101,8 @@ class Session(WindowTest):
 
     def edits(self, window):
         window.click("tab.Progress")
-        window.press("prompt.method.sds", lambda s: s["method"] == "sds", "the method was not chosen", 20)   # takes long enough to be paused and cancelled
+        # takes long enough to be paused and cancelled
+        window.press("prompt.method.sds", lambda s: s["method"] == "sds", "the method was not chosen", 20)
         window.click("prompt.edit")
         window.wait(lambda s: s["snapshots"] >= 2, "no snapshot came")
         window.picture("08_editing")
@@ -137,9 +142,11 @@ class Session(WindowTest):
         window.click("tab.Export")
         window.picture("11_export")
         window.key("F12")
-        window.wait(lambda s: any("Wrote" in t and ".png" in t for t in s["toasts"]), "no screenshot was written", 60)
+        window.wait(lambda s: any("Wrote" in t and ".png" in t for t in s["toasts"]),
+                    "no screenshot was written", 60)
         window.key("shift+F12")
-        window.wait(lambda s: any("Wrote" in t and "mp4" in t for t in s["toasts"]), "no turntable was written", 240)
+        window.wait(lambda s: any("Wrote" in t and "mp4" in t for t in s["toasts"]),
+                    "no turntable was written", 240)
         written = sorted(p.name for p in self.folder.iterdir())
         self.assertIn("turntable.mp4", written)
         self.assertTrue(any(name.endswith(".png") for name in written), written)

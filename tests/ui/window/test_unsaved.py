@@ -1,4 +1,5 @@
-"""An edit that runs or waits is unsaved work: leaving asks, what is kept is offered again, also where the scene is named."""
+"""An edit that runs or waits is unsaved work: leaving asks, what is kept is offered again, also where the
+scene is named."""
 import json
 import pathlib
 import shutil
@@ -26,8 +27,10 @@ class Unsaved(WindowTest):
     def begin_edit(self, window):
         window.write("prompt.source", "bear")
         window.write("prompt.sentence", "a blue bear")
-        window.press("prompt.method.sds", lambda s: s["method"] == "sds", "the method was not chosen", 20)   # takes long enough
-        window.press("prompt.edit", lambda s: s["job"]["running"] or s["result_waiting"], "the edit did not start")
+        # takes long enough
+        window.press("prompt.method.sds", lambda s: s["method"] == "sds", "the method was not chosen", 20)
+        window.press("prompt.edit", lambda s: s["job"]["running"] or s["result_waiting"],
+                     "the edit did not start")
         window.wait(lambda s: s["snapshots"] >= 1, "no snapshot came", 300)
 
     def save(self, window):
@@ -99,7 +102,8 @@ class Unsaved(WindowTest):
         for number in range(3):
             name = "screenshot.png" if number == 0 else f"screenshot-{number + 1}.png"
             window.key("F12")
-            window.wait(lambda s: s["file_job"]["title"] == f"Screenshot {name}" and not s["file_job"]["running"], f"no {name}", 60)
+            window.wait(lambda s: s["file_job"]["title"] == f"Screenshot {name}"
+                        and not s["file_job"]["running"], f"no {name}", 60)
             self.assertTrue((scene.parent / name).exists(), name)
         widgets = window.widgets()
         toasts = {n: r for n, r in widgets.items() if n.startswith("toast.") and n.count(".") == 1}
@@ -107,10 +111,12 @@ class Unsaved(WindowTest):
         window.picture("21_toasts")
         for name, toast in toasts.items():
             for other, rect in widgets.items():
-                if other.startswith(name) or other.startswith("panel.") or other == "viewport" or not rect["visible"]:
+                if other.startswith((name, "panel.")) or other == "viewport" or not rect["visible"]:
                     continue
-                apart = (toast["x"] + toast["width"] <= rect["x"] + 1 or rect["x"] + rect["width"] <= toast["x"] + 1 or
-                         toast["y"] + toast["height"] <= rect["y"] + 1 or rect["y"] + rect["height"] <= toast["y"] + 1)
+                apart = (toast["x"] + toast["width"] <= rect["x"] + 1
+                         or rect["x"] + rect["width"] <= toast["x"] + 1 or
+                         toast["y"] + toast["height"] <= rect["y"] + 1
+                         or rect["y"] + rect["height"] <= toast["y"] + 1)
                 self.assertTrue(apart, f"{name} covers {other}")
         self.assertEqual(window.close(), 0)
 

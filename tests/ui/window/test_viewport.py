@@ -1,4 +1,5 @@
-"""The picture of the scene is always there: while the artist orbits and the machine is busy, and when it is shown in another way."""
+"""The picture of the scene is always there: while the artist orbits and the machine is busy, and when it is
+shown in another way."""
 import multiprocessing
 import os
 import signal
@@ -41,23 +42,28 @@ class Viewport(WindowTest):
         """Colours at the places of a grid over the inner part of the viewport."""
         rect = window.widgets()["viewport"]
         _, _, row, pixels = window.screen()
-        places = [(int(rect["x"] + rect["width"] * (0.3 + 0.4 * x / GRID)), int(rect["y"] + rect["height"] * (0.3 + 0.4 * y / GRID)))
+        places = [(int(rect["x"] + rect["width"] * (0.3 + 0.4 * x / GRID)),
+                   int(rect["y"] + rect["height"] * (0.3 + 0.4 * y / GRID)))
                   for y in range(GRID) for x in range(GRID)]
         return [pixels[y * row + 4 * x:y * row + 4 * x + 3] for x, y in places]
 
     def wait_for_scene(self, window):
-        """Until the screen shows the scene: the picture that the program has finished comes there a little later."""
-        window.wait(lambda s: s["splats"] > 0 and not s["busy"] and len(set(self.colours(window))) >= LEAST_COLOURS,
+        """Until the screen shows the scene: the picture that the program has finished comes there a little
+        later."""
+        window.wait(lambda s: s["splats"] > 0 and not s["busy"]
+                    and len(set(self.colours(window))) >= LEAST_COLOURS,
                     "the sample did not open", 90)
 
     def circling(self, window):
         """The mouse goes round in the viewport with the left button down until the process is killed."""
-        steps = [(0.5 + 0.12 * (abs((k % 80) - 40) / 20 - 1), 0.5 + 0.05 * (abs((k % 48) - 24) / 12 - 1)) for k in range(240)]
+        steps = [(0.5 + 0.12 * (abs((k % 80) - 40) / 20 - 1), 0.5 + 0.05 * (abs((k % 48) - 24) / 12 - 1))
+                 for k in range(240)]
         script = []
         for share in steps:
             script += ["mousemove", *map(str, window.place("viewport", *share)), "sleep", "0.02"]
         window.xdotool("mousemove", *window.place("viewport", *steps[0]), "mousedown", 1)
-        return subprocess.Popen(["sh", "-c", "while :; do xdotool \"$@\"; done", "sh", *script], env=window.environment,
+        return subprocess.Popen(["sh", "-c", "while :; do xdotool \"$@\"; done", "sh", *script],
+                                env=window.environment,
                                 stdout=subprocess.DEVNULL, start_new_session=True)
 
     def frames_while_orbiting(self, window, wanted):
@@ -103,13 +109,15 @@ class Viewport(WindowTest):
             window.xdotool("mousemove", x, y, "sleep", 0.3, "mousedown", 1, "sleep", 0.1, "mouseup", 1)
             end = time.monotonic() + 1.5
             while time.monotonic() < end:
-                self.assertGreaterEqual(len(set(self.colours(window))), LEAST_COLOURS, f"blank on the way to {name}")
+                self.assertGreaterEqual(len(set(self.colours(window))), LEAST_COLOURS,
+                                        f"blank on the way to {name}")
             window.wait(lambda s: s["mode"] == mode and not s["busy"], f"{name} did not come to rest", 90)
         for _ in range(4):   # hold and release: the original beside the state now
             window.xdotool("key", "v")
             end = time.monotonic() + 1
             while time.monotonic() < end:
-                self.assertGreaterEqual(len(set(self.colours(window))), LEAST_COLOURS, "blank while comparing")
+                self.assertGreaterEqual(len(set(self.colours(window))), LEAST_COLOURS,
+                                        "blank while comparing")
         self.assertEqual(window.close(), 0)
 
     def test_nothing_is_drawn_while_nothing_happens(self):

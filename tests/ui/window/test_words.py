@@ -1,5 +1,5 @@
-"""Words in the real window: a clicked target does not outlive its sentence, an unknown thing is labelled by hand, a search that
-finds nothing shows its evidence."""
+"""Words in the real window: a clicked target does not outlive its sentence, an unknown thing is labelled by
+hand, a search that finds nothing shows its evidence."""
 import time
 import unittest
 

@@ -1,4 +1,5 @@
-"""Drives the editor's window: starts Xvfb and the program, clicks and types with xdotool, looks at its state."""
+"""Drives the editor's window: starts Xvfb and the program, clicks and types with xdotool, looks at its
+state."""
 import ctypes
 import ctypes.util
 import json
@@ -20,7 +21,8 @@ PATIENCE = float(os.environ.get("GSE_PATIENCE", "1"))   # instrumented builds ar
 
 def free_display():
     for number in range(120, 160):
-        if not pathlib.Path(f"/tmp/.X11-unix/X{number}").exists() and not pathlib.Path(f"/tmp/.X{number}-lock").exists():
+        places = (f"/tmp/.X11-unix/X{number}", f"/tmp/.X{number}-lock")
+        if not any(pathlib.Path(place).exists() for place in places):
             return f":{number}"
     raise RuntimeError("no free display")
 
@@ -35,19 +37,22 @@ class Window:
         for old in (self.map, pathlib.Path(str(self.map) + ".state"), self.folder / "first_frame"):
             old.unlink(missing_ok=True)
         self.display = free_display()
-        self.server = subprocess.Popen(["Xvfb", self.display, "-screen", "0", f"{width}x{height}x24", "-nolisten", "tcp",
+        self.server = subprocess.Popen(["Xvfb", self.display, "-screen", "0", f"{width}x{height}x24",
+                                        "-nolisten", "tcp",
                                         "-fbdir", str(self.folder)],
                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         socket = pathlib.Path("/tmp/.X11-unix/X" + self.display[1:])
         self._until(socket.exists, 20, "the X server did not start")
         self.environment = dict(os.environ, DISPLAY=self.display, GSE_UI_MAP=str(self.map),
                                 GSE_UI_FIRST_FRAME=str(self.folder / "first_frame"),
-                                GSE_CONFIG_DIR=str(self.folder / "config"), GSE_STATE_DIR=str(self.folder / "state"),
+                                GSE_CONFIG_DIR=str(self.folder / "config"),
+                                GSE_STATE_DIR=str(self.folder / "state"),
                                 GSE_CACHE_DIR=str(self.folder / "cache"))
         self.log = open(self.folder / "window.log", "ab")
         size = ["--width", str(width), "--height", str(height)] if sized else []
         self.process = subprocess.Popen([PROGRAM, "open", *size, *map(str, arguments)],
-                                        env=self.environment, cwd=self.folder, stdout=self.log, stderr=self.log)
+                                        env=self.environment, cwd=self.folder, stdout=self.log,
+                                        stderr=self.log)
         self._until(lambda: pathlib.Path(str(self.map) + ".state").exists(), 60, "the window did not come up")
 
     # Looking
@@ -96,19 +101,21 @@ class Window:
 
     def idle(self, seconds=180):
         time.sleep(0.3)
-        self.wait(lambda s: not s["job"]["running"] and not s["file_job"]["running"], "the job did not end", seconds)
+        self.wait(lambda s: not s["job"]["running"] and not s["file_job"]["running"], "the job did not end",
+                  seconds)
 
     # Doing
     def xdotool(self, *arguments):
-        subprocess.run(["xdotool", *map(str, arguments)], env=self.environment, check=True, stdout=subprocess.DEVNULL)
+        subprocess.run(["xdotool", *map(str, arguments)], env=self.environment, check=True,
+                       stdout=subprocess.DEVNULL)
 
     def place(self, name, x=0.5, y=0.5):
         rect = self.widgets()[name]
         return round(rect["x"] + x * rect["width"]), round(rect["y"] + y * rect["height"])
 
     def settle(self, seconds=0.25):
-        """Until what was sent was seen: a moment, and on a busy machine as long as three frames take, or until the window has
-        twice found nothing to draw."""
+        """Until what was sent was seen: a moment, and on a busy machine as long as three frames take, or
+        until the window has twice found nothing to draw."""
         before = self.state()
         time.sleep(seconds)
         end = time.monotonic() + 10 * PATIENCE
@@ -141,8 +148,8 @@ class Window:
         raise AssertionError(f"{name} does not come into sight")
 
     def press(self, name, condition, message, seconds=120, pause=1):
-        """Clicks until condition(state) holds, or the program has ended: on a busy machine a click may fall between frames.
-        `pause`: how long a click may take to show, in seconds, before the next one."""
+        """Clicks until condition(state) holds, or the program has ended: on a busy machine a click may fall
+        between frames. `pause`: how long a click may take to show, in seconds, before the next one."""
         end = time.monotonic() + seconds * PATIENCE
         next_click = 0.0
         while self.process.poll() is None and not condition(self.state()):
@@ -183,8 +190,8 @@ class Window:
             self.settle()
 
     def write(self, name, text):
-        """Replaces the text of a field; the prompt's are typed until it has arrived: on a busy machine a click may fall between
-        frames."""
+        """Replaces the text of a field; the prompt's are typed until it has arrived: on a busy machine a
+        click may fall between frames."""
         field = name.removeprefix("prompt.")
         for _ in range(4):
             self.click(name)
@@ -212,7 +219,8 @@ class Window:
         x11.XOpenDisplay.restype = ctypes.c_void_p
         x11.XInternAtom.restype = ctypes.c_ulong
         x11.XInternAtom.argtypes = [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_int]
-        x11.XSendEvent.argtypes = [ctypes.c_void_p, ctypes.c_ulong, ctypes.c_int, ctypes.c_long, ctypes.c_void_p]
+        x11.XSendEvent.argtypes = [ctypes.c_void_p, ctypes.c_ulong, ctypes.c_int, ctypes.c_long,
+                                   ctypes.c_void_p]
         x11.XCloseDisplay.argtypes = [ctypes.c_void_p]
         display = x11.XOpenDisplay(self.display.encode())
         event = (ctypes.c_long * 24)()   # XClientMessageEvent
@@ -245,7 +253,8 @@ class Window:
 
     def screen(self):
         """What is on the screen at this moment: (width, height, bytes of a row, pixels as 4 bytes each)."""
-        data = (self.folder / "Xvfb_screen0").read_bytes()   # in the format of xwd, kept up to date by the server
+        # in the format of xwd, kept up to date by the server
+        data = (self.folder / "Xvfb_screen0").read_bytes()
         header, _, _, _, width, height = struct.unpack(">6I", data[:24])
         row, colours = struct.unpack(">I", data[48:52])[0], struct.unpack(">I", data[76:80])[0]
         return width, height, row, data[header + 12 * colours:]

@@ -1,4 +1,4 @@
-# What the window knows of edits, without a window.
+# State of the window about edits, without a window.
 target_link_libraries(${test_target} PRIVATE gse_app)
 set_target_properties(${test_target} PROPERTIES ENABLE_EXPORTS ON)
 if(TARGET gse_neural_plugin)
