@@ -13,7 +13,7 @@ layout(set = 1, binding = 1) uniform samplerBuffer harmonics;
 layout(set = 1, binding = 2) uniform samplerBuffer values;
 layout(push_constant) uniform Push { uint first_row, row_count, has_values; } push;
 
-// Of full opacity, in standard deviations squared.
+// Largest reach of a Gaussian, at full opacity, in standard deviations squared.
 const float LargestReach = 2.0 * (Log2Of255 * (1.0 + 1e-4) + 1e-4) / Log2E;
 const float BallMargin = 1.01;                                               // far more than rounding
 

@@ -1,4 +1,4 @@
-// What shaders and C++ both read: numbers of the image formation and of the passes, and the data of a frame.
+// Shared by shaders and C++: numbers of the image formation and of the passes, and the data of a frame.
 #ifndef GSE_SHADERS_SHARED_H
 #define GSE_SHADERS_SHARED_H
 

@@ -1,5 +1,5 @@
-// Where tests find the shared third-party data, the reference numbers and a scratch folder. Absent data is a
-// skip that CTest shows; where CI is set it is a failure.
+// Places of the shared third-party data, the reference numbers and a scratch folder. Absent data is a skip
+// that CTest shows; where CI is set it is a failure.
 #pragma once
 
 #include <unistd.h>

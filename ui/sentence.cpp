@@ -47,7 +47,7 @@ std::string what_to_say(const std::string& target, const std::vector<std::string
            (dyes ? "; colours and patterns go by their names" : "");
 }
 
-/// Whether the word number `index` of the sentence belongs to the phrase.
+/// Tells whether the word number `index` of the sentence belongs to the phrase.
 bool within(const std::string& sentence, const std::string& phrase, std::size_t index) {
     if (!language::has_phrase(sentence, phrase)) return false;
     const std::size_t first = language::position_of(sentence, phrase);

@@ -15,8 +15,8 @@ struct SentenceGround {
     std::vector<std::string> said = {};   // words that the scene shows already, from the edits applied
     bool labelled_by_hand = false;        // the label says where: nothing has to be found
     std::size_t words_read = 0;           // of the sentence, by the text encoder; 0 = not known, all of them
-    std::string read_target =
-        {};  // the word that a search of this sentence saw to be new; empty = none has looked
+    // The word that a search of this sentence saw to be new; empty = none has looked.
+    std::string read_target = {};
     std::vector<std::string> drawn = {};  // words that the model draws besides and does not look for
 };
 

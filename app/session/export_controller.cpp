@@ -40,8 +40,8 @@ std::filesystem::path ExportController::place_for(const std::string& name) const
     if (path.is_absolute()) return path;
     const auto& beside = workspace_.project_path.empty() ? workspace_.scene_path : workspace_.project_path;
     const auto base = std::filesystem::path(beside).parent_path();
-    const bool bundled =
-        base.string().rfind(assets_path().string(), 0) == 0;  // not a place for an artist's files
+    // Not a place for an artist's files.
+    const bool bundled = base.string().rfind(assets_path().string(), 0) == 0;
     return base.empty() || bundled ? std::filesystem::absolute(path) : base / path;
 }
 

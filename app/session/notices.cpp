@@ -38,7 +38,7 @@ Notices::Notices(std::function<void()> wake) {
 Notices::~Notices() { log::set_sink({}); }
 
 void Notices::toast(std::string text, bool is_error, std::string button, std::function<void()> action) {
-    // The same news again, or told at more length: one of them is enough.
+    // Repeated news, or news told at more length: one of them is enough.
     std::erase_if(toasts_,
                   [&](const ToastState& old) { return text.find(old.toast.text) != std::string::npos; });
     if (std::any_of(toasts_.begin(), toasts_.end(),

@@ -101,7 +101,7 @@ void SearchController::from_json(const nlohmann::json& json) {
     edit::read_request(request, json["request"]);
     set_request(request);
     follow_document();
-    // What an applied edit said already is no news, even if it was clicked once.
+    // Words of an applied edit are no news, even if one was clicked once.
     if (contains_word(said_words_, request_.target)) request_.target.clear();
 }
 

@@ -35,11 +35,11 @@ struct OpenOptions {
     bool sample = false, validate = false;
 };
 
-constexpr double IdleWait =
-    0.5;  // nothing happens: what is due by the clock is looked after, nothing is drawn
+// Nothing happens: what is due by the clock is looked after, nothing is drawn.
+constexpr double IdleWait = 0.5;
 constexpr double WorkingWait = 0.1;  // a job runs: its numbers move, the processor belongs to it
-constexpr double MovingFrame =
-    0.05;  // the camera moves: the panels are drawn anew with every picture, or after this time
+// The camera moves: the panels are drawn anew with every picture, or after this time.
+constexpr double MovingFrame = 0.05;
 constexpr double WorkingFrame = 0.04;   // the same while a job runs that needs the processor too,
 constexpr double SoftwareFrame = 0.08;  // and where the processor draws the window as well
 constexpr double ActiveSeconds = 0.6;   // after input every frame is drawn

@@ -25,8 +25,8 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view Magic = "GSECACH2";  // the last letter is the version of the layout
 constexpr std::string_view Ending = ".answer", PendingEnding = ".pending";
-constexpr auto PendingAge =
-    std::chrono::hours(1);  // a file being written that is older was left by a killed writer
+// A file being written that is older was left by a killed writer.
+constexpr auto PendingAge = std::chrono::hours(1);
 
 struct Header {
     char magic[8] = {};

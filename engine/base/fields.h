@@ -88,7 +88,7 @@ template <class P> nlohmann::ordered_json fields_to_json(const P& parameters) {
     return json;
 }
 
-/// Whether fields of the type hold one number, set or not.
+/// Tells whether fields of the type hold one number, set or not.
 template <class Value>
 constexpr bool is_number_field = std::is_same_v<Value, Overridable> ||
                                  (std::is_arithmetic_v<Value> && !std::is_same_v<Value, bool>);

@@ -15,7 +15,7 @@ public:
     }
     constexpr operator double() const { return value_; }
     constexpr bool is_set() const { return set_; }
-    /// Whether the number is its default, set or not.
+    /// Tells whether the number is its default, set or not.
     constexpr bool is_standard() const { return value_ == standard_; }
     /// Gives a number that nobody has set another default.
     constexpr void override_if_unset(double value) {

@@ -8,7 +8,7 @@
 
 namespace gse::language {
 
-/// Whether the sentence says what the thing is like ("white wings"), or does not name it; "in flames" and "on
+/// Tells whether the sentence describes the object ("white wings"), or does not name it. "In flames" and "on
 /// fire" are states, whose colour is their own.
 bool is_described(std::string_view sentence, const std::string& thing);
 

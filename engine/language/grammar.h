@@ -14,24 +14,24 @@ namespace gse::language {
 std::vector<std::string> noun_terms(const std::vector<std::string>& words,
                                     const std::vector<std::string>& phrases);
 
-/// Whether a term stands between noun phrases: "wearing", "on", "next to".
+/// Tells whether a term stands between noun phrases: "wearing", "on", "next to".
 bool ends_phrase(std::string_view term);
 
-/// Whether a term is passed over at the beginning of a noun phrase: "the", "its", "photo", "*".
+/// Tells whether a term is passed over at the beginning of a noun phrase: "the", "its", "photo", "*".
 bool is_leading(std::string_view term);
 
 /// "it", "him", ...: what stands for the source after a preposition.
 bool is_pronoun(std::string_view term);
 
-/// Whether a (lower-case) word names or describes something: "bear", "golden"; not "the", "wearing" or
+/// Tells whether a (lower-case) word names or describes something: "bear", "golden"; not "the", "wearing" or
 /// "remove".
 bool says_something(std::string_view word);
 
-/// Whether the word at `i` is an "in" that puts something on: "in flames", "in a hat", but not "in gold", "in
-/// the snow".
+/// Tells whether the word at `i` is an "in" that puts something on: "in flames", "in a hat", but not "in
+/// gold", "in the snow".
 bool says_worn(const std::vector<std::string>& words, std::size_t i);
 
-/// Whether a noun phrase may begin with the term at `i`: the first one, and what follows a joint.
+/// Tells whether a noun phrase may begin with the term at `i`: the first one, and what follows a joint.
 bool begins_phrase(const std::vector<std::string>& terms, std::size_t i);
 
 /// Last word of the noun phrase that begins at `first`, behind articles and the "of" of "made of"; empty
@@ -44,12 +44,12 @@ bool names_thing(const std::vector<std::string>& terms, std::size_t i);
 
 /// Grounds are what things stand on or are in, not things: one in the place of another changes no shape.
 bool is_ground(std::string_view word);
-/// Whether the phrase's last word is a ground.
+/// Tells whether the phrase's last word is a ground.
 bool names_ground(std::string_view phrase);
 
 /// Place on its wearer that a thing ("hat", "top hat") usually takes: "top" for what is not known.
 std::string usual_place(std::string_view thing);
-/// Whether the place is known, not only supposed.
+/// Tells whether the place is known, not only supposed.
 bool has_usual_place(std::string_view thing);
 
 /// The relation that the terms state between the two phrases: "a ball beside a bear", "a bear with a ball

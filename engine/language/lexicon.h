@@ -46,7 +46,7 @@ inline constexpr WordClass Leading = Determiner | WordClass::Caption;
 /// How a thing looks.
 inline constexpr WordClass Description = WordClass::Colour | WordClass::Material | WordClass::State;
 
-/// Whether a lower-case word is in one of the classes.
+/// Tells whether a lower-case word is in one of the classes.
 bool is_a(std::string_view word, WordClass classes);
 
 /// Position of the target, seen from the source. Left and Right are those of who looks at the scene's front.

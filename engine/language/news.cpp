@@ -130,7 +130,7 @@ std::vector<std::string> possible_targets(const Sentence& sentence, const std::s
     };
     for (const auto& candidate : candidates_of(terms, source)) add(candidate.head);
     const auto found = std::find(terms.begin(), terms.end(), source);
-    // What wears the source is there as that is, where the sentence has something else to say of it.
+    // The wearer of the source is there, too, where the sentence has something else to say of it.
     const auto wearer = found != terms.end() && targets.front() != source
                             ? wearer_of(terms, static_cast<std::size_t>(found - terms.begin()))
                             : std::string();

@@ -18,7 +18,7 @@ int position_in(const Terms& terms, const std::string& term) {
     return found == terms.end() ? -1 : static_cast<int>(found - terms.begin());
 }
 
-/// Whether a term strictly between two positions is of one of the classes.
+/// Tells whether a term strictly between two positions is of one of the classes.
 bool any_between(const Terms& terms, int begin, int end, WordClass classes) {
     for (int i = begin + 1; i < end; ++i)
         if (is_a(terms[static_cast<std::size_t>(i)], classes)) return true;

@@ -30,7 +30,7 @@ public:
     const std::string& prompt() const { return prompt_; }
     const std::vector<std::string>& words() const { return words_; }
     bool empty() const { return words_.empty(); }
-    /// Whether the phrase's words follow one another in it.
+    /// Tells whether the phrase's words follow one another in it.
     bool contains(std::string_view phrase) const;
     /// Index of the phrase's first word; the number of words where it is not in the sentence.
     std::size_t position_of(std::string_view phrase) const;

@@ -14,8 +14,8 @@
 namespace gse::language {
 namespace {
 
-constexpr double MostDifferent =
-    0.4;  // share of the letters: "bears" and "baer" are near "bear", "sign" is near nothing
+// Share of the letters: "bears" and "baer" are near "bear", "sign" is near nothing.
+constexpr double MostDifferent = 0.4;
 constexpr double OfSwapped = 0.3;  // two letters that changed places, whatever the length
 
 /// Spelling distance in which two neighbours that changed places are no more than one slip.

@@ -20,8 +20,8 @@ VocabularyMatch match_word(const std::string& word, const std::vector<std::strin
 std::string filter_to_vocabulary(std::string_view sentence, const std::vector<std::string>& known,
                                  std::string_view signs = {});
 
-/// Whether every word of the phrase is in `known`, as it is written; an empty list stands for a model that
-/// takes any word.
+/// Tells whether every word of the phrase is in `known`, as it is written; an empty list stands for a model
+/// that takes any word.
 bool vocabulary_contains(const std::vector<std::string>& known, std::string_view phrase);
 
 /// The first word of the phrase that is not in `known`; empty where all are, or `known` is empty.

@@ -38,7 +38,7 @@ std::string without_identifier(std::string_view text);
 std::size_t position_of(const std::vector<std::string>& words, std::string_view phrase);
 std::size_t position_of(std::string_view text, std::string_view phrase);
 
-/// Whether the text has the words of the phrase ("bear", "teddy bear") one after the other.
+/// Tells whether the text has the words of the phrase ("bear", "teddy bear") one after the other.
 bool has_phrase(std::string_view text, std::string_view phrase);
 
 /// The words, each of the phrases as one entry ("a", "teddy bear"); of two that overlap the longer.
@@ -52,7 +52,7 @@ std::string head_word(std::string_view phrase);
 /// hat, grass").
 std::vector<std::string> phrases_of(std::string_view list);
 
-/// Whether a vector has the word.
+/// Tells whether a vector has the word.
 bool contains(const std::vector<std::string>& words, std::string_view word);
 
 }  // namespace gse::language

@@ -16,10 +16,10 @@ struct CutParameters {
     double smoothness = 1.5;  // cost of a cut between two rows of one colour, in nats; 0 = nothing is done
     double threshold = 0.5;   // probability at which a row is undecided
     double least_coverage = 0.5;  // pixels: rows with no more are unseen
-    double margin_share =
-        0.1;  // of the diagonal: rows farther than this outside the box of the labelled ones stay out
-    int reach =
-        3;  // edges from rows that prefer the label to where the first graph ends; 0 = everything at once
+    // Share of the diagonal: rows farther than this outside the box of the labelled ones stay out.
+    double margin_share = 0.1;
+    // Edges from rows that prefer the label to where the first graph ends; 0 = everything at once.
+    int reach = 3;
     double island_share = 0;  // of the labelled rows: islands of no more take the label; 0 = none does
 };
 

@@ -10,8 +10,8 @@ namespace gse::localize {
 struct SpreadParameters {
     int neighbours = 8;           // seen rows that are asked
     double least_coverage = 0.5;  // pixels: rows with no more are unseen
-    double reach_share =
-        0.15;  // of the diagonal of the clearly labelled rows: no opinion is taken from farther away
+    // Share of the diagonal of the clearly labelled rows: no opinion is taken from farther away.
+    double reach_share = 0.15;
     double threshold = 0.5;  // probability above which a row counts as labelled
 };
 

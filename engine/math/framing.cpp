@@ -9,8 +9,8 @@ namespace gse {
 namespace {
 
 constexpr double FilledShare = 0.9;  // of the picture's width and height, by a box that is to be seen whole
-constexpr double SmallestBox =
-    1e-9;  // of the box's distance from the origin, so that a point has a camera beside it
+// Share of the box's distance from the origin, so that a point has a camera beside it.
+constexpr double SmallestBox = 1e-9;
 
 }  // namespace
 

@@ -29,8 +29,8 @@ struct Display {
     bool transparent = false;  // alpha instead of the background, not premultiplied
     std::array<float, 3> tint{1.0f, 0.45f, 0.1f};
     float tint_strength = 0;  // beauty, centres, rings, ellipsoids, labels: how strongly the value tints
-    float depth_scale =
-        0;  // world units in the middle of the depth colours; 0 = distance to the scene's middle
+    // World units in the middle of the depth colours; 0 = distance to the scene's middle.
+    float depth_scale = 0;
     float centre_radius_px = 1.5f;
 
     friend bool operator==(const Display&, const Display&) = default;

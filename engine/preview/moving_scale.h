@@ -12,8 +12,8 @@ namespace gse::preview {
 class MovingScale {
 public:
     static constexpr double FrameMs = 50;  // a frame may take this long while the camera moves
-    static constexpr int Levels =
-        10;  // each has 0.71 of the pixels of the one before; the last one 0.21 of the width
+    // Each has 0.71 of the pixels of the one before; the last one 0.21 of the width.
+    static constexpr int Levels = 10;
 
     /// Share of the full width and height.
     double scale() const { return std::exp2(-0.25 * level_); }

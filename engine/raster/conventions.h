@@ -5,8 +5,8 @@ namespace gse::raster {
 
 inline constexpr double AlphaLimit = 0.99;       // alpha is clamped here; no gradient through the clamp
 inline constexpr double AlphaCut = 1.0 / 255.0;  // fainter pairs are not blended
-inline constexpr double TransmittanceCut =
-    1e-4;  // the pair that would bring T to this or below ends the pixel
+// The pair that would bring T to this or below ends the pixel.
+inline constexpr double TransmittanceCut = 1e-4;
 inline constexpr double DeterminantCut = 1e-12;  // px^4; flatter projected covariances are not drawn
 inline constexpr double FrustumMargin = 0.3;     // of half the field of view, for the Jacobian's clamp (EWA)
 inline constexpr double SmallestNear = 1e-6;     // world units; what a given near plane is at least

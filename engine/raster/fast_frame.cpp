@@ -54,8 +54,8 @@ void Frame::prepare(const GaussianSpans& gaussians, const Camera& camera, const 
 
 /// True when all coefficients are finite. Looks at each at most once for as long as the answer is cached.
 bool Frame::has_finite_colours(const GaussianSpans& gaussians) {
-    constexpr float largest =
-        1e30f;  // a colour is the sum of 16 coefficients, none counting more than 3 times
+    // A colour is the sum of 16 coefficients, none counting more than 3 times.
+    constexpr float largest = 1e30f;
     constexpr std::size_t piece = std::size_t{1} << 16;
     if (gaussians.colours_known == nullptr) return false;
     ColoursKnown known = *gaussians.colours_known;

@@ -16,8 +16,7 @@
 namespace gse::raster {
 namespace {
 
-// Of the rows; larger shares leave too little to save (measured at 512x512 with 500k rows: 0.58 of the full
-// work with a quarter of them, 0.90 with 0.6).
+// Share of the rows; larger ones leave too little to save (`gseditpro-lab bench raster --skips`).
 constexpr double MostChanging = 0.6;
 // Views whose near plane or reach asks for more are rendered in full.
 constexpr int MostPreparations = 8;

@@ -33,8 +33,8 @@ public:
 private:
     struct View {
         ViewCache cache;
-        bool full =
-            false;  // rendered in full until forget(): too large for the budget, or prepared too often
+        // Rendered in full until forget(): too large for the budget, or prepared too often.
+        bool full = false;
     };
     /// Tile that a changing row reaches.
     struct LiveTile {

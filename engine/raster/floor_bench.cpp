@@ -16,8 +16,8 @@ namespace gse::raster {
 namespace {
 
 constexpr double LoopSeconds = 2e-3;  // of each loop and measurement, at least
-constexpr std::uint32_t LoopRounds =
-    256;  // between two looks at the clock, which cost as much as hundreds of records
+// Between two looks at the clock, which cost as much as hundreds of records.
+constexpr std::uint32_t LoopRounds = 256;
 constexpr std::size_t MemoryBytes = std::size_t{128} << 20;  // more than caches hold
 constexpr double StartSeconds = 0.05;                        // how long the threads wait for each other
 

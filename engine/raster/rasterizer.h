@@ -43,8 +43,8 @@ struct ForwardOutput {
     // Work, not result; the last two by the fast version in full pictures only.
     std::size_t pairs = 0;          // tile-Gaussian pairs looked at
     std::size_t pairs_reached = 0;  // of them, those in front of where the light of their tile ends
-    std::size_t block_pairs =
-        0;  // pairs of 4x4 block and Gaussian blended, in front of where the light of the block ends
+    // Pairs of 4x4 block and Gaussian blended, in front of where the light of the block ends.
+    std::size_t block_pairs = 0;
     std::size_t dropped_rows = 0;  // not drawn because a value is NaN or infinite where that means nothing
 };
 

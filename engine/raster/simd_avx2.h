@@ -71,8 +71,8 @@ GSE_INLINE I bit_range(M m, F first, F last) {
 /// 2^a: degree-5 minimax polynomial on [-1/2, 1/2], relative error 7.5e-8. The power goes into the exponent
 /// field.
 GSE_INLINE F exp2_lanes(F a) {
-    const __m256 magic =
-        _mm256_set1_ps(12582912.0f);  // 1.5 * 2^23: adding it rounds to a whole number in the low bits
+    // 1.5 * 2^23: adding it rounds to a whole number in the low bits.
+    const __m256 magic = _mm256_set1_ps(12582912.0f);
     const __m256 shifted = _mm256_add_ps(a.v, magic);
     const __m256 x = _mm256_sub_ps(a.v, _mm256_sub_ps(shifted, magic));
     __m256 p = _mm256_set1_ps(1.3276471519718357e-3f);

@@ -83,8 +83,8 @@ void ViewCache::project(const Job& job, Frame& frame) {
     const auto depth = [&](std::size_t place) { return frame.records()[frame.order()[place]].depth; };
     std::size_t between = 0;
     while (between < frame.order().size() && depth(between) <= near_plane_) ++between;
-    const bool unusable =
-        frame.unusable_rows() > 0;  // counted where they are in front: exact for one near plane only
+    // Counted where they are in front: exact for one near plane only.
+    const bool unusable = frame.unusable_rows() > 0;
     if (unusable) near_low_ = near_plane_;
     else if (between > 0) near_low_ = depth(between - 1);
     if (unusable || between > 0) {

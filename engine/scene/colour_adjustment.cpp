@@ -43,8 +43,8 @@ float denser(float logit, double depth) {
     if (x < Faint)
         return static_cast<float>(
             std::max(x + std::log(depth), static_cast<double>(std::numeric_limits<float>::lowest())));
-    const double log_clear =
-        depth * -(x > 0 ? x + std::log1p(std::exp(-x)) : std::log1p(std::exp(x)));  // log(1 - opacity)
+    // log(1 - opacity)
+    const double log_clear = depth * -(x > 0 ? x + std::log1p(std::exp(-x)) : std::log1p(std::exp(x)));
     return static_cast<float>(std::min(std::log(-std::expm1(log_clear)) - log_clear,
                                        static_cast<double>(std::numeric_limits<float>::max())));
 }

@@ -9,8 +9,8 @@ namespace gse {
 namespace {
 
 constexpr std::size_t Samples = 1024;
-constexpr double NearShare =
-    0.1;  // 0.2, the format's near plane, in a capture whose nearest things are 2 away
+// 0.2, the format's near plane, in a capture whose nearest things are 2 away.
+constexpr double NearShare = 0.1;
 constexpr double LeftOut = 0.02;      // floaters before the camera
 constexpr float LeastLogit = -5.54f;  // opacity 1/255: fainter splats are not seen
 
@@ -39,8 +39,8 @@ double fitted_near_plane(const GaussianSpans& gaussians, const Camera& camera) {
         const double x = camera.fx * p.x / p.z + camera.cx, y = camera.fy * p.y / p.z + camera.cy;
         if (x >= 0 && y >= 0 && x <= camera.width && y <= camera.height) inside.values[inside.count++] = p.z;
     }
-    Depths& deciding =
-        inside.count > 0 ? inside : ahead;  // large splats reach into the picture from beside it
+    // Large splats reach into the picture from beside it.
+    Depths& deciding = inside.count > 0 ? inside : ahead;
     return deciding.count > 0 ? NearShare * deciding.near_quantile() : 0;
 }
 

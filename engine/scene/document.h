@@ -28,8 +28,8 @@ struct NamedLabel {
     float threshold = 0.5f;
     std::string
         found_for;  // word that a search found it for, whatever it is called now; empty = not by a search
-    double attention_threshold =
-        -1;                      // it was found with; 0 = what the model states, negative = not by a search
+    // It was found with; 0 = what the model states, negative = not by a search.
+    double attention_threshold = -1;
     std::string excluded_views;  // views of that search that did not vote, as numbers: "3, 17"
     std::string looked_from;     // azimuth of the view in which its thing was marked by hand, or looked for,
                                  // degrees; empty = not known

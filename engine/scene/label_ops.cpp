@@ -77,8 +77,8 @@ private:
     void fill_stroke(const std::vector<Point>& centres, float radius_px) {
         const double radius = static_cast<double>(radius_px);
         if (!(radius > 0)) return;
-        const double spacing =
-            std::max(1.0, radius / 4);  // the rim of the joined stroke waves by under 1 % of the radius
+        // The rim of the joined stroke waves by under 1 % of the radius.
+        const double spacing = std::max(1.0, radius / 4);
         for (std::size_t i = 0; i < centres.size(); ++i) {
             const double x = static_cast<double>(centres[i][0]), y = static_cast<double>(centres[i][1]);
             if (!std::isfinite(x + y)) continue;
@@ -340,8 +340,8 @@ std::shared_ptr<const std::vector<float>> view_probability(const NamedLabel& lab
 
 double growth_radius(const GaussianSet& set, std::span<const std::uint8_t> bits) {
     GSE_CHECK_EQ(bits.size(), set.size());
-    constexpr std::size_t samples =
-        48;  // each is a walk over all rows; the median over so many is steady to ~10 %
+    // Each is a walk over all rows; the median over so many is steady to ~10 %.
+    constexpr std::size_t samples = 48;
     const auto position = set.position();
     std::vector<std::size_t> labelled;
     for (std::size_t row = 0; row < bits.size(); ++row)

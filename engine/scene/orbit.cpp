@@ -12,11 +12,11 @@ namespace gse {
 namespace {
 
 constexpr double SmallestRadius = 1e-3;  // world units, for splats without any size
-constexpr double HighElevationStep =
-    0.35;  // radians between the lower and the upper ring, so that tops are seen
+// Radians between the lower and the upper ring, so that tops are seen.
+constexpr double HighElevationStep = 0.35;
 constexpr double SteepestElevation = 1.3;  // radians; straight down has no defined "right"
-constexpr double FramingMargin =
-    1.15;  // of the half diagonal: the robust bounds leave 2 % of the splats outside
+// Multiple of the half diagonal: the robust bounds leave 2 % of the splats outside.
+constexpr double FramingMargin = 1.15;
 
 }  // namespace
 

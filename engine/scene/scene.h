@@ -53,9 +53,9 @@ struct Scene {
 struct SceneStatistics {
     std::size_t count = 0;
     std::size_t nan_rows = 0;  // any NaN in any attribute
-    std::size_t infinite_rows =
-        0;  // any infinity except a legal +-inf opacity logit or -inf log-scale, or a value
-            // that nothing can be computed with (a position of 1e30, a colour of 1e10)
+    // Any infinity except a legal +-inf opacity logit or -inf log-scale, or a value that nothing can be
+    // computed with (a position of 1e30, a colour of 1e10)
+    std::size_t infinite_rows = 0;
     std::size_t giant_rows = 0;            // largest standard deviation above the robust scene radius
     std::size_t invisible_rows = 0;        // opacity below 1/255
     std::size_t visible_rows = 0;          // that can be drawn, with an opacity of 1/255 or more

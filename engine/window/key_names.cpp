@@ -6,8 +6,8 @@
 namespace gse::window {
 namespace {
 
-constexpr std::string_view Marks =
-    "',-./;=[\\]`";  // codes of their keys, as of letters and digits, are their ASCII
+// Codes of their keys, as of letters and digits, are their ASCII.
+constexpr std::string_view Marks = "',-./;=[\\]`";
 
 }  // namespace
 

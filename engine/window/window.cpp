@@ -122,8 +122,8 @@ Window::State::State(const WindowOptions& wanted) : options(wanted), wanted_scal
     io.IniFilename = options.layout_file.empty() ? nullptr : options.layout_file.c_str();
     ImGui_ImplGlfw_InitForVulkan(window, true);
     glfwSetKeyCallback(window, [](GLFWwindow* target, int key, int code, int action, int modifiers) {
-        const bool named =
-            key >= GLFW_KEY_SPACE && key < GLFW_KEY_ESCAPE;  // the others say nothing that could move
+        // The others say nothing that could move.
+        const bool named = key >= GLFW_KEY_SPACE && key < GLFW_KEY_ESCAPE;
         of(target).push(
             {false, named ? written_key(key, glfwGetKeyName(key, code)) : key, code, action, modifiers, 0});
     });

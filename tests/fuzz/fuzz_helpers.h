@@ -1,4 +1,5 @@
-// What every fuzz target does with its bytes: read them; what is read must be whole, countable and writable.
+// Common end of every fuzz target: bytes are read; a scene that is read must be whole, countable and
+// writable.
 #pragma once
 
 #include <cstddef>

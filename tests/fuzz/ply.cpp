@@ -23,7 +23,7 @@ std::filesystem::path file_of(std::span<const std::byte> bytes) {
     return "/proc/self/fd/" + std::to_string(descriptor);
 }
 
-/// What a reader says: a scene, nothing, or why not.
+/// Answer of a reader: a scene, nothing, or why not.
 struct Answer {
     std::optional<Scene> scene;
     std::string refusal;

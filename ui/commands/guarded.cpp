@@ -48,7 +48,7 @@ void ask_about_edit(Context& context, const std::string& what, const std::functi
                              commands.push(command::LeaveEdit{true, act});
                          }},
                         {running ? "Wait" : "Stay", false, {}},
-                        // What else is unsaved is asked about next.
+                        // Other unsaved work is asked about next.
                         {"Discard it", true, [&commands, state = &context.state, what, act] {
                              commands.push(command::LeaveEdit{false, [state, what, act] {
                                                                   state->asked.leave = {what, act};
@@ -329,8 +329,8 @@ void label_by_hand(Context& context, const std::string& name) {
     if (found == labels.end()) context.emit(command::AddLabel{name});
     else context.emit(command::SetActiveLabel{static_cast<int>(found - labels.begin())});
     show_labelled(context);
-    context.state.viewport.tool =
-        Tool::CutOut;  // a box is the quickest way to a thing; the other tools correct it
+    // A box is the quickest way to a thing; the other tools correct it.
+    context.state.viewport.tool = Tool::CutOut;
     context.state.viewport.stroke = false;
     show_panel(context.state, PanelId::Labels);
 }

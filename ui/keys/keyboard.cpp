@@ -48,8 +48,8 @@ void focus(Context& context, const FocusStop& stop) {
     ImGui::SetNavID(stop.id, ImGuiNavLayer_Main, 0, ImGui::WindowRectAbsToRel(stop.window, rect));
     ImGui::ScrollToRect(stop.window, rect,
                         ImGuiScrollFlags_KeepVisibleEdgeX | ImGuiScrollFlags_KeepVisibleEdgeY);
-    g.NavInitRequest =
-        false;  // of a window that has just come up: its first control is not the one that is meant
+    // Request of a window that has just come up: its first control is not the one that is meant.
+    g.NavInitRequest = false;
     g.NavInitResultId = 0;
     g.NavDisableHighlight = false;
     g.NavDisableMouseHover = true;

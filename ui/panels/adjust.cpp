@@ -31,8 +31,8 @@ bool slider_row(Context& context, const char* name, double& value, const char* h
 
 void draw_adjust(Context& context) {
     auto& adjust = context.state.adjust;
-    const bool went_on =
-        adjust.adjusting && !context.model.adjusting;  // another step: the next one begins from there
+    // Another step: the next one begins from there.
+    const bool went_on = adjust.adjusting && !context.model.adjusting;
     adjust.adjusting = context.model.adjusting;
     if (went_on) adjust.values = {};
     if (!folding(context, "adjust.open", "Adjust colours")) {

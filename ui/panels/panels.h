@@ -9,8 +9,8 @@
 namespace gse::ui {
 
 void draw_prompt_panel(Context& context);
-inline constexpr int FramesToBring =
-    3;  // for which what has unfolded is scrolled to: until the panel knows how long it has become
+// Frames in which an unfolded part is scrolled to: until the panel knows how long it has become.
+inline constexpr int FramesToBring = 3;
 /// Part of the labels: splats by opacity, size, colour or isolation.
 void draw_pick(Context& context);
 /// Part of the labels: colours of what is labelled.

@@ -325,7 +325,7 @@ std::string other_reach(const Context& context) {
     return context.state.prompt.source_known ? "Search" : "";
 }
 
-/// Whether text and button have room beside each other.
+/// Tells whether text and button have room beside each other.
 bool reach_in_line(const std::string& text, const std::string& other) {
     return ImGui::CalcTextSize(text.c_str()).x + ImGui::GetStyle().ItemSpacing.x + button_width(other) <=
            ImGui::GetContentRegionAvail().x;

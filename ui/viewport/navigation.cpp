@@ -36,8 +36,8 @@ int view_of(const Context& context, const Camera& shown) {
         return stored.width > 0 && stored.height > 0 &&
                same_view(fitted(stored, shown.width, shown.height), shown);
     };
-    const int chosen =
-        context.state.viewport.selected_view;  // of several at one place, it is the one that was asked for
+    // The one that was asked for, where several are at one place.
+    const int chosen = context.state.viewport.selected_view;
     if (chosen >= 0 && chosen < static_cast<int>(views.size()) && sees(static_cast<std::size_t>(chosen)))
         return chosen;
     for (std::size_t index = 0; index < views.size(); ++index)

@@ -51,7 +51,7 @@ public:
 
 private:
     std::shared_ptr<EditJob> job_;
-    // What every frame asks: a job that runs may be changing job_ itself.
+    // Asked by every frame: a job that runs may be changing job_ itself.
     edit::EditWords words_;
     bool target_read_ = false;
     std::string tuning_key_, key_;

@@ -21,10 +21,10 @@ struct ReachChoice {
 /// Painted or cut out, not found by words.
 bool made_by_hand(const NamedLabel& label);
 
-/// Whether a search corrected, or a whole label made, by hand says more than the views do.
+/// Tells whether a search corrected, or a whole label made, by hand says more than the views do.
 bool corrected_by_hand(const NamedLabel& label);
 
-/// Whether it is the label of that word: by its name, or because a search for the word made it.
+/// Tells whether it is the label of that word: by its name, or because a search for the word made it.
 bool is_label_of(const NamedLabel& label, const std::string& word);
 
 /// True when the label, and not a search, is the scope of the request. Its name is in the request's words,

@@ -27,7 +27,7 @@ public:
 
     const std::vector<PendingResult>& all() const { return results_; }
     std::optional<std::size_t> shown() const { return shown_; }
-    /// Whether the one that is shown is what the last edit came to.
+    /// Tells whether the one that is shown is what the last edit came to.
     bool shows_last() const { return shown_ && *shown_ + 1 == results_.size(); }
     /// The one that is shown, or will be once the edit that it was set aside for has come to nothing; null
     /// without any.

@@ -54,12 +54,12 @@ struct EditView {
     Mask mask;       // where the picture may change
     View view;
     std::string view_words = {};  // as in GuidanceInput
-    std::optional<double> azimuth =
-        {};  // of the camera from the thing's front, radians, positive to its left; nothing = not known
-    double elevation =
-        0;  // of the camera above the thing's horizon, radians; 0 where the azimuth is not known
-    CleanPlate backdrop =
-        {};  // the scene without what may change, its holes filled; empty unless the round draws anew
+    // Azimuth of the camera from the thing's front, radians, positive to its left; nothing = not known.
+    std::optional<double> azimuth = {};
+    // Elevation of the camera above the thing's horizon, radians; 0 where the azimuth is not known.
+    double elevation = 0;
+    // The scene without what may change, its holes filled; empty unless the round draws anew.
+    CleanPlate backdrop = {};
 };
 
 /// Orders for a round.
@@ -70,13 +70,13 @@ struct EditViewsRequest {
     std::uint64_t seed = 0;     // already mixed with the round: the only source of randomness
     bool anew = false;          // the inside of the masks becomes something else: nothing of it is to be kept
     std::string sentence = {};  // that the model is told; empty = the one that the guidance was made for
-    double guided_until =
-        0;  // steps at or below this noise level are led by the sentence alone, without the negative prompt
+    // Steps at or below this noise level are led by the sentence alone, without the negative prompt.
+    double guided_until = 0;
     bool keep = false;           // the answer is worth remembering: the same may be asked again
     bool tells_changes = false;  // EditedViews::changes are wanted where there are no outlines; they take a
                                  // decoder's pass per view
-    double noise =
-        1;  // standard deviation of the noise of a round that is `anew`; below 1 it draws nearer to the mean
+    // Standard deviation of the noise of a round that is `anew`; below 1 it draws nearer to the mean.
+    double noise = 1;
 };
 
 /// Pictures as the model would have them, and numbers for the log.

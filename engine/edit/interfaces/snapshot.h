@@ -37,8 +37,8 @@ struct EditSnapshot {
     GaussianSet base;
     std::shared_ptr<const SnapshotRows> rows;
     int iteration = 0;
-    std::shared_ptr<const RoundState> round =
-        {};  // of view guidance: what the rows are fitted to; null = nothing yet
+    // State of view guidance: what the rows are fitted to; null = nothing yet.
+    std::shared_ptr<const RoundState> round = {};
     SnapshotFinish finish = {};
 
     /// Rows of the edited set.

@@ -14,8 +14,8 @@ struct VoxelRegion {
     std::vector<Vec3> shell;    // those with a free face, which alone are seen; empty = not known
     double side = 0;            // of a cube, world units
     double agreement = 0;       // mean share, of the views that see the cubes, whose mask covers them
-    std::string origin =
-        "none";  // "attention" or the place: "top", "front", "neck", "around", "beside", "left", ...
+    // "attention" or the place: "top", "front", "neck", "around", "beside", "left", ...
+    std::string origin = "none";
     bool empty() const { return centres.empty(); }
 };
 

@@ -10,19 +10,18 @@
 namespace gse::edit {
 namespace {
 
-// Of a redrawn picture that pixel is the thing whose attention is CertainShare of the threshold (or half-way
-// from it to the most there is), or PossibleShare of it where the picture differs from what is behind the
-// thing. Attention alone either reaches beyond the thing or leaves out parts of it (a mushroom's stem); the
-// difference alone takes shadows along.
+// Attention of a pixel that shows the object, as a share of the threshold, or half-way from it to the
+// largest. PossibleShare is enough where the picture differs from the scene behind. Attention alone reaches
+// beyond the object or misses parts (a mushroom's stem). The difference alone takes shadows along.
 constexpr double CertainShare = 1.2, PossibleShare = 0.85;
-constexpr float LeastDifference =
-    0.1f;  // of the channel that differs most: what the autoencoder loses is mostly less
-// The same where it is known what the model changed: LeastChange of it does, or CertainChange where the
-// attention is certain (a black hat before the dark). What has little attention counts little, but counts:
-// the attention often leaves out one of two wings.
+// Difference of the channel that differs most: what the autoencoder loses is mostly less.
+constexpr float LeastDifference = 0.1f;
+// Change by which a pixel shows the object, where the model's change is known. CertainChange is enough where
+// the attention is certain (a black hat before the dark). Faint attention counts at least AttentionFloor: the
+// attention often misses one of two wings.
 constexpr float LeastChange = 0.1f, CertainChange = 0.03f, AttentionFloor = 0.5f;
-constexpr double OutlineRimPx =
-    3;  // of a told outline: beyond it what is covered in part belongs to something else
+// Rim of a told outline: beyond it what is covered in part belongs to something else.
+constexpr double OutlineRimPx = 3;
 constexpr double LeastPart = 0.2;  // attention of a part beside that of the largest: a pair of wings has two
 constexpr double LeastArea = 0.002;  // of the picture
 
@@ -76,8 +75,8 @@ Mask thing_in_picture(const Image& picture, const Image& without, const Mask& in
 
 Mask changed_thing(const Image& change, const Mask& inside, const Image& map, double level) {
     const double certain = std::min(CertainShare * level, (1 + level) / 2);
-    const Image smooth =
-        mean_of_neighbours(change);  // lines along edges, which the autoencoder blurs, are no thing
+    // Lines along edges, which the autoencoder blurs, are no thing.
+    const Image smooth = mean_of_neighbours(change);
     Mask found(change.width, change.height);
     Image weight(change.width, change.height, 1);
     for (std::size_t i = 0; i < found.data.size(); ++i) {

@@ -9,8 +9,8 @@
 namespace gse::edit {
 namespace {
 
-constexpr double LeastCover =
-    0.01;  // of the picture: smaller things are not worth a redrawn view (METHOD.md, Redrawn views)
+// Share of the picture: smaller things are not worth a redrawn view (METHOD.md, Redrawn views)
+constexpr double LeastCover = 0.01;
 
 }  // namespace
 

@@ -15,15 +15,12 @@ constexpr double AttentionShare = 0.5;      // of a vote: the attention itself, 
 constexpr double AttentionLevel = 0.85;     // of the threshold: attention that counts half
 constexpr double AttentionSoftness = 0.05;  // how far from there it counts a quarter more or less
 constexpr double LeastCoverageShare = 0.2;  // of the mean coverage of the rows that are seen at all
-// Of the attention that the word draws at most in most of the views that show it. Sunglasses from behind had
-// 0.2 to 0.65, hats and scarves from any side 0.8 and more. Of ten things worn (`gseditpro-lab synth --object
-// bear --material red`, and `dog`, `white`, with every accessory in blue on seeds 81 to 90; a splat's colour
-// tells whose it is) two pairs of sunglasses were labelled with an IoU of 0.88 and 0.83 at 0.6, where ears
-// were taken for them before, the other eight as before; at 0.5 only one of the two, at 0.7 none.
+// Share of the attention that a word draws at most in most views. Views below it do not vote: sunglasses from
+// behind draw little, hats and scarves draw much from any side (METHOD.md, Label voting).
 constexpr double FaintShare = 0.6;
 constexpr double DecidingMargin = 0.5;  // another thing that has so much more takes the pixel from the mask
 
-/// Whether the attention is above a level, in [0,1].
+/// Tells whether the attention is above a level, in [0,1].
 double above(double attention, double level) {
     return 1 / (1 + std::exp((level - attention) / AttentionSoftness));
 }

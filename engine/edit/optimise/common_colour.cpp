@@ -13,8 +13,8 @@ namespace {
 constexpr double ConstantShare = 0.5;  // of the constant term: low, so that black stays black
 constexpr double FirstShare = 1.5;     // of the first axis, along which the colours change most
 constexpr double DarkestLabel = 0.1;   // darker labels count as this bright
-constexpr double LeastSpread =
-    0.03;  // of the first axis: what spreads less is noise, and is not blown up further
+// Spread of the first axis: what spreads less is noise, and is not blown up further.
+constexpr double LeastSpread = 0.03;
 
 Vec3 base_colour(const float* sh) {
     return {colour_from_sh(sh[0]), colour_from_sh(sh[1]), colour_from_sh(sh[2])};

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double SplitShrink = 1.6;
 constexpr int SplitChildren = 2;
-constexpr double GrownFactor =
-    2;  // an original splat counts as grown beyond this times its scale at load (METHOD.md, Densification)
+// An original splat counts as grown beyond this times its scale at load (METHOD.md, Densification)
+constexpr double GrownFactor = 2;
 
 }  // namespace
 

@@ -39,14 +39,14 @@ namespace {
 constexpr float SeenLabel = 0.5f;            // share of a pixel that the label must cover to be in a mask
 constexpr std::array LooksAgain{0.5, 0.75};  // shares of the iterations after which new splats are looked for
 constexpr double LeastLeft = 0.15;  // of the new splats; fewer: the model does not see the new thing yet
-constexpr double FadedLogit =
-    -6;  // opacity of what another thing takes the place of: it may come back (METHOD.md, Visual hull)
+// Logit of Gaussians that another object replaces: they may come back (METHOD.md, Visual hull).
+constexpr double FadedLogit = -6;
 // A guidance that is not finite is broken for good, not only now and then, when so many steps in a row were
 // left out and all that were are more than this share of the steps.
 constexpr std::size_t SkippedInARow = 10;
 constexpr double MostSkipped = 0.1;
-constexpr double SnapshotShare =
-    0.1;  // of the time, at most, where they come by time: those of a large scene are rarer
+// Share of the time, at most, where they come by time: those of a large scene are rarer.
+constexpr double SnapshotShare = 0.1;
 /// While training, colours below black get the full gradient of black (F18 names 0.01): what a large step has
 /// driven to black must be able to come back. WorkingSet keeps them from going further.
 constexpr float TrainingColourSlope = 1.0f;
@@ -145,7 +145,8 @@ private:
         return !result_.stopped && survives([this] { redraw(result_.iterations); });
     }
 
-    /// Whether the part went through. An error that ends it is noted, or thrown where nothing was reached.
+    /// Tells whether the part went through. An error that ends it is noted, or thrown where nothing was
+    /// reached.
     template <class Part> bool survives(Part&& part) {
         try {
             part();

@@ -34,11 +34,11 @@ struct EditResult {
     std::size_t redrawn_views = 0;       // pictures that view guidance has asked for
     double kept_chroma = -1;  // of the colour that they have, see view_agreement.h; negative = not known
     std::size_t cloned = 0, split = 0, pruned = 0;
-    std::size_t changed_outside_label =
-        0;                      // rows outside the label that differ from the base in any bit; always 0
+    // Rows outside the label that differ from the base in any bit; always 0.
+    std::size_t changed_outside_label = 0;
     std::size_t nonfinite = 0;  // labelled rows with a NaN or infinity in the result; always 0
-    std::size_t unusable_before =
-        0;                         // rows of the base that cannot be drawn (see usable_rows); never changed
+    // Rows of the base that cannot be drawn (see usable_rows); never changed.
+    std::size_t unusable_before = 0;
     std::size_t unusable = 0;      // rows of the result that cannot be drawn
     std::optional<Error> failure;  // the guidance failed for good, or a later round of view guidance; the
                                    // result is the last good state

@@ -124,8 +124,8 @@ double PreservationLoss::differentiate(const Box& work, const Box& live) {
     for (int v = work.y0; v < work.y1; ++v)
         for (int u = work.x0; u < work.x1; ++u, ++i) {
             if (u < live.x0 || u >= live.x1 || v < live.y0 || v >= live.y1) {
-                x_[i] = xx_[i] = xy_[i] =
-                    0;  // the pictures are equal in the whole window: SSIM is 1 and flat
+                // The pictures are equal in the whole window: SSIM is 1 and flat.
+                x_[i] = xx_[i] = xy_[i] = 0;
                 continue;
             }
             const float mx = x_[i], my = y_[i];

@@ -126,8 +126,8 @@ private:
     std::size_t base_size_ = 0;
     std::size_t start_count_ = 0;
     bool adding_ = false;
-    float most_opaque_ =
-        std::numeric_limits<float>::infinity();  // logit that rows of the base have at most when they join
+    // Logit that rows of the base have at most when they join.
+    float most_opaque_ = std::numeric_limits<float>::infinity();
     RowTable table_;
     std::vector<std::uint32_t> unlabelled_;  // base row of each unlabelled row, ascending
     GenerationSchedule schedule_;

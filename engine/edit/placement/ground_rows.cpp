@@ -19,11 +19,11 @@ constexpr double Thickness = 0.04;  // of the thing's height, up and down: the g
 constexpr double Around = 1.5;      // of the thing's half width: ground so far out is compared with
 constexpr double MostLow = 0.5;     // of the label: more of it is a ground itself, or as flat as one
 constexpr double Nearer = 0.5;      // distance to the ground's colour, over that to the thing's
-constexpr double Apart =
-    0.1;  // of a coefficient, 0.03 of a channel: colours of a thing nearer to a row are its own
+// Difference of coefficients (0.03 of a channel) below which a row has a colour of the object.
+constexpr double Apart = 0.1;
 constexpr std::size_t LeastGround = 20;  // rows that make a ground
-constexpr std::size_t LeastBeside =
-    5;  // of them beyond the thing's half width, in each of four quarters: a ground reaches out on all sides
+// Number of them beyond the thing's half width, in each of four quarters: a ground reaches out on all sides.
+constexpr std::size_t LeastBeside = 5;
 constexpr std::size_t MostColours = 600;  // of each that a row is compared with
 
 /// Evenly chosen ones of many.

@@ -16,8 +16,8 @@ namespace gse::edit {
 /// The upper part of a labelled thing.
 struct HeadRegion {
     std::vector<std::uint8_t> bits;  // [N]
-    double head =
-        1;  // its height, as a share of the whole thing's: the topmost part that is as high as it is wide
+    // Its height, as a share of the whole thing's: the topmost part that is as high as it is wide.
+    double head = 1;
 };
 
 /// Head of the rows that `bits` [N] label, as high as so many `heads`. All rows if no part is as high as
@@ -39,10 +39,9 @@ AttachmentTarget wearer_of(const EditRequest& request, const GaussianSet& set,
                            std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front, bool drawn,
                            const ModelTraits& traits);
 
-/// Whether something that is worn takes the place of something else that is ("crown" of "hat"): whoever wears
-/// it stays, and is shown.
+/// Tells whether a worn object replaces another worn one ("crown" for "hat"). The wearer stays and is shown.
 bool replaces_accessory(const EditRequest& request, EditMode mode);
-/// Whether it is worn elsewhere than that ("sunglasses" of "hat").
+/// Tells whether it is worn elsewhere than that ("sunglasses" of "hat").
 bool moves_worn_place(const EditRequest& request, EditMode mode);
 
 }  // namespace gse::edit

@@ -15,8 +15,8 @@ constexpr double Gap = 0.05;         // between both, of the longest side
 constexpr double IntoGround = 0.05;  // of the source's height: votes a little below the foot count
 constexpr double MostRise = 1.25;    // of the source's height: how tall what stands beside it may be
 constexpr double LeastRoom = 0.15;   // of the source's height: less below it holds nothing
-constexpr double FlatHeight =
-    0.1;  // of the source's height, of what lies at its foot where there is no room below
+// Share of the source's height, of what lies at its foot where there is no room below.
+constexpr double FlatHeight = 0.1;
 constexpr double FlatWidth = 1.3;     // of the source's own
 constexpr std::size_t FewPoints = 3;  // specks below the source are no ground
 constexpr double GroundShare = 0.9;   // of the points below the source that lie below the ground's surface

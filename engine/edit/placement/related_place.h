@@ -15,7 +15,7 @@ public:
                  const std::vector<Vec3>& others);
     /// Box in which the views vote.
     const Box& box() const { return box_; }
-    /// Whether a point of it stands in the relation to the source.
+    /// Tells whether a point of it stands in the relation to the source.
     bool allows(const Vec3& p) const;
     /// A round thing next to the source, which rests on the ground the source stands on; under a source that
     /// stands on the ground, a flat one at its foot.

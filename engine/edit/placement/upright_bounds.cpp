@@ -14,12 +14,12 @@ namespace {
 constexpr float ShownLogit = -5.5373f;  // opacity 1/255
 constexpr double FootShare = 0.2;       // of a thing's height: the part that it stands on
 constexpr double FootTrim = 0.1;        // of its rows, at either end
-constexpr double FootReach =
-    0.25;  // of the width of what is above, beyond it: a label's rows that lie farther off are ground
-constexpr double GroundReach =
-    0.25;  // of its height, up and down from its lowest rows: there is the ground that it stands on
-constexpr double StemReach =
-    0.8;  // of the larger of height and width, down, where there is none so near: a label may lack the stem
+// Share of the width of what is above, beyond it: a label's rows that lie farther off are ground.
+constexpr double FootReach = 0.25;
+// Share of its height, up and down from its lowest rows: there is the ground that it stands on.
+constexpr double GroundReach = 0.25;
+// Share of the larger of height and width, down, where there is none so near: a label may lack the stem.
+constexpr double StemReach = 0.8;
 constexpr double GroundWidth = 1.5;  // of a foot's radius: so far out its ground is looked for at least
 constexpr std::size_t LeastGroundRows = 20;  // rows that make a ground
 constexpr double FigureWidth = 0.75;         // of its width, the least that a figure is high

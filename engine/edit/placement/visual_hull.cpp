@@ -16,8 +16,8 @@ constexpr int CoarseCells = 32;         // along the longest side of the box
 constexpr int MostCells = 128;          // the same of the second grid
 constexpr double LeastHullPart = 0.02;  // of the largest connected part: flames have many small ones
 constexpr double HiddenSlack = 1.5;     // sides of a cube behind a surface: it may lie on it
-constexpr double Footprint =
-    0.75;  // half of a cube's width as it is seen, over its side: between face and corner
+// Half of a cube's width as it is seen, over its side: between face and corner.
+constexpr double Footprint = 0.75;
 
 constexpr float OutlineLevel = 0.5f;
 constexpr std::array TriedShares{0.95, 0.85, 0.75, 0.65, 0.55, 0.45};  // from strict to loose

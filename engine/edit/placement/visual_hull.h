@@ -17,8 +17,8 @@ namespace gse::edit {
 struct HullView {
     Camera camera;
     Image inside;  // [H,W,1] in [0,1]: 1 = the pixel shows the thing
-    Image surface =
-        {};  // [H,W,1] depth along z of what else is there, 0 = nothing; empty = nothing hides the thing
+    // [H,W,1] depth along z of what else is there, 0 = nothing; empty = nothing hides the thing.
+    Image surface = {};
     Image picture = {};  // [H,W,3] the thing's colours; for hull_seeds()
 };
 

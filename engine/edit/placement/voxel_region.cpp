@@ -155,7 +155,7 @@ VoxelRegion around_region(const Frame& frame, const std::vector<Vec3>& points, i
     });
 }
 
-/// Whether a neighbour by a face is not among the cells (1 in `inside`).
+/// Tells whether a neighbour by a face is not among the cells (1 in `inside`).
 bool on_surface(const Grid& grid, const std::vector<std::uint8_t>& inside, std::size_t cell) {
     const auto nx = static_cast<std::size_t>(grid.count[0]), ny = static_cast<std::size_t>(grid.count[1]);
     const std::array<std::size_t, 3> at{cell % nx, cell / nx % ny, cell / (nx * ny)}, step{1, nx, nx * ny};
@@ -273,8 +273,8 @@ VoxelRegion vote_region(const RegionSearch& search, const RegionParameters& para
     };
     if (search.threads != nullptr) search.threads->parallel_for(levels.size(), 1, some);
     else some(0, levels.size(), 0);
-    const auto chosen =
-        std::max_element(matches.begin(), matches.end());  // of equal ones the smallest region
+    // Choice: of equal ones the smallest region.
+    const auto chosen = std::max_element(matches.begin(), matches.end());
     return chosen == matches.end() || *chosen <= 0
                ? VoxelRegion{}
                : candidates[static_cast<std::size_t>(chosen - matches.begin())];
@@ -328,8 +328,8 @@ GaussianData seed_splats(const VoxelRegion& region, int count, int sh_degree, st
 
 Mask region_mask(const VoxelRegion& region, const Camera& camera, const Image* depth) {
     Mask mask(camera.width, camera.height);
-    constexpr double Corner =
-        0.71;  // half the diagonal of a face of side 1: neighbours leave no gap, and reach little beyond
+    // Half the diagonal of a face of side 1: neighbours leave no gap, and reach little beyond.
+    constexpr double Corner = 0.71;
     // A ray that meets an inner cube meets one of the shell before, and what is drawn of a cube reaches as
     // far as the corners of a face.
     for (const auto& centre : region.shell.empty() ? region.centres : region.shell) {

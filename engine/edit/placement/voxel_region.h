@@ -36,13 +36,13 @@ struct RegionParameters {
     double least_agreement = 0.5;   // share of the views that see the best cube that must cover it
     double lowest_agreement = 0.4;  // of all regions above which the one is taken that matches the masks best
     double level_step = 0.05;
-    double least_covered =
-        0.45;  // share of the views in which the cube is in the mask: few that see it prove little
+    // Share of the views in which the cube is in the mask: few that see it prove little.
+    double least_covered = 0.45;
     double least_seen = 0.2;    // share of the views in which the cube is not hidden behind the surface
     double most_volume = 0.35;  // of the searched box: a larger region means the maps agree on nothing
     int least_cells = 6;
-    double least_part =
-        0.1;  // of the largest connected part: smaller ones are dropped (flames above a wide cap are)
+    // Share of the largest connected part: smaller ones are dropped (flames above a wide cap are)
+    double least_part = 0.1;
 };
 
 /// Votes a grid of cubes around the source with the masks; empty when the masks do not agree on a place.

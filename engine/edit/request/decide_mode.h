@@ -14,8 +14,8 @@ namespace gse::edit {
 std::pair<EditMode, std::string> decide_mode(const EditRequest& request,
                                              std::optional<double> target_found_share);
 
-/// Whether something is added whose place no word names ("beside the bear" does): then it can be seen by
-/// drawing it.
+/// Tells whether the place of an addition can be seen by drawing it: no word names it ("beside the bear"
+/// does).
 bool draws_place(const EditRequest& request, EditMode mode);
 
 }  // namespace gse::edit

@@ -45,7 +45,8 @@ public:
     virtual const char* process() const = 0;
     /// FieldUse bits of the settings that count.
     virtual unsigned uses() const = 0;
-    /// Whether the model draws views: they may show words that it cannot find, and are judged as they are.
+    /// Tells whether the model draws views: they may show words that it cannot find, and are judged as they
+    /// are.
     virtual bool draws_views() const = 0;
     /// Optimisation steps of an edit.
     virtual int steps(const LoopSettings& settings, EditMode mode) const = 0;
@@ -58,7 +59,7 @@ public:
                             bool drawn) const = 0;
     virtual void run(MethodRun& run, const EditRequest& request) const = 0;
 
-    /// Whether a setting with these FieldUse bits changes anything.
+    /// Tells whether a setting with these FieldUse bits changes anything.
     bool counts(unsigned field_uses) const { return field_uses == 0 || (field_uses & uses()) != 0; }
 };
 

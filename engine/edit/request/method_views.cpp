@@ -11,7 +11,8 @@
 namespace gse::edit {
 namespace {
 
-/// Whether one view is drawn before all others, for the colour of a new thing that the sentence leaves open.
+/// Tells whether one view is drawn before all others, for the colour of a new thing that the sentence leaves
+/// open.
 bool draws_key_view(const EditRequest& request, EditMode mode, bool drawn) {
     if (drawn || !round_plan(request, mode).anew) return false;
     const auto thing = new_thing(request, mode);

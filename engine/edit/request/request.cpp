@@ -23,7 +23,8 @@ std::string instruction_of(const EditRequest& request) {
 
 namespace {
 
-/// Whether a version before numbers could be unset has written the request: all of those had this field.
+/// Tells whether a version before numbers could be unset has written the request: all of those had this
+/// field.
 bool of_earlier_version(const nlohmann::ordered_json& json) {
     return json.contains(LoopSettings::RetiredFields.front().name);
 }

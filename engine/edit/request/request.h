@@ -62,9 +62,7 @@ struct SearchSettings {
     int place_views = 12;
     int place_steps = 4;
     double add_room = 0.6;
-    // Error removed of 24 additions of seeds 55 to 57 of eval, outline IoU (hulls at half of the outlines):
-    // 0.435, 0.654 with all of the noise; 0.445, 0.662 with 0.8 of it, 0.447, 0.660 with 0.6, 0.453, 0.662
-    // with 0.3, 0.455, 0.665 with 0.01. Some is left: another seed is to draw something else.
+    // METHOD.md, Drawing new things. Some noise is left: another seed is to draw something else.
     double add_noise = 0.3;
     int seed_splats = 400;
 
@@ -162,8 +160,7 @@ struct LoopSettings {
     std::string instruction;
     int edited_views = 8;
     int rounds = 1;
-    // Error removed of recolours, materials and grounds, 48 edits of seeds 55 to 58 of eval: 0.569 with 2
-    // steps, 0.593 with 3, 0.592 with 4.
+    // METHOD.md, Redrawn views.
     int view_steps = 3;
     int fit_steps = 40;
     Overridable view_strength{0.75};
@@ -174,9 +171,7 @@ struct LoopSettings {
     int add_rounds = 1;
     int shape_steps = 4;
     int shape_fit_steps = 144;
-    // Replaced things, 32 edits of seeds 55 to 58: error removed 0.36, pixels outside that changed 3.9 %,
-    // with guidance 3 in every step and strength 0.95 (a quarter more passes) 0.30 and 4.7 %; without any
-    // guidance 0.39, but cars become blobs and hats are not drawn.
+    // METHOD.md, Drawing new things.
     double shape_strength = 1;
     double shape_again_strength = 0.6;
     double shape_guided_until = UsualGuidedUntil;

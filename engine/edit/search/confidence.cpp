@@ -11,10 +11,10 @@
 namespace gse::edit {
 namespace {
 
-constexpr std::size_t LeastSplats =
-    4;  // of a thing; what views at odds have in common by chance are one or two
-constexpr double LargestLabelShare =
-    0.97;  // of what the views see, where the sentence names other things too
+// Gaussians of a thing; what views at odds have in common by chance are one or two.
+constexpr std::size_t LeastSplats = 4;
+// Share of what the views see, where the sentence names other things too.
+constexpr double LargestLabelShare = 0.97;
 
 /// Share of what is seen that all views have one opinion of: 1 when every splat is always or never inside the
 /// masks, 0 when all are half the time. The ground that is no part of the scene counts as one splat, as that
@@ -42,8 +42,8 @@ double share_of(const LabelField& field, const std::vector<std::uint8_t>& bits,
 /// Mean over the views; one that found nothing has no attention inside, one that was left out does not count.
 struct Attention {
     double inside = 0;  // share of the attention inside the masks
-    double focus =
-        0;  // attention per pixel inside, over that inside and outside: 0.5 = as strong outside as inside
+    // Attention per pixel inside, over that inside and outside: 0.5 = as strong outside as inside.
+    double focus = 0;
 };
 
 Attention attention_of(const std::vector<ViewEvidence>& views) {

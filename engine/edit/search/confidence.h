@@ -46,7 +46,7 @@ struct SearchEvidence {
     bool names_others = false;   // the sentence names other things than the word
 };
 
-/// Whether a search found its word, how surely, and if it did not: why, and what to do.
+/// Verdict on a search: found or not, how surely, and if it was not: the reason and the remedy.
 struct SearchVerdict {
     Confidence confidence;
     SearchProblem problem = SearchProblem::None;

@@ -45,10 +45,10 @@ constexpr double LeastLead = 0.005;  // of a front by words: below, fronts are a
 /// Least lead of a front by viewpoints, in nats per picture. By judgement on drawn and photographed scenes
 /// (`gseditpro-lab bench clip`).
 constexpr double LeastGain = 1.5;
-constexpr double SureGain =
-    2.5;  // 26 readings of drawn scenes have 2.7 to 5.3 (`eval --seed 55`), of photographed ones at most 2.2
-constexpr double Sharpness =
-    4;  // of how likely a front is: pictures that count for themselves, as neighbours err alike
+// Lead of a sure front by viewpoints, in nats per picture (`gseditpro-lab bench clip`).
+constexpr double SureGain = 2.5;
+// Sharpness of how likely a front is: pictures that count for themselves, as neighbours err alike.
+constexpr double Sharpness = 4;
 constexpr double LeastShare = 1e-3;  // of a sector: one picture alone rules nothing out
 
 /// Least lead of the two nearest sectors.

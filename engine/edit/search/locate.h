@@ -40,8 +40,8 @@ struct LocateInput {
     const std::vector<std::uint8_t>* label = nullptr;
     std::vector<std::string> known = {};                 // words of the model; empty = it takes any
     std::vector<double> azimuths = {}, elevations = {};  // per view, as in EditView, or empty
-    std::optional<StudioBackground> ground =
-        {};  // what the networks are shown where the scene has nothing; none = its background
+    // Ground that the networks are shown where the scene has nothing; none = its background.
+    std::optional<StudioBackground> ground = {};
     ModelTraits traits = {};
 };
 
@@ -61,11 +61,11 @@ struct LocateTools {
     Segmenter* segmenter = nullptr;
     TextSegmenter* text_segmenter = nullptr;
     JobControl job;
-    VocabularyRanker* recognition =
-        nullptr;                   // null: whether pictures show a word is judged by its attention alone
+    // null: whether pictures show a word is judged by its attention alone.
+    VocabularyRanker* recognition = nullptr;
     LocateCache* cache = nullptr;  // may be null
-    ThreadPool* threads =
-        nullptr;  // views are segmented side by side: only for segmenters that allow it; may be null
+    // Views are segmented side by side: only for segmenters that allow it; may be null.
+    ThreadPool* threads = nullptr;
     /// Told of every view as it is attended, and again once its mask is made; views of one search come in any
     /// order, and from several threads. May be empty.
     std::function<void(std::size_t view, const ViewEvidence& evidence)> seen = {};

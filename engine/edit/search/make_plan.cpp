@@ -14,8 +14,8 @@
 namespace gse::edit {
 namespace {
 
-constexpr float SurelyIt =
-    0.9f;  // of a map: towards a thing's rim its colour is in part that of what is behind it
+// Level of a map: towards a thing's rim its colour is in part that of what is behind it.
+constexpr float SurelyIt = 0.9f;
 
 /// Colour of the new object in the pictures that show its place.
 std::string colour_of_drawn(const LocateResult& located, const std::vector<std::string>& known) {

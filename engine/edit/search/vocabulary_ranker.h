@@ -1,4 +1,4 @@
-// Whether pictures show what a word means, by the model's own picture encoder.
+// Tells whether pictures show what a word means, by the model's own picture encoder.
 #pragma once
 
 #include <map>
@@ -18,7 +18,7 @@ public:
     /// `score` null or an empty list of words: nobody can tell.
     VocabularyRanker(std::unique_ptr<ImageTextEncoder> score, std::vector<std::string> known);
     bool available() const { return compares() && !known_.empty(); }
-    /// Whether the model can compare pictures with sentences at all.
+    /// Tells whether the model can compare pictures with sentences at all.
     bool compares() const { return score_ != nullptr; }
     /// ImageTextEncoder::viewpoint(); needs compares().
     std::vector<float> viewpoint(const Image& picture);

@@ -25,14 +25,14 @@ namespace gse::edit {
 namespace {
 
 constexpr std::size_t RecognisedViews = 6;  // pictures that are compared with words
-constexpr double IslandShare =
-    0.05;  // of a thing that goes: what hangs in the air without it (a bumper) and is no more
-constexpr double AtOdds =
-    0.6;  // IoU of a view's mask and the common label, below which the view is asked again
+// Share of a thing that goes: what hangs in the air without it (a bumper) and is no more.
+constexpr double IslandShare = 0.05;
+// IoU of a view's mask and the common label, below which the view is asked again.
+constexpr double AtOdds = 0.6;
 constexpr std::uint64_t FirstAsking = 5000;
 constexpr std::uint64_t SecondAsking = 9000;  // other noise than the first time
-// Of the threshold (at most half-way from it to the most there is): attention of what is not there yet
-// reaches wider than what will be.
+// Multiple of the threshold, at most half-way from it to the largest value. Attention of an object that is
+// not there yet reaches wider than the object will.
 constexpr double AbsentLevel = 1.2;
 
 void take_mask(ViewEvidence& view, WordMask found) {

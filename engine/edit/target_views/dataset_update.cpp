@@ -47,7 +47,7 @@ DatasetUpdate::DatasetUpdate(const EditPlan& plan, const EditRequest& request, c
       anew_(shapes != nullptr), rounds_(plan, request, *tools.views, shapes, tools.known),
       key_(redraw_key(request, plan.mode, tools.redraw_key)) {}
 
-/// Whether the edit goes on in the middle of this round, with the same settings from the same cameras.
+/// Tells whether the edit goes on in the middle of this round, with the same settings from the same cameras.
 bool DatasetUpdate::resumes(const RoundState& start, const std::vector<std::size_t>& visible) const {
     const int round = std::min(tools_.start->iteration / request_.fit_steps, request_.rounds - 1);
     if (start.key != key_ || start.round != round) return false;

@@ -29,7 +29,7 @@ public:
     void choose(const std::vector<std::size_t>& visible);
     /// Views of the plan that the fit uses, ascending; at least one.
     std::vector<std::size_t> fitted() const;
-    /// Whether a round begins with this iteration.
+    /// Tells whether a round begins with this iteration.
     bool begins(int iteration) const { return rounds_.begins(iteration); }
     /// Has the views redrawn as the rows show them now; a new thing is laid over what the rows of
     /// `unlabelled` show. Returns what the model tells. Throws Error (Cancelled, Model).
@@ -38,7 +38,7 @@ public:
     /// Does what the artist says, as long as there are orders. The last view that is used is not dropped, and
     /// one that cannot be redrawn once more stays as it is. Throws Error (Cancelled).
     void take_orders();
-    /// Whether a round was redrawn, or taken over from an earlier run.
+    /// Tells whether a round was redrawn, or taken over from an earlier run.
     bool has_views() const { return state_ != nullptr; }
     /// The round's views before and after.
     const ViewTargets& sheet() const { return sheet_; }

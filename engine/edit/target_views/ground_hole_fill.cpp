@@ -86,7 +86,7 @@ struct Square {
     }
 };
 
-/// Whether the views bear it out that there is a surface at the point.
+/// Tells whether the views bear it out that there is a surface at the point.
 bool borne_out(const std::vector<EditView>& views, const Vec3& point, double slack) {
     std::size_t agree = 0, against = 0;
     for (const auto& view : views) {

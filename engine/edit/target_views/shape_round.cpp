@@ -20,11 +20,10 @@
 namespace gse::edit {
 namespace {
 
-constexpr double LeastFramedAdded =
-    0.5;  // views frame what something is added to: a tall hat reaches out of some
-// Of an outline's pixel. Of 24 additions of seeds 55 to 57 of eval a level of .5 removes .453 of the error,
-// .4 .459, .3 .457; thin parts are missed more often than drawn too wide. Of what becomes another .5 and .4
-// are alike.
+// Views frame what something is added to: a tall hat reaches out of some.
+constexpr double LeastFramedAdded = 0.5;
+// Share of a pixel that an outline of an addition covers. Thin parts are missed more often than drawn too
+// wide (METHOD.md, Drawing new things).
 constexpr double LevelOfAdded = 0.4;
 constexpr std::size_t LeastOutlines = 3;  // fewer do not enclose a space
 /// The rim of a thing is part of a pixel.

@@ -15,8 +15,8 @@
 namespace gse::edit {
 namespace {
 
-constexpr double SameDepth =
-    0.02;  // relative difference of two depths of one point: VICA-NeRF's 1 % of the width, twice
+// Relative difference of two depths of one point: VICA-NeRF's 1 % of the width, twice.
+constexpr double SameDepth = 0.02;
 constexpr std::size_t LeastSeen = 3;  // views of a point: of two, none is the odd one
 constexpr double HardlyAnything = 4.0 / 255;
 constexpr double MostUnchanged = 0.5;  // the limits of METHOD.md, Agreement of views
@@ -24,8 +24,8 @@ constexpr double MostDisagreement = 0.2;
 constexpr double LeastChroma = 0.1;  // of views of which it can be said that they lose colour
 constexpr double LeastKept = 0.7;
 constexpr double TrustedDistance = 0.15, LeastTrust = 0.1;  // METHOD.md, Agreement of views
-constexpr double MostAtRim =
-    0.35;  // recolours and materials of `eval --seed 57` have 0.12 to 0.27 without being cut
+// Share of the change at the rim of a mask that cuts it off (METHOD.md, Agreement of views).
+constexpr double MostAtRim = 0.35;
 constexpr double MoreThanElsewhere = 1.1;  // what turns a thin thing red evenly is not cut off
 constexpr double RimCells = 2,
                  CellsPerSide = 64;  // of Stable Diffusion's latents; the same share of smaller pictures

@@ -15,8 +15,8 @@ struct ViewAgreement {
     /// Mean absolute distance of a point's colour in a view from its median over the views. Points lie in the
     /// masks and are shown by at least three views; 0 = no such point.
     double disagreement = 0;
-    double unchanged =
-        0;  // share of the views that differ from the unedited scene by hardly anything inside the mask
+    // Share of the views that differ from the unedited scene by hardly anything inside the mask.
+    double unchanged = 0;
     double at_rim = 0;     // share of the change that lies within two cells of a latent of the mask's rim
     double rim_share = 0;  // share of the masks' pixels that lie there: of thin things most
     std::map<std::string, double> scalars() const;

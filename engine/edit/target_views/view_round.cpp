@@ -26,8 +26,8 @@ Mask eroded(Mask mask, double radius_px) {
 
 constexpr double FeatherPx = 3;                // of a picture of ReferenceSide (METHOD.md, Redrawn views)
 constexpr std::uint64_t ColourStream = 39000;  // of the request's seed
-constexpr double StrengthRaise =
-    0.1;  // of redrawing that hardly changed anything (METHOD.md, Agreement of views)
+// Raise of redrawing that hardly changed anything (METHOD.md, Agreement of views)
+constexpr double StrengthRaise = 0.1;
 
 /// The pictures that the model draws, one per view; what is not finite in them is counted and stays as the
 /// scene is.

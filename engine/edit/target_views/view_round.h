@@ -43,7 +43,7 @@ public:
     /// Picks the views to redraw from those in which the edit is seen.
     void choose(const std::vector<std::size_t>& visible, const std::vector<Mask>& masks);
     const std::vector<std::size_t>& views() const { return views_; }
-    /// Whether a round begins with this iteration.
+    /// Tells whether a round begins with this iteration.
     bool begins(int iteration) const;
     int round() const { return round_; }  // -1 = none has begun
     /// Has the views redrawn, in the order of views(); `originals` of all views of the plan. Returns what the

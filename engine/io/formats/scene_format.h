@@ -31,8 +31,8 @@ struct MimeType {
     std::string expanded_acronym = {};
     std::string parent = {};  // type of which this one is a special case
     std::string alias = {};   // another name of the type
-    std::vector<std::string> magic =
-        {};  // first bytes, printable or as XML escapes them; any of them suffices
+    // First bytes, printable or as XML escapes them; any of them suffices.
+    std::vector<std::string> magic = {};
     int magic_priority = 50;
     int weight = 50;       // of the name's ending against other types with the same one
     bool own_icon = true;  // false where other programs' files have the type too
@@ -56,8 +56,8 @@ struct SceneFormat {
     std::string name;                     // "compressed.ply": of SaveOptions::format and SceneInfo::format
     std::string title;                    // "compressed PLY": in sentences
     std::vector<std::string> extensions;  // ".compressed.ply"
-    std::vector<std::string> file_names =
-        {};  // "meta.json": files that stand for a folder's scene, first wins
+    // "meta.json": files that stand for a folder's scene, first wins.
+    std::vector<std::string> file_names = {};
     MimeType mime;
 
     /// True when the content begins like this format. Never throws. Null when only the name tells the format.

@@ -20,8 +20,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double ClearChange =
-    0.1;  // difference of display values that an artist sees as "something was added here"
+// Difference of display values that an artist sees as "something was added here".
+constexpr double ClearChange = 0.1;
 
 EvalViews ring(const synth::SynthScene& scene, int count, double offset, int side) {
     EvalViews ring;

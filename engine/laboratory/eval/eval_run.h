@@ -23,8 +23,8 @@ struct EvalParameters {
     bool ablations = false;
     int ablation_edits = 6;
     bool drawn_words = false;
-    double success_direction =
-        0.25;  // pictures in which something else changed score about 0.2 (`bench clip`)
+    // Above the scores of pictures in which something else changed (`gseditpro-lab bench clip`).
+    double success_direction = 0.25;
     int sheet_rows = 6;
 
     template <class Self, class F> static void visit_fields(Self& self, F&& f) {

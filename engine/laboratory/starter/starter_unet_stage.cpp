@@ -24,8 +24,8 @@ namespace gse::training {
 namespace {
 
 constexpr int TrainTimesteps = 1000;
-constexpr double MostOutsideAreas =
-    3;  // areas of the part that count as its outside in the balance of the place loss
+// Areas of the part that count as its outside in the balance of the place loss.
+constexpr double MostOutsideAreas = 3;
 
 /// One replica's batch.
 struct Batch {
@@ -119,14 +119,14 @@ struct AttentionLosses {
 /// Losses of one captured layer; probabilities [B,heads,hw,T].
 AttentionLosses layer_losses(const AttentionCapture::Map& map, const Batch& batch) {
     const auto probabilities = map.probabilities.to(torch::kFloat).mean(1);  // [B,hw,T]
-    auto coverage =
-        torch::adaptive_avg_pool2d(batch.coverage, {map.height, map.width}).flatten(2);  // [B,3,hw]
-    const auto area = coverage.sum(2);                                                   // [B,3]
+    // [B,3,hw].
+    auto coverage = torch::adaptive_avg_pool2d(batch.coverage, {map.height, map.width}).flatten(2);
+    const auto area = coverage.sum(2);                                                               // [B,3]
     const auto named = (batch.words.sum(1) > 0).to(torch::kFloat) * (area > 0.5).to(torch::kFloat);  // [B,3]
     const auto count = named.sum().clamp_min(1.0);
 
-    const auto together =
-        torch::bmm(probabilities, batch.words).transpose(1, 2).clamp(1e-4, 1 - 1e-4);  // [B,3,hw]
+    // [B,3,hw].
+    const auto together = torch::bmm(probabilities, batch.words).transpose(1, 2).clamp(1e-4, 1 - 1e-4);
     const auto outside = 1 - coverage;
     const auto inside_loss = -(coverage * together.log()).sum(2) / area.clamp_min(1e-3);
     // The balance is bounded: with full balance a small part would be allowed many times its area of false

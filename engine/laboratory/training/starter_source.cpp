@@ -30,8 +30,8 @@ struct Shot {
     Vec3 aside;              // of its middle, in its diagonals
     std::optional<synth::Part> restyled;  // the part that the edit gives another look
     bool more = false;                    // of synth::more_object_words() and so on
-    double squeeze =
-        1;  // of pictures: what is restyled may have other proportions than all that there is to learn from
+    // Squeeze of pictures: what is restyled may have other proportions than all that there is to learn from.
+    double squeeze = 1;
 };
 
 constexpr double MostClose = 0.7;  // distance of a close camera, where a thing is 1 high
@@ -236,8 +236,8 @@ struct SceneBefore {
         const auto given = scene.scene.gaussians.opacity_logit();
         opacity_logit.assign(given.begin(), given.end());
         room.above = !replaced;
-        share =
-            replaced ? random.uniform(0.1, 0.3) : random.uniform(0.3, 0.8);  // something worn reaches beyond
+        // Something worn reaches beyond.
+        share = replaced ? random.uniform(0.1, 0.3) : random.uniform(0.3, 0.8);
         const auto positions = scene.scene.gaussians.position();
         for (std::size_t row = 0; row < opacity_logit.size(); ++row) {
             if (scene.parts[row] != synth::Part::Object) continue;

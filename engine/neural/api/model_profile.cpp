@@ -20,8 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t LeastSdWidth =
-    320;  // channels of the UNet's first level; every Stable Diffusion has them
+// Channels of the UNet's first level; every Stable Diffusion has them.
+constexpr std::int64_t LeastSdWidth = 320;
 constexpr std::int64_t Sd2TextWidth = 1024;
 
 /// Machine settings that a model states.

@@ -244,8 +244,8 @@ void Tokenizer::set_special_token(const std::string& token, std::int64_t& target
     const auto id = id_of(token);
     if (id < 0) return;
     target = id;
-    added_[token] =
-        id;  // the reference matches special tokens anywhere: with padding "!" every "!" is token 0
+    // The reference matches special tokens anywhere: with padding "!" every "!" is token 0.
+    added_[token] = id;
 }
 
 void Tokenizer::read_added_tokens(const std::filesystem::path& folder) {

@@ -14,8 +14,8 @@ namespace gse::neural {
 /// config.json of the folder "viewpoint".
 struct ViewpointConfig {
     std::int64_t image_size = 64;
-    std::int64_t sectors =
-        24;  // of the full turn; the first is centred on the front, the next lie to the left
+    // Sectors of the full turn; the first is centred on the front, the next lie to the left.
+    std::int64_t sectors = 24;
     std::vector<std::int64_t> widths = {
         24, 48, 96, 128};  // channels; each level has half the pixels per side of the one before
     std::int64_t hidden = 160;

@@ -90,10 +90,10 @@ protected:
 /// Options of some samplers; the others ignore them.
 struct SamplerOptions {
     double eta = 0;  // share of fresh noise: DDIM's eta, TCD's gamma
-    double strength =
-        1;  // LCM, TCD: image to image begins at this share of their table; see image_to_image()
-    std::int64_t original_steps =
-        0;  // LCM, TCD: of the solver they were distilled from; 0 = as the configuration says
+    // LCM, TCD: image to image begins at this share of their table; see image_to_image()
+    double strength = 1;
+    // LCM, TCD: of the solver they were distilled from; 0 = as the configuration says.
+    std::int64_t original_steps = 0;
     bool any_level = false;  // TCD: visits every timestep, not only the solver's
 };
 

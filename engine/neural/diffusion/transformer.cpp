@@ -91,8 +91,8 @@ torch::Tensor TransformerBlockImpl::forward(torch::Tensor tokens, const torch::T
                         std::max(site.height, site.width) <= site.capture->self_attention_side;
     auto normed = norm1->forward(tokens);
     if (site.together > 1)
-        normed =
-            normed.reshape({tokens.size(0) / site.together, -1, tokens.size(2)});  // the tokens of all views
+        // The tokens of all views.
+        normed = normed.reshape({tokens.size(0) / site.together, -1, tokens.size(2)});
     const auto attended = attn1->forward(normed, normed, affine);
     if (affine) store_affinity(attended.probabilities, site);
     tokens = tokens + attended.output.reshape(tokens.sizes());

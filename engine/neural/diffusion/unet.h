@@ -26,8 +26,8 @@ struct AttentionCapture {
     bool conditional_half_only = false;  // the batch is [negative; positive]: keep the second half
     bool keep_graph = false;             // gradients flow through the kept probabilities
     bool stop_after_last = false;        // the pass ends after the last wanted layer and predicts nothing
-    std::int64_t self_attention_side =
-        0;  // above 0: keeps `affinities` of wanted layers of at most that side
+    // Above 0: keeps `affinities` of wanted layers of at most that side.
+    std::int64_t self_attention_side = 0;
     /// Filter of layers; empty = all.
     std::function<bool(std::string_view layer, std::int64_t height, std::int64_t width)> wants;
 
@@ -43,8 +43,8 @@ struct AttentionCapture {
 struct SceneViews {
     std::int64_t together = 1;   // consecutive rows of the batch that show one scene; divides the batch
     torch::Tensor cameras = {};  // [B,camera_dim]; undefined = nothing is known of them
-    torch::Tensor inpaint =
-        {};  // [B,inpaint_channels,h,w], inpainting(); undefined = they are not shown what was there
+    // [B,inpaint_channels,h,w], inpainting(); undefined = they are not shown what was there.
+    torch::Tensor inpaint = {};
     /// Receives the outline of the new object where not null: logits [B,1,s h,s w] in fp32, s =
     /// outline_scale. One network predicts a picture and its transparency (Zhang and Agrawala 2024). Networks
     /// without outlines leave it alone.

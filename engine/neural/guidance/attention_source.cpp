@@ -22,11 +22,11 @@ const std::vector<double> PresentLevels{0.45};
 const std::vector<double> AbsentLevels{0.85};
 constexpr double AbsentStrength = 0.9;      // img2img must begin at least this noisy for an absent thing ...
 constexpr double AbsentLowestLevel = 0.75;  // ... and only steps above this level are looked at
-constexpr std::int64_t LargestAffinitySide =
-    32;                              // 1024 x 1024 numbers per head and picture (METHOD.md, Attention maps)
+// 1024 x 1024 numbers per head and picture (METHOD.md, Attention maps)
+constexpr std::int64_t LargestAffinitySide = 32;
 constexpr int QueriesPerThread = 4;  // prepared together: a stop request waits for them
-constexpr std::int64_t BatchPixels =
-    64 * 64;  // latent cells per UNet call: one SD image, 16 of the starter's
+// Latent cells per UNet call: one SD image, 16 of the starter's.
+constexpr std::int64_t BatchPixels = 64 * 64;
 
 bool any_prefix(std::string_view name, const std::vector<std::string>& prefixes) {
     return std::any_of(prefixes.begin(), prefixes.end(),
@@ -71,8 +71,8 @@ AttentionAccumulator::AttentionAccumulator(std::int64_t size, std::int64_t colum
 
 void AttentionAccumulator::take(std::vector<AttentionCapture::Map>& maps) {
     for (const auto& map : maps) {
-        auto mean =
-            map.probabilities.to(torch::kCPU, torch::kFloat32).mean(torch::IntArrayRef{0, 1});  // [hw,k]
+        // [hw,k].
+        auto mean = map.probabilities.to(torch::kCPU, torch::kFloat32).mean(torch::IntArrayRef{0, 1});
         mean = mean.t().reshape({1, sum_.size(0), map.height, map.width});
         if (map.height != sum_.size(1) || map.width != sum_.size(2))
             mean = torch::upsample_bicubic2d(mean, {sum_.size(1), sum_.size(2)}, false).clamp_min(0);

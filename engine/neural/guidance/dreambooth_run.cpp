@@ -19,8 +19,8 @@
 namespace gse::neural {
 namespace {
 
-constexpr std::int64_t ClassBatch =
-    4;  // class pictures sampled at once; fixed, so that threads change nothing
+// Class pictures sampled at once; fixed, so that threads change nothing.
+constexpr std::int64_t ClassBatch = 4;
 constexpr std::int64_t ProbeCount = 16;  // noise levels of the losses before and after
 constexpr std::int64_t ProbeBatch = 4;
 

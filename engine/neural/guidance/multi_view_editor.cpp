@@ -18,10 +18,10 @@
 namespace gse::neural {
 namespace {
 
-constexpr std::int64_t PixelsAtOnce =
-    8 * 64 * 64;  // of a batch of views: more would not fit with large models
-constexpr std::int64_t TurboLevels =
-    4;  // noise levels that a Turbo model was trained at (Sauer et al. 2023, section 4)
+// Pixels of a batch of views: more would not fit with large models.
+constexpr std::int64_t PixelsAtOnce = 8 * 64 * 64;
+// Noise levels that a Turbo model was trained at (Sauer et al. 2023, section 4)
+constexpr std::int64_t TurboLevels = 4;
 constexpr std::uint64_t FreshNoiseStream = 1;  // of a round's seed: noise between the steps
 /// Noise level above which an LCM's picture has little to do with the render. The decoder's loss on the
 /// render says nothing about it then (METHOD.md, Few-step models).
@@ -175,8 +175,8 @@ DiffusionViewEditor::Batch DiffusionViewEditor::prepare(const std::vector<edit::
         batch.behind = torch::cat(behind);
         batch.inpaint = inpainting(may_change, torch::ones_like(may_change), batch.behind);
     }
-    const bool edits =
-        takes_picture(bundle_->unet->config());  // such a model is told what to do, not what there is
+    // Such a model is told what to do, not what there is.
+    const bool edits = takes_picture(bundle_->unet->config());
     batch.contexts =
         contexts(views, edits || input.sentence.empty() ? prompt_ : input.sentence, shown_scene(input));
     if (edits)

@@ -304,8 +304,8 @@ TextEncoderConfig infer_text_config(const SafetensorsFile& file, SingleFileText 
     config.num_attention_heads = std::max<std::int64_t>(1, config.hidden_size / HeadWidth);
     if (open_clip) {
         config.hidden_act = "gelu";
-        config.num_hidden_layers -=
-            1;  // Stable Diffusion 2 takes the layer before the last, then the final norm
+        // Stable Diffusion 2 takes the layer before the last, then the final norm.
+        config.num_hidden_layers -= 1;
     }
     return TextEncoderConfig::from_json(config.to_json(), file.path());
 }

@@ -100,8 +100,8 @@ torch::Tensor LoraFactor::change_of(const torch::Tensor& weight) const {
     const auto left = up.to(torch::kFloat32).flatten(1), right = down.to(torch::kFloat32).flatten(1);
     if (!mid.defined()) return (left.mm(right) * scale()).view(weight.sizes());
     // out x rank, rank x rank x kernel, rank x in: one matrix product on either side of the middle.
-    const auto rows =
-        left.mm(mid.to(torch::kFloat32).flatten(1)).view({left.size(0), mid.size(1), -1});  // [out,r,kk]
+    // [out,r,kk].
+    const auto rows = left.mm(mid.to(torch::kFloat32).flatten(1)).view({left.size(0), mid.size(1), -1});
     return (rows.transpose(1, 2).matmul(right).transpose(1, 2) * scale())
         .reshape(weight.sizes());  // [out,in,kk]
 }
@@ -182,8 +182,8 @@ void merge_lora(torch::nn::Module& network, const std::vector<LoraFactor>& facto
     for (const auto& factor : factors) layers.insert(factor.layer);
     const bool apart =
         layers.size() == factors.size() && (weights.empty() || weights.begin()->second.device().is_cpu());
-    const std::int64_t threads =
-        apart ? batch_threads() : 1;  // layers are of all sizes: each takes every n-th
+    // Layers are of all sizes: each takes every n-th.
+    const std::int64_t threads = apart ? batch_threads() : 1;
     parallel_for_batches(threads, apart, [&](std::int64_t begin, std::int64_t end) {
         for (auto first = begin; first < end; ++first)
             for (auto i = static_cast<std::size_t>(first); i < factors.size();

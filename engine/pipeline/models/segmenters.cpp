@@ -177,8 +177,8 @@ public:
         : words_(std::move(words)), clicks_(std::move(clicks)) {}
 
     std::pair<Mask, double> segment(const Image& image, const std::string& noun) override {
-        constexpr double least_agreement =
-            0.5;  // IoU from which both are taken to mean the same thing; by judgement
+        // IoU from which both are taken to mean the same thing; by judgement.
+        constexpr double least_agreement = 0.5;
         auto found = words_->segment(image, noun);
         if (found.second < edit::LeastTextScore || found.first.count() == 0) return found;
         auto sharp = clicks_->segment(image, {}, edit::bounds_of(found.first), {});

@@ -30,8 +30,8 @@ std::shared_ptr<const Image> masked_picture(const Image& render, const Mask& mas
 }
 
 SeenView refreshed(SeenView shown, const edit::ViewEvidence& evidence) {
-    const bool made =
-        !evidence.mask.data.empty() || evidence.failed;  // else the view is only attended so far
+    // Else the view is only attended so far.
+    const bool made = !evidence.mask.data.empty() || evidence.failed;
     shown.mask = made ? std::make_shared<const Mask>(evidence.mask) : nullptr;
     shown.mask_picture = made ? masked_picture(evidence.render, evidence.mask) : nullptr;
     shown.points = evidence.points;

@@ -63,7 +63,7 @@ public:
     /// The quality of pictures that were judged before; none of a strategy that was not tried.
     const std::optional<EditQuality>& quality() const { return tried_[at_].quality; }
 
-    /// Whether these pictures are the ones to use; else the strategy is another one.
+    /// Tells whether these pictures are the ones to use; else the strategy is another one.
     bool accepts(const EditQuality& quality);
     /// The model could draw no pictures; false where no strategy is left, else the strategy is another one.
     bool skips();

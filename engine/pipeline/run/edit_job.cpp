@@ -30,8 +30,8 @@ namespace gse::pipeline {
 namespace {
 
 constexpr std::size_t InstanceViews = 12;  // renders a tuning learns from (METHOD.md, DreamBooth: 8 to 16)
-constexpr double NearInstance =
-    0.6;  // share of the fitted distance of every other one, where views are automatic
+// Share of the fitted distance of every other one, where views are automatic.
+constexpr double NearInstance = 0.6;
 
 /// The first label of a scene file.
 std::vector<std::uint8_t> label_of(const Scene& scene, const std::filesystem::path& path) {

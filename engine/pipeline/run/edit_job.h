@@ -25,10 +25,10 @@ struct EditJobInput {
     std::vector<View> cameras;  // fewer than LeastViewpoints = an orbit is fitted
     std::shared_ptr<neural::TextToImage> model;
     std::vector<std::uint8_t> label = {};  // [N] made by hand: says where when the words do not; empty = none
-    std::vector<std::string> view_words =
-        {};  // one for each of `cameras` where it is known; else from the recipe's front
-    std::optional<neural::TunedModel> tuned =
-        {};  // what another job learned of this scene for these words and settings
+    // One for each of `cameras` where it is known; else from the recipe's front.
+    std::vector<std::string> view_words = {};
+    // Tuning that another job learned of this scene for these words and settings.
+    std::optional<neural::TunedModel> tuned = {};
     std::vector<std::string> said = {};  // words that the scene is known to show: no news
     Segmenters segmenters = {};
 };
@@ -49,7 +49,7 @@ public:
     /// found, looks again. With a label made by hand, a word that the model does not know is not looked for,
     /// and one that is not found does no harm. A search that comes to nothing is a result too: see found().
     void locate();
-    /// Whether something may change: located().problem says why not.
+    /// Tells whether something may change: located().problem says why not.
     bool found() const { return located_->found(); }
     /// Labels what an unsure search found all the same.
     void locate_anyway();
@@ -70,7 +70,7 @@ public:
     /// Runs the edit loop.
     void run(const EditObserver& observer = {});
     /// Runs a plain loop of that many steps, for its time; where views lead it, that many are redrawn first.
-    /// Of a large scene on a part of the splats, see probe_scene().
+    /// Size of a trial run. Large scenes are tried on a part of the Gaussians, see probe_scene().
     struct ProbeSize {
         int steps = 1, edited_views = 1, view_steps = 1;
         bool early = false;  // only redraws, as in a round that is not the last; no step follows
@@ -114,14 +114,14 @@ public:
     std::size_t questions() const { return workplace_->questions(); }
     /// Cost of drawing the place of an added object, out of that.
     const PlaceCost& place_cost() const { return workplace_->place_cost(); }
-    /// Whether the model is shown the scene where something new is drawn.
+    /// Tells whether the model is shown the scene where something new is drawn.
     bool supports_scene_conditioning() const { return workplace_->model().supports_scene_conditioning(); }
     bool supports_appearance_editing() const {
         return recipe_.guidance.restyle && workplace_->model().supports_appearance_editing();
     }
     /// Segmenter of the job.
     std::string segmenter_name() const { return workplace_->segmenter().name(); }
-    /// Whether the pictures said which word is new, and not the recipe.
+    /// Tells whether the pictures said which word is new, and not the recipe.
     bool target_read() const { return located_->target_read; }
     bool automatic_views() const { return views_->automatic; }
     /// Orbit around what was edited, for films.

@@ -21,7 +21,7 @@ constexpr double LeastScore = 0.25;
 /// those of most edits of synthetic scenes.
 constexpr double LeastLikeness = 0.4;
 
-/// Whether the sentence got a word that the model draws and its encoder does not know.
+/// Tells whether the sentence got a word that the model draws and its encoder does not know.
 bool says_what_is_drawn_only(const neural::TextToImage& model, const std::string& before,
                              const std::string& told) {
     const auto drawn = model.drawn_words();

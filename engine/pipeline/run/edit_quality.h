@@ -1,4 +1,4 @@
-// Whether pictures that the model drew show what the sentence says, by the model's own image-text encoder.
+// Judgement of drawn pictures against the sentence, by the model's own image-text encoder.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -64,7 +64,7 @@ edit::EditTools tools_of(const SceneEdit& scene_edit, const edit::EditRequest& r
     tools.snapshot_seconds = observer.snapshot_seconds;
     tools.new_label = observer.new_label;
     tools.start = observer.start ? &*observer.start : nullptr;
-    // What the words did not find, their attention does not follow either.
+    // Attention does not follow an object that the words did not find.
     const bool lost = located.by_label() && located.result.mode == edit::EditMode::Modify;
     tools.attention = lost ? nullptr : &attention;
     tools.segmenter = &segmenter;

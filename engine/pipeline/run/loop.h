@@ -18,12 +18,12 @@ struct EditObserver {
     double snapshot_seconds = 0;  // above 0: time between snapshots, instead of the request's iterations
     edit::IterationCallback iteration;
     std::optional<edit::EditSnapshot> start = {};  // goes on from there
-    std::function<std::optional<std::vector<std::uint8_t>>()> new_label =
-        {};  // these three: see edit::EditTools
+    // These three: see edit::EditTools.
+    std::function<std::optional<std::vector<std::uint8_t>>()> new_label = {};
     std::function<void(const edit::ViewTargets&)> targets = {};
     std::function<std::vector<edit::TargetOrder>()> target_orders = {};
-    std::function<void(const EditQuality&, const edit::ViewTargets&)> judged =
-        {};  // once, of the first views that were redrawn
+    // Once, of the first views that were redrawn.
+    std::function<void(const EditQuality&, const edit::ViewTargets&)> judged = {};
 };
 
 /// Outcome for the scene. A value.

@@ -39,17 +39,17 @@ constexpr double StepBack = 1.2;  // of the distance, where what was drawn does 
 constexpr double CutShares[] = {
     0.6, 1};  // of the views, from which that is so, a step each: a wing may reach out of some views; every
               // step draws the thing once more, and the second is worth it only where no view shows all of it
-constexpr double CutRim =
-    1.0 / 7;  // of a picture's side: covered so far along its rim a thing is cut off there
+// Share of a picture's side. An object that covers its rim so far is cut off there.
+constexpr double CutRim = 1.0 / 7;
 constexpr double WholeShare = 0.5;    // of the views that may cut off what is seen whole
 constexpr double SameFraming = 0.05;  // of the distance: a nearer framing shows the same
-constexpr double SameFramingWorn =
-    0.12;  // the same where something is drawn that is worn: every look costs as much as an edit does
+// SameFraming for a worn addition: every look costs as much as an edit does.
+constexpr double SameFramingWorn = 0.12;
 constexpr double WearerSize = 3;   // of what it wears: a hat is a third of a figure
 constexpr double SameThing = 0.2;  // IoU of what a glance found and of what is found from nearer; share of a
                                    // label among what was found
-constexpr double MostBack =
-    1.25;  // of the distance of a sure glance: what would be framed from farther off is no thing
+// Multiple of the distance of a sure glance. Anything that would be framed from farther off is no object.
+constexpr double MostBack = 1.25;
 constexpr std::size_t FrontViews = 12;  // in which the front of a scene is looked for
 
 /// Room for an addition around the source; beside it more than on it.
@@ -66,7 +66,7 @@ bool is_cut(const Mask& mask) {
     return rim >= CutRim * std::max(mask.width, mask.height);
 }
 
-/// Whether what was looked for goes on beyond the pictures in that share of the views.
+/// Tells whether what was looked for goes on beyond the pictures in that share of the views.
 bool is_cut_off(const edit::LocateResult& result, double share) {
     double seen = 0, cut = 0;
     for (const auto& view : result.views) {
@@ -87,14 +87,14 @@ double common(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t
                            [](auto first, auto second) { return std::size_t{first != 0 && second != 0}; }));
 }
 
-/// Whether two searches for one word found the same splats, roughly.
+/// Tells whether two searches for one word found the same splats, roughly.
 bool same_thing(const edit::LocateResult& a, const edit::LocateResult& b) {
     const auto &first = *thing_of(a).bits, &second = *thing_of(b).bits;
     const double both = common(first, second);
     return both >= SameThing * (common(first, first) + common(second, second) - both);
 }
 
-/// Whether a fair share of what is labelled by hand is among what was found.
+/// Tells whether a fair share of what is labelled by hand is among what was found.
 bool holds_some(const Label& found, const std::vector<std::uint8_t>& by_hand) {
     return common(*found.bits, by_hand) >= SameThing * common(by_hand, by_hand);
 }
@@ -226,8 +226,8 @@ private:
         if (const auto thing = edit::edit_sentence(request).replacement();
             hints_.target_open && !thing.empty())
             targets = {thing};
-        // What is only drawn the encoder is not told: it is new where the scene shows all else that the
-        // sentence says.
+        // The encoder is not told words that are only drawn: they are new where the scene shows all else that
+        // the sentence says.
         const auto known = workplace_.model().known_words(),
                    said = language::promptable_vocabulary(
                        known, edit::with_dyes(workplace_.model().drawn_words(), known));
@@ -354,8 +354,8 @@ private:
                    language::vocabulary_contains(workplace_.model().known_words(), thing);
         });
         if (wearer == things.end()) return {};
-        request.prompt =
-            edit::edit_sentence(recipe_.request).before();  // of what is new the scene shows nothing
+        // The scene shows nothing of the new words.
+        request.prompt = edit::edit_sentence(recipe_.request).before();
         request.target = recipe_.request.source;
         request.source = *wearer;
         request.mode = "modify";
@@ -403,8 +403,8 @@ private:
         if (!glance.sure()) return moved_in(views_on(glance.orbit, recipe_), {});
         const auto mode = edit::decide_mode(recipe_.request, std::nullopt).first;
         const auto focused = focused_on(glance.result.label, mode, glance.orbit, views_.front);
-        const bool frames =
-            focused.radius < MostBack * glance.orbit.radius;  // a thing; a ground is seen as well from here
+        // A thing; a ground is seen as well from here.
+        const bool frames = focused.radius < MostBack * glance.orbit.radius;
         const Views views = views_on(frames ? focused : glance.orbit, recipe_);
         Located near = framed_as_figure(mode) && frames
                            ? moved_in(views, {})

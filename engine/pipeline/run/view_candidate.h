@@ -35,7 +35,7 @@ public:
     void draw();
     const std::optional<edit::ViewTargets>& sheet() const { return sheet_; }
     const std::optional<Error>& failure() const { return failure_; }
-    /// Whether the drawn views show what was asked.
+    /// Tells whether the drawn views show what was asked.
     EditQuality judge() const;
     /// Fits the scene to the drawn views. Throws as edit::Optimiser does.
     Edited fit();

@@ -25,8 +25,8 @@ constexpr int LongestSide = 512;      // pixels of the picture: GrabCut takes a 
 constexpr double Surroundings = 0.5;  // of the box's sides, that the picture shows around it
 constexpr double MostEnlarged = 4;    // of the screen's pixels
 constexpr float Opaque = 0.5f;        // alpha
-constexpr double Beside =
-    0.02;  // of the picture's longer side: so far beside the outline splats may be the thing's
+// Share of the picture's longer side: Gaussians that far beside the outline may be the object's.
+constexpr double Beside = 0.02;
 
 /// The part of the view around the area.
 struct Section {
@@ -189,7 +189,7 @@ Mask level_with(const Mask& mask, const raster::ForwardOutput& picture, double f
     return level;
 }
 
-/// Whether a row's centre lies in the mask or just beside it.
+/// Tells whether a row's centre lies in the mask or just beside it.
 bool centred(const GaussianSet& set, std::size_t row, const Camera& camera, const Mask& mask) {
     const auto positions = set.spans().position;
     const Vec3 at = camera.to_camera({positions[row * 3], positions[row * 3 + 1], positions[row * 3 + 2]});
@@ -292,8 +292,8 @@ std::vector<std::uint8_t> cut_out(const GaussianSet& set, const CutOutRequest& r
     if (!section) return std::vector<std::uint8_t>(set.size(), 0);
     Painter painter;
     auto settings = request.settings;
-    const raster::ForwardOutput& painted =
-        painter.paint(set.spans(), section->camera, settings);  // the painter's own: the last picture
+    // The painter's own: the last picture.
+    const raster::ForwardOutput& painted = painter.paint(set.spans(), section->camera, settings);
     settings.background = telling_background(painted, settings.background);
     if (settings.background != request.settings.background)
         painter.paint(set.spans(), section->camera, settings);

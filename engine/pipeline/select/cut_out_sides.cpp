@@ -24,8 +24,8 @@ constexpr double Gap = 0.1;   // of its longer side: what lies farther behind it
 constexpr double Half = 0.5;  // of what a pixel shows, or of a row's votes
 constexpr double LeastSeen = 0.3;       // of the candidates' pixels: less where something stands in the way
 constexpr double LeastAgreement = 0.4;  // IoU of outline and expectation
-constexpr float Unseen =
-    0.6f;  // how probably a row that no view has shown yet is the thing's: above a half, its other sides are
+// How probably a row that no view has shown yet is the thing's: above a half, its other sides are.
+constexpr float Unseen = 0.6f;
 
 /// Places of the views: turned from the first one about the vertical, and raised. Those next to known sides
 /// come first.
@@ -158,8 +158,8 @@ private:
 void take_in_crumbs(const GaussianSet& set, const std::vector<std::uint8_t>& candidates, const Bounds& bounds,
                     std::vector<std::uint8_t>& rows) {
     constexpr double cell_share = 0.03, around = 0.25,
-                     most =
-                         0.05;  // of the longest side; of the thing's rows: more of them are something else
+                     // Shares of the longest side, and of the object's rows: more of them are something else.
+        most = 0.05;
     const Vec3 sides = bounds.high - bounds.low;
     const double longest = std::max({sides[0], sides[1], sides[2]});
     if (!(longest > 0)) return;
@@ -221,8 +221,8 @@ std::vector<Camera> cameras_around(const SeenThing& seen, const Bounds& bounds) 
     const double elevation = std::asin(std::clamp(dot(from, up), -1.0, 1.0));
     Vec3 level = from - up * dot(from, up);
     if (length(level) < 1e-3)
-        level =
-            up * dot(seen.camera.rotation.row(1), up) - seen.camera.rotation.row(1);  // seen from right above
+        // Seen from right above.
+        level = up * dot(seen.camera.rotation.row(1), up) - seen.camera.rotation.row(1);
     level = normalized(level);
     const Vec3 side = cross(up, level);
     std::vector<Camera> cameras;
@@ -313,7 +313,7 @@ private:
         painter_.rasterizer().forward_values(set.spans(), camera, settings_, values, image);
         return image;
     }
-    /// Whether something stands in the way of most of the candidates.
+    /// Tells whether something stands in the way of most of the candidates.
     bool hidden(const Camera& camera, const Mask& possible) {
         const Mask whole = above_half(shown(alone_, camera, ones_));
         std::size_t pixels = 0, seen = 0;

@@ -17,8 +17,8 @@ struct Grid {
     }
 };
 
-inline constexpr std::size_t SharedBytes =
-    48 * 1024;  // what every CUDA device has without being asked for more
+// Shared memory that every CUDA device has without being asked for more.
+inline constexpr std::size_t SharedBytes = 48 * 1024;
 
 /// One value of each thread of the block.
 template <class T> struct PerThread {

@@ -20,8 +20,8 @@ namespace {
 constexpr double ImageLimit = 2e-5;
 constexpr double DepthLimit = 2e-4;
 constexpr double GradientLimit = 2e-4;
-constexpr double ContributionLimit =
-    1e-3;  // ambiguous pixels are not left out here, and each may move one weight of 1/255
+// Ambiguous pixels are not left out here, and each may move one weight of 1/255.
+constexpr double ContributionLimit = 1e-3;
 
 constexpr int CheckWidth = 75, CheckHeight = 53;  // whole and cut tiles
 

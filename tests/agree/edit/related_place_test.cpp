@@ -19,8 +19,8 @@ namespace {
 using namespace gse;
 
 constexpr int Side = 64, Views = 12;
-/// Share of the source's size by which a region's centre may pass its bounds: a thing touches what it stands
-/// beside, and what lies at its foot lies on the ground's uneven surface.
+/// Share of the source's size by which a region's centre may pass its bounds. An object touches its
+/// neighbour, and one at its foot lies on the ground's uneven surface.
 constexpr double Touching = 0.08;
 constexpr double Near = 0.15;  // of the source's height, between where all views look and where the region is
 

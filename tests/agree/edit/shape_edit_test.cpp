@@ -237,8 +237,8 @@ DOCTEST_TEST_CASE("a thing becomes another: the outline, the colours, and nothin
         DOCTEST_CHECK(figures.outline_iou > 0.85);
         DOCTEST_CHECK(figures.error_removed > 0.7);
         DOCTEST_CHECK(figures.psnr_outside_db > 35);
-        DOCTEST_CHECK(std::count(result.hidden.begin(), result.hidden.end(), std::uint8_t{1}) ==
-                      0);  // all of the ground is there
+        // All of the ground is there.
+        DOCTEST_CHECK(std::count(result.hidden.begin(), result.hidden.end(), std::uint8_t{1}) == 0);
         DOCTEST_CHECK(result.changed_outside_label == 0);
         DOCTEST_CHECK(result.nonfinite == 0);
         DOCTEST_REQUIRE(run.views.inputs.size() == static_cast<std::size_t>(run.request.shape_rounds));

@@ -38,8 +38,8 @@ Case hat_case() {
     spec.accessory_colour = "red";
     c.target = synth::generate(spec).scene.gaussians;
     for (const auto part : c.scene.parts) c.hat.push_back(part == synth::Part::Accessory ? 1 : 0);
-    GaussianData faint =
-        c.scene.scene.gaussians.to_data();  // every seventh row of the hat goes at the first occasion
+    // Every seventh row of the hat goes at the first occasion.
+    GaussianData faint = c.scene.scene.gaussians.to_data();
     for (std::size_t row = 0; row < c.hat.size(); ++row)
         if (c.hat[row] != 0 && row % 7 == 0) faint.opacity_logit[row] = -8;
     c.scene.scene.gaussians = GaussianSet(std::move(faint));

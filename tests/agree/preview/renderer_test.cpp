@@ -1,4 +1,4 @@
-// What the renderer does around the picture: skipping, slices, new scenes, picking, depth, far worlds.
+// The renderer around the picture: skipping, slices, new scenes, picking, depth, far worlds.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 

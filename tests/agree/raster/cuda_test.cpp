@@ -39,8 +39,8 @@ DOCTEST_TEST_CASE("contributions and composited values of the CUDA kernels agree
         plain->contributions(spans(data), camera, c.settings, mask, true_masked, true_total);
         emulated->contributions(spans(data), camera, c.settings, mask, masked, total);
         DOCTEST_CHECK(test::relative_l2(masked, true_masked) < test::ContributionTolerance);
-        constexpr double ambiguity_tolerance =
-            1e-3;  // the total is also of the pixels that are left out of the mask
+        // The total is also of the pixels that are left out of the mask.
+        constexpr double ambiguity_tolerance = 1e-3;
         DOCTEST_CHECK(test::relative_l2(total, true_total) < ambiguity_tolerance);
         Random random(5);
         std::vector<float> values(data.size());

@@ -1,5 +1,5 @@
-// A view session against rendering in full: bit-identical while the rows of an edit move, split, go and are
-// labelled anew, for every budget, and near to the plain double version.
+// A view session against rendering in full. Bit-identical while the rows of an edit move, split, go and are
+// labelled anew, for every budget; near to the plain double version.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -118,7 +118,7 @@ private:
     Pictures found_, expected_;
 };
 
-/// What happens to the rows of an edit, one after the other.
+/// Puts the rows of an edit through all changes, one after the other.
 void live_through(Comparison& comparison, Rows rows, std::uint64_t seed) {
     Random random(seed);
     comparison.check(rows);

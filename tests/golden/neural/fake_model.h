@@ -1,4 +1,4 @@
-// What the cases of samplers share: the function that stands in for a network, and the comparison of
+// Shared parts of the cases of samplers: the function that stands in for a network, and the comparison of
 // trajectories.
 #pragma once
 
@@ -9,7 +9,7 @@ namespace gse::test {
 // Of the cases' README files.
 constexpr double TrajectoryRelative = 1e-4, TrajectoryAbsolute = 1e-4;
 
-/// What stands in for a network: linear * x + sine * sin(frequency * x + t / period).
+/// Stand-in for a network: linear * x + sine * sin(frequency * x + t / period).
 struct FakeModel {
     explicit FakeModel(const neural::Json& stated)
         : linear(stated.at("linear").get<double>()), sine(stated.at("sine").get<double>()),

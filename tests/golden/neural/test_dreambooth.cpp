@@ -35,7 +35,7 @@ struct Setup {
     bool present() const {
         return golden.present && unet.present && vae.present && text.present && pipeline.present;
     }
-    /// What case.json states of the run.
+    /// Parameters that case.json states of the run.
     DreamBoothParameters parameters() const {
         DreamBoothParameters parameters;
         parameters.learning_rate = stated.at("learning_rate").get<double>();

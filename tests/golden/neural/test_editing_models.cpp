@@ -163,8 +163,8 @@ void check_instruction_run(Margins& margins, const BundleFolder& folder, const G
                  io.tensor(name + ".image"), EditedImage);
 }
 
-/// A ReLU whose input rounds to the other side of zero changes the gradient in its receptive field. Which
-/// ones do depends on the processor's order of summation: 131 of 18,432 elements on one, none on others.
+/// A ReLU whose input rounds to the other side of zero changes the gradient in its receptive field. The
+/// processor's order of summation decides which ones do.
 constexpr double KinkedShare = 0.02;   // elements that may be beyond the tolerance
 constexpr double KinkedError = 0.005;  // of the whole gradient, relative in the Euclidean norm
 
@@ -206,7 +206,7 @@ void check_tiny(Margins& margins, const TinyAutoencoder& tiny, const Safetensors
     margins.near_relative("z_out", tiny->decode(io.tensor("z_in")), io.tensor("z_out"), OutputTolerance);
 }
 
-/// The same weights under the names of diffusers, as key_map.tsv says.
+/// Writes the weights under the names of diffusers, as key_map.tsv says.
 void write_diffusers_names(const GoldenCase& golden, const std::filesystem::path& folder) {
     NamedTensors tensors;
     std::ifstream table(golden.folder / "key_map.tsv");

@@ -145,7 +145,7 @@ void check_untouched(const Merged& merged, const Merged& base, const std::vector
     compare(*merged.text, *base.text, "text_encoder.");
 }
 
-/// What io.safetensors holds of one merge: outputs, and some weights.
+/// Checks one merge against io.safetensors: outputs, and some weights.
 void check_outputs(Margins& margins, const LoraCase& lora, const Merged& merged, const SafetensorsFile& io,
                    const std::string& stem) {
     const torch::NoGradGuard no_grad;

@@ -3,8 +3,8 @@
 
 namespace gse::test {
 
-constexpr double CumprodTolerance =
-    2e-6;  // absolute, of alphas_cumprod: the references multiply in single precision
+// Absolute, of alphas_cumprod: the references multiply in single precision.
+constexpr double CumprodTolerance = 2e-6;
 constexpr double OutputTolerance = 2e-5;    // of the largest value, of a network's output
 constexpr double GradientTolerance = 2e-4;  // of the tensor's largest value
 

@@ -158,8 +158,8 @@ DOCTEST_TEST_CASE("a few bad steps in a row, and many that are rare, do not end 
     };
     DOCTEST_CHECK(skipped([](int step) { return step >= 20 && step < 29; }) == 9);
     DOCTEST_CHECK(skipped([](int step) { return step % 2 == 0; }) == 70);
-    DOCTEST_CHECK(skipped([](int step) { return step >= 120 && step < 132; }) ==
-                  12);  // under a tenth of all by then
+    // Under a tenth of all by then.
+    DOCTEST_CHECK(skipped([](int step) { return step >= 120 && step < 132; }) == 12);
 }
 
 DOCTEST_TEST_CASE("steps that are left out are not rest") {

@@ -18,8 +18,8 @@ namespace {
 
 using namespace gse;
 
-constexpr double LeastGain =
-    0.5;  // of the way to the target that an edit goes although a part of its steps is left out
+// Share of the way to the target that an edit goes although a part of its steps is left out.
+constexpr double LeastGain = 0.5;
 
 struct Quiet {
     Quiet() { log::set_level(log::Level::Off); }
@@ -185,7 +185,7 @@ private:
     Random random_;
 };
 
-/// Whether every row outside the label is in the result, bit for bit.
+/// Tells whether every row outside the label is in the result, bit for bit.
 bool outside_is_kept(const GaussianSet& base, const std::vector<std::uint8_t>& label,
                      const edit::EditResult& result) {
     for (std::size_t row = 0; row < base.size(); ++row) {
@@ -308,8 +308,8 @@ DOCTEST_TEST_CASE("a search whose attention is broken in places finds what it fi
         std::size_t others = 0;
         for (std::size_t row = 0; row < scene.set.size(); ++row)
             others += (*found.label.bits)[row] != (*expected.label.bits)[row] ? 1 : 0;
-        constexpr std::size_t few =
-            8;  // of 400 rows: a broken pixel at the rim moves a view's mask by as much
+        // Rows of 400 rows: a broken pixel at the rim moves a view's mask by as much.
+        constexpr std::size_t few = 8;
         DOCTEST_CHECK(others <= few);
     }
 }

@@ -72,7 +72,7 @@ struct Paths {
     } catch (...) { _exit(3); }
 }
 
-/// What a session said before it died.
+/// Words of a session before it died.
 struct Announced {
     int autosaved = -1, autosaving = -1, saved = -1, saving = -1;
     bool in_flight = false;

@@ -23,8 +23,8 @@ struct Tolerance {
     double picture, gradient, row;
 };
 
-// What single precision gives where nothing is special: a thousand pairs of 6e-8 each at worst; a gradient's
-// row behind nearly opaque ones loses digits, as what lies behind a pair is what the pixel's sum leaves over.
+// Error of single precision where nothing is special: a thousand pairs of 6e-8 each at worst. A gradient's
+// row behind nearly opaque ones loses digits: the sum of the pixel leaves over little for it.
 constexpr Tolerance Usual{1e-5, 5e-4, 5e-2};
 constexpr double FlippedPairs = 3.0 / 255;  // at unclear pixels: a few pairs on either side of a cut
 

@@ -1,4 +1,4 @@
-// What a chosen model brings with it, and what it learns of a scene, in the artist's window.
+// Settings that a chosen model brings with it, and tunings that it learns of a scene, in the artist's window.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-// What an edit may change: the label on the screen where it is about the words, else what a search finds.
+// Scope of an edit: the label on the screen where it is about the words, else the result of a search.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 

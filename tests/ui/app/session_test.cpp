@@ -176,8 +176,8 @@ DOCTEST_TEST_CASE(
     app.run(command::ApplyResult{});
     const auto recipe = nlohmann::ordered_json::parse(app.document().state().stack[0].recipe);
     DOCTEST_CHECK(recipe["request"]["target"] == "snow");
-    typed.prompt =
-        "a bear on the sand";  // another sentence: what was read of the last one says nothing of it
+    // Another sentence: what was read of the last one says nothing of it.
+    typed.prompt = "a bear on the sand";
     app.run(command::SetRequest{typed});
     session.until([&] { return app.model().read_target.empty(); }, 5);
     DOCTEST_CHECK(app.model().read_target.empty());
@@ -215,8 +215,8 @@ DOCTEST_TEST_CASE("a running edit pauses, shows snapshots, is cancelled and keep
     ui::ScreenRegion stroke;
     stroke.circles = {{160, 120}};
     stroke.radius_px = 5;  // part of the bear, which is small in the home view
-    DOCTEST_REQUIRE(session.app.document().state().active_label >=
-                    0);  // the edit's own search shows what it found
+    // The edit's own search shows what it found.
+    DOCTEST_REQUIRE(session.app.document().state().active_label >= 0);
     const auto active = static_cast<std::size_t>(session.app.document().state().active_label);
     const auto before = *session.app.document().state().labels[active].bits;
     session.app.run(command::Select{stroke, ui::SetOperation::Remove, true});
@@ -235,8 +235,8 @@ DOCTEST_TEST_CASE("a running edit pauses, shows snapshots, is cancelled and keep
         outside +=
             before[row] != 0 && corrected[row] == 0 && shown.sh()[row * 3] != base.sh()[row * 3] ? 1 : 0;
     DOCTEST_CHECK(outside == 0);
-    DOCTEST_CHECK(session.app.model().gate.pictures.size() ==
-                  4);  // what the model makes of it was shown first
+    // The model's pictures were shown first.
+    DOCTEST_CHECK(session.app.model().gate.pictures.size() == 4);
     session.app.run(command::TakeSnapshot{session.app.model().snapshots.front().iteration});
     session.app.run(command::ApplyResult{});
     DOCTEST_CHECK(session.app.document().state().stack.size() == 1);
@@ -437,8 +437,8 @@ DOCTEST_TEST_CASE("a search is known after a restart, unless the cache was clear
     DOCTEST_CHECK(start([](app::Application& app) { DOCTEST_CHECK(app.model().cache_bytes > 0); }) == 0);
     DOCTEST_CHECK(start([](app::Application& app) { app.run(command::ClearCache{}); }) == first);
     DOCTEST_CHECK(start([](app::Application& app) { app.run(command::SetCacheMb{0}); }) == first);
-    DOCTEST_CHECK(start([](app::Application& app) { DOCTEST_CHECK(app.model().cache_mb == 0); }) ==
-                  first);  // it is remembered
+    // It is remembered.
+    DOCTEST_CHECK(start([](app::Application& app) { DOCTEST_CHECK(app.model().cache_mb == 0); }) == first);
     DOCTEST_CHECK(fs::is_empty(folder.path() / "answers"));
     setenv("GSE_CACHE_DIR", "/dev/null", 1);
 }

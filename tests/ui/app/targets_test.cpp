@@ -1,5 +1,5 @@
-// Redrawn views in the application: the edit waits for the artist, takes what is said, and branches go on
-// with what was redrawn; what an edit was estimated to take beside what it took.
+// Redrawn views in the application: the edit waits for the artist and takes orders. Branches go on with
+// redrawn views. Estimates stand beside the time that edits took.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 

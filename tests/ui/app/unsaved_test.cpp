@@ -1,5 +1,5 @@
-// Work that is not saved: kept when the program ends in the middle of an edit, offered again, gone when it
-// was saved or given up; folders that hold scenes; exports that write over nothing.
+// Unsaved work: kept when the program ends in the middle of an edit, offered again, gone when it was saved or
+// given up. Folders that hold scenes; exports that write over nothing.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 

@@ -12,7 +12,7 @@
 
 namespace gse::test {
 
-/// What the window may be in.
+/// Situations of the window.
 enum class Situation { Nothing, Scene, Located, Editing, ResultWaiting, Failed };
 
 /// An offer to recover work in SCENE.ply.

@@ -192,8 +192,8 @@ void FakeApplication::take(const command::SetComparison& one) { model_.compariso
 
 void FakeApplication::take(const command::LookThrough& one) {
     const int width = std::max(model_.viewport_width, 1), height = std::max(model_.viewport_height, 1);
-    model_.camera =
-        fitted(document_->state().views[one.view].camera, width, height);  // as the application does
+    // As the application does.
+    model_.camera = fitted(document_->state().views[one.view].camera, width, height);
 }
 
 void FakeApplication::take(const command::SetRequest& one) { model_.request = one.request; }

@@ -1,4 +1,4 @@
-// What a frame of the panels costs: the window has to leave the processor to the edit that runs beside it.
+// Cost of a frame of the panels: the window has to leave the processor to the edit that runs beside it.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 

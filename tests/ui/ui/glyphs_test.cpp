@@ -10,8 +10,8 @@
 namespace gse::test::glyphs_test {
 namespace {
 
-constexpr const char* Mixed =
-    "b\xC3\xA4r \xE7\x86\x8A \xF0\x9F\x90\xBB";  // bär, the Chinese bear, the emoji bear
+// bär, the Chinese bear, the emoji bear.
+constexpr const char* Mixed = "b\xC3\xA4r \xE7\x86\x8A \xF0\x9F\x90\xBB";
 
 std::optional<ui::PaintedGlyph> square(char32_t, float size_px) {
     ui::PaintedGlyph glyph;

@@ -1,5 +1,5 @@
-// The contact sheet of redrawn views: what is shown of them, what can be said about them and when, by mouse
-// and by keys; and what the prompt says of settings that the method does not use.
+// The contact sheet of redrawn views: pictures, and orders about them by mouse and by keys. The prompt about
+// settings that the method does not use.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 

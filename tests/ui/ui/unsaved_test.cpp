@@ -1,4 +1,4 @@
-// What would lose work asks first, in words that say what becomes of it; offers to have work back.
+// Actions that would lose work ask first and say what becomes of it; offers to have work back.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 

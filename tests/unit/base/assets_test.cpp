@@ -1,4 +1,4 @@
-// Where the program finds its own files.
+// Places where the program finds its own files.
 #include "engine/base/assets.h"
 
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES

@@ -34,7 +34,7 @@ struct Settings {
     template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         f("steps", self.steps, "Steps.", Range{1, 10});
         f("rate", self.rate, "Rate.");
-        f("on", self.on, "Whether.");
+        f("on", self.on, "On or off.");
         f("word", self.word, "Word.");
     }
 };

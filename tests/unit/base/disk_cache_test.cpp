@@ -199,8 +199,8 @@ DOCTEST_TEST_CASE(
         waitpid(child, &status, 0);
         DOCTEST_CHECK((WIFEXITED(status) && WEXITSTATUS(status) == 0));
     }
-    DOCTEST_CHECK(cached_bytes(folder.path()) <=
-                  4 * 120000);  // each process knows its own writes at once, those of others later
+    // Each process knows its own writes at once, those of others later.
+    DOCTEST_CHECK(cached_bytes(folder.path()) <= 4 * 120000);
     DiskCache cache(folder.path(), 120000);
     for (int i = 0; i < 7; ++i) cache.keep(fmt::format("last {}", i), answer_of(20000, i));
     DOCTEST_CHECK(cached_bytes(folder.path()) <= 120000);

@@ -1,4 +1,4 @@
-// What files and users can do to the basics: files cut off while they are read, deep JSON, control
+// Hostile files and users against the basics: files cut off while they are read, deep JSON, control
 // characters, numbers that are none, and more memory than there is.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
@@ -38,7 +38,7 @@ struct Numbers {
         f("rate", self.rate, "Rate.", Range{0, 1});
         f("share", self.share, "Share.", Range{0, 0.1});
         f("free", self.free, "Any.");
-        f("on", self.on, "Whether.");
+        f("on", self.on, "On or off.");
         f("seed", self.seed, "Seed.");
         f("word", self.word, "Word.");
     }

@@ -29,7 +29,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-/// What the calls below do: the n-th rename kills the process or fails.
+/// Fault of the calls below: the n-th rename kills the process or fails.
 struct Fault {
     int at = 0;    // 0 = never
     int code = 0;  // errno, or 0 to kill

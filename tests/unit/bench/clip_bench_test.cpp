@@ -21,8 +21,8 @@ using namespace gse::pipeline;
 // in 1 of 11 and 1 of 12 cases, and changes would point the right way in half of them.
 constexpr double ClearMajority = 0.75;
 constexpr double NearlyAlways = 0.9;
-constexpr double BetterThanGuessing =
-    0.3;  // of shapes; 64 pixels and few samples tell twelve objects apart badly
+// Share of shapes; 64 pixels and few samples tell twelve objects apart badly.
+constexpr double BetterThanGuessing = 0.3;
 
 /// An encoder that sees nothing.
 struct BlindScore : edit::ImageTextEncoder {

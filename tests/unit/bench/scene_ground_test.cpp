@@ -1,4 +1,4 @@
-// Whether drawn scenes count as things on a ground.
+// Tells whether drawn scenes count as things on a ground.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 

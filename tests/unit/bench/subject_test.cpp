@@ -36,7 +36,7 @@ std::filesystem::path fresh_folder(const std::string& name) {
     return folder;
 }
 
-/// Whether the page asks for anything that is not in it.
+/// Tells whether the page asks for anything that is not in it.
 bool refers_elsewhere(const std::string& html) {
     for (const char* word : {"http:", "https:", "href", "url(", "@import", "<script", "<link", "<iframe"})
         if (html.find(word) != std::string::npos) return true;

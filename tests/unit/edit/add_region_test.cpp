@@ -1,4 +1,4 @@
-// Where new things go: votes of masks, anchors, seeds.
+// Places of new objects: votes of masks, anchors, seeds.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -179,8 +179,8 @@ DOCTEST_TEST_CASE("of all levels of agreement the one is taken whose silhouettes
     const Search middle(centre, 0.08);
     for (std::size_t v = 0; v < setup.masks.size(); v += 3) setup.masks[v] = middle.masks[v];
     const auto region = edit::vote_region(setup.search());
-    const auto whole =
-        edit::vote_region(Search(centre, 0.2).search());  // the grid is that of the source, the same in both
+    // The grid is that of the source, the same in both.
+    const auto whole = edit::vote_region(Search(centre, 0.2).search());
     DOCTEST_REQUIRE_FALSE(whole.empty());
     const double share =
         static_cast<double>(region.centres.size()) / static_cast<double>(whole.centres.size());
@@ -267,8 +267,8 @@ DOCTEST_TEST_CASE("beside is the side with room, under is below what floats and 
         return mean;
     };
     search.relation = language::Relation::Beside;
-    const auto beside =
-        edit::usual_region(search, "hat");  // what usually sits on top does not, where the sentence says so
+    // The sentence moves an accessory that usually sits on top.
+    const auto beside = edit::usual_region(search, "hat");
     DOCTEST_CHECK(beside.origin == "beside");
     DOCTEST_CHECK(middle(beside).x < -0.95);
     search.relation = language::Relation::Right;

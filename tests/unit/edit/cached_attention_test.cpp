@@ -1,4 +1,4 @@
-// The same question is asked once; any difference in it is another question.
+// A question is asked once; any difference in it makes another question.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 

@@ -110,18 +110,18 @@ DOCTEST_TEST_CASE("a thing that comes has its usual colour where the sentence te
     DOCTEST_CHECK(language::with_usual_colour("a frog on the grass", "frog", sayable, usual) ==
                   "a green frog on the grass");
     DOCTEST_CHECK(language::with_usual_colour("a red frog", "frog", sayable, usual) == "a red frog");
-    DOCTEST_CHECK(language::with_usual_colour("a big frog", "frog", sayable, usual) ==
-                  "a big green frog");  // which says nothing to the model
+    // "big" says nothing to the model.
+    DOCTEST_CHECK(language::with_usual_colour("a big frog", "frog", sayable, usual) == "a big green frog");
     DOCTEST_CHECK(language::with_usual_colour("a frog made of wood", "frog", sayable, usual) ==
                   "a frog made of wood");
     DOCTEST_CHECK(language::with_usual_colour("a cat", "cat", sayable, usual) == "a cat");
     DOCTEST_CHECK(language::with_usual_colour("a bear with wings", "wings",
                                               {"a", "bear", "with", "wings", "white"},
                                               usual) == "a bear with white wings");
-    DOCTEST_CHECK(language::with_usual_colour("an owl", "owl", sayable, usual) ==
-                  "an owl");  // brown cannot be said
-    DOCTEST_CHECK(language::with_usual_colour("a frog", "frog", {}, usual) ==
-                  "a frog");  // a model of all words
+    // Brown cannot be said.
+    DOCTEST_CHECK(language::with_usual_colour("an owl", "owl", sayable, usual) == "an owl");
+    // A model of all words.
+    DOCTEST_CHECK(language::with_usual_colour("a frog", "frog", {}, usual) == "a frog");
 }
 
 }  // namespace colour_word_test

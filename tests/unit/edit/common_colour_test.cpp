@@ -60,8 +60,8 @@ DOCTEST_TEST_CASE("grain is painted over and the shading stays") {
     const auto birth = rows_of(colours), goal = rows_of(painted);
     edit::CommonColour common(birth, 3);
     const auto reached = led(common, birth, goal, 75);
-    constexpr double left =
-        0.08;  // measured: 0.04 along the colours' own axes as wide as they spread, 0.12 all alike
+    // Half-way between axes as wide as the colours spread, and all alike.
+    constexpr double left = 0.08;
     DOCTEST_CHECK(mean_difference(reached, goal) < left * mean_difference(birth, goal));
 }
 
@@ -104,8 +104,8 @@ DOCTEST_TEST_CASE("colours seen from anywhere follow the map of the base colours
     for (std::size_t j = 3; j < stride; j += 3) {
         const std::vector<float> row(birth.begin(), birth.begin() + static_cast<std::ptrdiff_t>(stride));
         const Vec3 seen{ShC0 * row[j], ShC0 * row[j + 1], ShC0 * row[j + 2]};
-        constexpr double part =
-            0.2;  // small enough to stay among the label's colours, beyond which the map is bounded
+        // Small enough to stay among the label's colours, beyond which the map is bounded.
+        constexpr double part = 0.2;
         const Vec3 grey{0.5, 0.5, 0.5};
         const Vec3 moved = (mapped(grey + seen * part, row) - mapped(grey, row)) / part;
         for (int c = 0; c < 3; ++c)
@@ -131,8 +131,8 @@ DOCTEST_TEST_CASE("a row of a colour the label never had gets no wild colour") {
     auto green = rows_of({{0.1, 0.9, 0.1}});
     const auto own = green;
     common.apply(own, green);
-    constexpr double reach =
-        1.5;  // a red row moves by less than one; the unbounded map would move green by dozens
+    // A red row moves by less than one; the unbounded map would move green by dozens.
+    constexpr double reach = 1.5;
     for (std::size_t c = 0; c < 3; ++c) DOCTEST_CHECK(std::abs(green[c] - own[c]) * ShC0 < reach);
 }
 
@@ -157,8 +157,9 @@ DOCTEST_TEST_CASE("grey things with coloured gloss keep a gloss of the same size
         before += std::pow(birth[i], 2);
         after += std::pow(sh[i], 2);
     }
-    constexpr double growth =
-        10;  // of the energy under pure noise: measured 5.5, and 47 were the gloss no part of the spread
+    // Bound on the growth of the energy under pure noise. It is exceeded where the gloss is no part of the
+    // spread.
+    constexpr double growth = 10;
     DOCTEST_CHECK(after < growth * before);
 }
 

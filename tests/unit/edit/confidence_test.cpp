@@ -28,7 +28,7 @@ DOCTEST_TEST_CASE("a search that is less sure than asked for is marked, with wha
     DOCTEST_CHECK(*unsure.label.bits == *found.label.bits);
     DOCTEST_CHECK(unsure.confidence.value == found.confidence.value);
     DOCTEST_CHECK_THROWS_AS(edit::require_found(unsure), Error);
-    // What is added belongs to something that must be found, too.
+    // An addition belongs to something that must be found, too.
     request = request_for("a ball with a hat", "hat");
     request.least_confidence = 1;
     const auto nowhere = edit::locate(fixture.input(request), fixture.tools());

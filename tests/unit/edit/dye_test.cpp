@@ -132,8 +132,8 @@ DOCTEST_TEST_CASE("what is drawn besides can be made and not found") {
                   "the model can draw \"rabbit\" but not find it");
     DOCTEST_CHECK(refused("bear", "a sign", "sign") ==
                   "the model does not know the word \"sign\" and cannot make it");
-    DOCTEST_CHECK(hint.find("rabbit") !=
-                  std::string::npos);  // what it draws besides is named, colours in one phrase
+    // The words that it draws besides are named, colours in one phrase.
+    DOCTEST_CHECK(hint.find("rabbit") != std::string::npos);
     DOCTEST_CHECK(hint.find("navy") == std::string::npos);
     DOCTEST_CHECK(hint.find("a colour or pattern by its name") != std::string::npos);
     DOCTEST_CHECK(edit::with_dyes({}, {}).empty());

@@ -56,7 +56,7 @@ inline std::vector<View> ball_views(int count, int side) {
     return orbit_views(orbit, count, side, side);
 }
 
-/// Where rows with a bit are seen in a view: share of alpha above one half.
+/// Pixels of a view in which rows with a bit are seen: share of alpha above one half.
 inline Mask true_mask(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Camera& camera,
                       raster::Rasterizer& rasterizer) {
     const std::vector<float> values(bits.begin(), bits.end());

@@ -41,8 +41,8 @@ protected:
     double strength_;
 };
 
-/// The same, but it has learned to tell viewpoints: shares about the azimuth, in sectors of 15 degrees, which
-/// are as sharp as it is strong.
+/// Toy encoder that has learned to tell viewpoints: shares about the azimuth, in sectors of 15 degrees, as
+/// sharp as it is strong.
 class ToyClassifier final : public ToyEncoder {
 public:
     using ToyEncoder::ToyEncoder;

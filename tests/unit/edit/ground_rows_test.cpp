@@ -1,4 +1,4 @@
-// What of a label is ground, and what is not.
+// Ground in a label, told from the object.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 

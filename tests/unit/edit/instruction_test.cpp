@@ -29,8 +29,8 @@ DOCTEST_TEST_CASE(
                   "turn the teddy bear into teddy bear wearing a hat");
     DOCTEST_CHECK(instruction_of(asked("bear", "an orange * bear")) == "turn the bear into orange bear");
     DOCTEST_CHECK(instruction_of(asked("", "a snowy garden")) == "make it snowy garden");
-    DOCTEST_CHECK(instruction_of(asked("bear", "andalusian bear")) ==
-                  "turn the bear into andalusian bear");  // no article
+    // No article.
+    DOCTEST_CHECK(instruction_of(asked("bear", "andalusian bear")) == "turn the bear into andalusian bear");
 }
 
 }  // namespace instruction_test

@@ -37,8 +37,8 @@ DOCTEST_TEST_CASE("a label at another threshold is that of a fresh vote at it") 
         ++fresh_labels;
     }
     DOCTEST_CHECK(fresh_labels >= 6);
-    DOCTEST_CHECK(wrong_by_weight >=
-                  2);  // weights that a search has rewritten are right at its threshold only
+    // Weights that a search has rewritten are right at its threshold only.
+    DOCTEST_CHECK(wrong_by_weight >= 2);
     DOCTEST_CHECK(found.found.field.probability == before);
 }
 

@@ -153,8 +153,8 @@ DOCTEST_TEST_CASE("something new is not put where only a view says that was left
     const auto located = search.run();
     DOCTEST_CHECK(located.views[Wrong].step == edit::ViewStep::LeftOut);
     DOCTEST_CHECK(located.views[Wrong].failed);
-    DOCTEST_CHECK(*located.source_label.bits !=
-                  std::vector<std::uint8_t>(located.source_label.bits->size()));  // that was found by all
+    // That was found by all.
+    DOCTEST_CHECK(*located.source_label.bits != std::vector<std::uint8_t>(located.source_label.bits->size()));
 }
 
 DOCTEST_TEST_CASE("a search tells of every view as it is attended, then with its mask") {

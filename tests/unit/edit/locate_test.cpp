@@ -155,9 +155,9 @@ DOCTEST_TEST_CASE("what another thing of the sentence attends to for sure is not
     const Quiet quiet;
     Fixture fixture;
     GreedySegmenter segmenter;
-    auto request =
-        request_for("a blue ball on the grass", "blue");  // "grass" attends to the lower half, the ball's too
-    request.label_smoothness = 0;                         // every splat for itself: the votes alone
+    // "grass" attends to the lower half, the ball's too.
+    auto request = request_for("a blue ball on the grass", "blue");
+    request.label_smoothness = 0;  // every splat for itself: the votes alone
     const auto found = edit::locate(fixture.input(request), fixture.tools(&segmenter));
     DOCTEST_CHECK(std::count_if(found.views.begin(), found.views.end(),
                                 [](const auto& view) { return view.branch == "points"; }) > 6);
@@ -379,8 +379,8 @@ DOCTEST_TEST_CASE(
     const auto& query = fixture.attention.queries.front();
     DOCTEST_CHECK(query.prompt == language::normalised_prompt(request.prompt));
     DOCTEST_CHECK(query.prompt == "a blue * beach ball on grass");
-    DOCTEST_CHECK(query.words ==
-                  std::vector<std::string>{"beach ball", "grass"});  // its head is no rival of the phrase
+    // Its head is no rival of the phrase.
+    DOCTEST_CHECK(query.words == std::vector<std::string>{"beach ball", "grass"});
     request.competing_words = "top hat, grass";
     edit::locate(fixture.input(request), fixture.tools());
     DOCTEST_CHECK(fixture.attention.queries.back().words ==

@@ -88,8 +88,8 @@ edit::EditRequest twin_request() {
     request.colour_coupling = 0;
     request.anchor_first = 0.5;
     request.anchor_colour = 20;
-    request.rate_scale = request.rate_colour = request.rate_sh = request.rate_opacity =
-        1e-3;  // far from every guard
+    // Far from every guard.
+    request.rate_scale = request.rate_colour = request.rate_sh = request.rate_opacity = 1e-3;
     request.densify_percent = 0.1;
     request.min_opacity = 0;
     return request;

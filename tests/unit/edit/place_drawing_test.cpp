@@ -1,5 +1,4 @@
-// Where something goes, by drawing it: stand-ins paint a blue ball above the red one and attend to what is
-// blue.
+// Places found by drawing: stand-ins paint a blue ball above the red one and attend to blue.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -75,8 +74,8 @@ public:
                 for (int x = 0; x < picture.width; ++x) {
                     const double away = std::hypot(x + 0.5 - u, y + 0.5 - v);
                     if (soft)
-                        outline.at(x, y, 0) =
-                            static_cast<float>(std::clamp(1.5 - away / radius, 0.0, 1.0));  // half at the rim
+                        // Half at the rim.
+                        outline.at(x, y, 0) = static_cast<float>(std::clamp(1.5 - away / radius, 0.0, 1.0));
                     if (!paints || away > radius) continue;
                     for (int c = 0; c < 3; ++c) picture.at(x, y, c) = c == 2 ? 0.9f : 0.1f;
                     change.at(x, y, 0) = 0.6f;
@@ -88,8 +87,8 @@ public:
             if (outlines) targets.outlines.push_back(std::move(outline));
             rooms.push_back(view.mask.count());
             corners.push_back(view.original.data.front());
-            DOCTEST_CHECK(view.backdrop.picture.data ==
-                          view.original.data);  // all of the scene stays to be seen
+            // All of the scene stays to be seen.
+            DOCTEST_CHECK(view.backdrop.picture.data == view.original.data);
         }
         return targets;
     }
@@ -206,8 +205,8 @@ DOCTEST_TEST_CASE("something added goes where a model that is shown the scene dr
         DOCTEST_CHECK(volume > 0.5 * ball);
         DOCTEST_CHECK(volume < 2.5 * ball);
         DOCTEST_CHECK(fixture.attention.absent == 0);  // nothing is asked about what is not there
-        DOCTEST_CHECK(fixture.attention.of_hat ==
-                      (fixture.painter.outlines ? 0 : 6));  // nor where the model tells
+        // Nor where the model tells.
+        DOCTEST_CHECK(fixture.attention.of_hat == (fixture.painter.outlines ? 0 : 6));
         DOCTEST_CHECK(found.failed_views == 0);
         // What was drawn is blue, and so all views are told where the sentence says no colour.
         const auto plan =

@@ -24,7 +24,7 @@ StudioBackground ground_of(const std::string& sentence) {
     return *plain_ground(sentence, figure(), Up, ModelTraits{});
 }
 
-/// Where the camera sees a point of the world.
+/// Pixel in which the camera sees a point of the world.
 std::pair<int, int> pixel_of(const Camera& camera, const Vec3& point) {
     const Vec3 at = camera.to_camera(point);
     return {static_cast<int>(std::floor(camera.fx * at.x / at.z + camera.cx)),

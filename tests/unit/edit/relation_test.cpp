@@ -1,4 +1,4 @@
-// What sentences say of where the target is.
+// Relations in sentences: places of the target.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 

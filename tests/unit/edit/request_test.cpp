@@ -164,8 +164,8 @@ DOCTEST_TEST_CASE("the sentence decides whether something is changed or added") 
     DOCTEST_CHECK(mode_of("bear", "add a hat to the bear", "hat") == EditMode::Add);
     DOCTEST_CHECK(mode_of("bear", "a hat on the bear", "hat") == EditMode::Add);
     auto request = bear("bear", "a red bear wearing a blue hat", "hat");
-    DOCTEST_CHECK(edit::decide_mode(request, 0.8).first ==
-                  EditMode::Modify);  // the detector sees one already
+    // The detector sees one already.
+    DOCTEST_CHECK(edit::decide_mode(request, 0.8).first == EditMode::Modify);
     DOCTEST_CHECK(edit::decide_mode(request, 0.1).first == EditMode::Add);
     request.mode = "modify";
     DOCTEST_CHECK(edit::decide_mode(request, 0.0).first == EditMode::Modify);
@@ -241,8 +241,8 @@ DOCTEST_TEST_CASE("what gets another shape has rounds of its own; what is set wi
     DOCTEST_CHECK(half.steps_of(1) == 4);
     DOCTEST_CHECK(half.view_steps_within(2 * request.shape_fit_steps) == 12);
     DOCTEST_CHECK(half.view_steps_within(1) == 8);
-    request.shape_guided_until =
-        0.5;  // of 0.9 in eighths four are above it, of 0.45 in quarters none: the others count half
+    // Four steps of 0.9 in eighths are above it, none of 0.45 in quarters: the others count half.
+    request.shape_guided_until = 0.5;
     const auto guided = edit::round_plan(request, EditMode::Replace);
     DOCTEST_CHECK(guided.guided_steps_of(0) == 4 + 4 * 0.5);
     DOCTEST_CHECK(guided.guided_steps_of(1) == 4 * 0.5);
@@ -260,8 +260,8 @@ DOCTEST_TEST_CASE("what gets another shape has rounds of its own; what is set wi
     const EditRequest usual;
     DOCTEST_CHECK(edit::loop_request(usual, EditMode::Modify, true).geometry_share == usual.geometry_share);
     DOCTEST_CHECK(fields_to_json(edit::loop_request(usual, EditMode::Add, false)) == fields_to_json(usual));
-    DOCTEST_CHECK(edit::loop_request(usual, EditMode::Replace, false).geometry_share ==
-                  1);  // by the paper's way, too
+    // By the paper's way, too.
+    DOCTEST_CHECK(edit::loop_request(usual, EditMode::Replace, false).geometry_share == 1);
     // What is shown the scene begins from noise alone, unless it is asked otherwise.
     DOCTEST_CHECK(edit::loop_request(usual, EditMode::Modify, true).view_strength == usual.view_strength);
     DOCTEST_CHECK(edit::loop_request(usual, EditMode::Modify, true, true).view_strength == 1);
@@ -345,8 +345,8 @@ DOCTEST_TEST_CASE("the sentence before an edit lacks what the edit brings") {
     DOCTEST_CHECK(before("turn the bear into a panda", "bear", "panda") == "turn the bear");
     DOCTEST_CHECK(before("a panda on the grass", "bear", "panda") == "a bear on the grass");
     DOCTEST_CHECK(before("a bear", "bear", "bear") == "a bear");
-    DOCTEST_CHECK(before("a small red cat on the grass", "bear", "cat") ==
-                  "a bear on the grass");  // how the cat looks
+    // How the cat looks.
+    DOCTEST_CHECK(before("a small red cat on the grass", "bear", "cat") == "a bear on the grass");
     DOCTEST_CHECK(before("a bear on the deep snow", "grass", "snow") == "a bear on the grass");
 }
 
@@ -411,8 +411,8 @@ DOCTEST_TEST_CASE("all that a sentence says of the source or names may be its ne
     DOCTEST_CHECK(possible("a golden bear on the snow", "grass") == Words{"snow"});  // ground for ground
     DOCTEST_CHECK(possible("a robot on the snow", "ground") == Words{"snow"});
     DOCTEST_CHECK(possible("a golden bear in the wind", "grass") == Words{"bear", "wind"});
-    DOCTEST_CHECK(possible("a red ball beside a bear", "bear") ==
-                  Words{"bear", "ball"});  // the sentence alone does not tell
+    // The sentence alone does not tell.
+    DOCTEST_CHECK(possible("a red ball beside a bear", "bear") == Words{"bear", "ball"});
     DOCTEST_CHECK(possible("a blue bear", "bear", {"a", "blue", "bear"}) == Words{"blue"});
     DOCTEST_CHECK(possible("bear", "bear") == Words{"bear"});
     // What wears the source is there.
@@ -489,8 +489,8 @@ DOCTEST_TEST_CASE(
     DOCTEST_CHECK(edit::mask_growth(request, edit::EditMode::Modify, mask) == 8);  // of a 512-pixel picture
     DOCTEST_CHECK(edit::mask_growth(request, edit::EditMode::Add, mask) == 50);
     request.add_margin = 0.1;
-    DOCTEST_CHECK(edit::mask_growth(request, edit::EditMode::Add, mask) ==
-                  16);  // never less than twice the pixels
+    // Never less than twice the pixels.
+    DOCTEST_CHECK(edit::mask_growth(request, edit::EditMode::Add, mask) == 16);
     DOCTEST_CHECK(edit::mask_growth(request, edit::EditMode::Add, Mask(256, 256)) == 16);
 }
 

@@ -8,7 +8,8 @@
 
 namespace gse::test {
 
-/// Of every labelled row of `set`, all visible; each value from `number()`, lengths on the picture positive.
+/// Gradients of every labelled row of `set`, all visible. Each value comes from `number()`; lengths on the
+/// picture are positive.
 template <class Number> raster::Gradients row_gradients(const edit::WorkingSet& set, Number&& number) {
     raster::Gradients gradients;
     const auto fill = [&](LineFloats& values, std::size_t stride) {

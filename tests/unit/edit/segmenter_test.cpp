@@ -64,8 +64,8 @@ DOCTEST_TEST_CASE("GrabCut finds the outline that the hint only guesses, the sam
     DOCTEST_CHECK(iou(mask, picture.truth) > LeastIou);
     DOCTEST_CHECK(iou(localize::threshold_map(picture.hint, 0.5), picture.truth) <
                   0.6);  // there was something to do
-    DOCTEST_CHECK(segmenter->segment(picture.image, Clicks, box, picture.hint).data ==
-                  mask.data);  // remembered
+    // Remembered.
+    DOCTEST_CHECK(segmenter->segment(picture.image, Clicks, box, picture.hint).data == mask.data);
     DOCTEST_CHECK(edit::make_grabcut_segmenter()->segment(picture.image, Clicks, box, picture.hint).data ==
                   mask.data);
     DOCTEST_CHECK(iou(segmenter->segment(picture.image, Clicks, std::nullopt, picture.hint), picture.truth) >

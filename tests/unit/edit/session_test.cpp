@@ -333,8 +333,8 @@ DOCTEST_TEST_CASE("a label corrected in the middle of a run is taken over") {
     };
     const auto result = edit::run_edit(scene.set, plan, request, tools);
     DOCTEST_CHECK(result.label_changes == 1);
-    DOCTEST_CHECK(result.changed_outside_label ==
-                  0);  // against the corrected label: what left it is as it was
+    // Against the corrected label: what left it is as it was.
+    DOCTEST_CHECK(result.changed_outside_label == 0);
     std::size_t changed = 0;
     for (std::size_t row = 0; row < corrected.size(); ++row) {
         const auto now = result.base_to_new[row];

@@ -1,4 +1,4 @@
-// Where a new thing may be, and what stands behind it.
+// Room for a new object, and the scene behind it.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -69,8 +69,8 @@ DOCTEST_TEST_CASE("room for another thing stands where the old one stood, as wid
     DOCTEST_CHECK(low < room.side);
     DOCTEST_CHECK(high == doctest::Approx(1.2).epsilon(0.05));
     DOCTEST_CHECK(wide == doctest::Approx(0.6).epsilon(0.08));
-    const auto tall =
-        edit::room_around(post(0.05, 1.0), all, Up, Front, 0);  // a pole gives way to something with a body
+    // A pole gives way to something with a body.
+    const auto tall = edit::room_around(post(0.05, 1.0), all, Up, Front, 0);
     wide = 0;
     for (const auto& p : tall.centres) wide = std::max(wide, std::hypot(p.x, p.z));
     DOCTEST_CHECK(wide > 0.3);

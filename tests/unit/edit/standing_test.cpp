@@ -1,4 +1,4 @@
-// Where things stand, whatever a label lacks or holds too much of.
+// Bounds of standing objects, whatever a label lacks or holds too much of.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -61,8 +61,8 @@ DOCTEST_TEST_CASE(
     statue.box(-0.15, 0.15, 0.5, 1.5, -0.15, 0.15, 900, true)
         .box(-0.25, 0.25, 0, 0.5, -0.25, 0.25, 1500, false);
     statue.box(-2, 2, -0.01, 0.01, -2, 2, 4000, false);
-    DOCTEST_CHECK(statue.standing().foot.y ==
-                  doctest::Approx(-0.5).epsilon(0.25));  // its rows reach down from its upper side
+    // Its rows reach down from its upper side.
+    DOCTEST_CHECK(statue.standing().foot.y == doctest::Approx(-0.5).epsilon(0.25));
 }
 
 DOCTEST_TEST_CASE("what reaches out of a thing does not move its foot") {

@@ -1,5 +1,5 @@
-// What an artist says about redrawn views while the edit runs, and branches that go on with what was redrawn;
-// by oracles.
+// An artist's orders about redrawn views while the edit runs, and branches that go on with redrawn views; by
+// oracles.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -84,8 +84,8 @@ DOCTEST_TEST_CASE(
             DOCTEST_CHECK(target.before->data != target.after->data);
         }
     }
-    DOCTEST_CHECK(artist.sheets[0].views[0].before->data !=
-                  artist.sheets[1].views[0].before->data);  // the scene has changed
+    // The scene has changed.
+    DOCTEST_CHECK(artist.sheets[0].views[0].before->data != artist.sheets[1].views[0].before->data);
     DOCTEST_CHECK(result.redrawn_views == 8);
     DOCTEST_CHECK(same_bytes(alone.edited(view_request(2, 10)).set, result.set));
 }
@@ -163,8 +163,8 @@ DOCTEST_TEST_CASE("a view is redrawn anew from what the round began with, each t
     DOCTEST_CHECK(inputs[2].round == 0);
     DOCTEST_REQUIRE(run.oracle.asked[1].size() == 1);
     DOCTEST_CHECK(run.oracle.asked[1][0].rendered.data == run.oracle.asked[0][0].rendered.data);
-    DOCTEST_CHECK(run.oracle.asked[2][0].rendered.data ==
-                  run.oracle.asked[0][0].rendered.data);  // though the scene has changed
+    // Though the scene has changed.
+    DOCTEST_CHECK(run.oracle.asked[2][0].rendered.data == run.oracle.asked[0][0].rendered.data);
     DOCTEST_CHECK(artist.last(0).attempt == 2);
     DOCTEST_CHECK(!artist.last(0).dropped);
     DOCTEST_CHECK(artist.last(1).attempt == 0);

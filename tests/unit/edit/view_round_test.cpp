@@ -119,8 +119,8 @@ DOCTEST_TEST_CASE("redrawn views lie far apart and show what changes") {
                           1.5 * step);
     DOCTEST_CHECK(edit::views_to_redraw(views, covered, 50).size() == 11);
     DOCTEST_CHECK(edit::views_to_redraw(views, std::vector<double>(12, 0.0), 4).empty());
-    DOCTEST_CHECK(edit::views_to_redraw(views, std::vector<double>(12, 0.001), 4).size() ==
-                  4);  // all are small
+    // All are small.
+    DOCTEST_CHECK(edit::views_to_redraw(views, std::vector<double>(12, 0.001), 4).size() == 4);
 }
 
 DOCTEST_TEST_CASE(
@@ -158,12 +158,12 @@ DOCTEST_TEST_CASE(
         for (int x = 0; x + 1 < cells; ++x)
             for (int c = 0; c < 4; ++c, ++pairs)
                 neighbours += static_cast<double>(noise.at(x, y, c)) * noise.at(x + 1, y, c);
-    constexpr double variance_tolerance =
-        0.15;  // 1,024 samples: three standard errors of a variance are 0.13
+    // 1,024 samples: three standard errors of a variance are 0.13.
+    constexpr double variance_tolerance = 0.15;
     DOCTEST_CHECK(std::abs(squares / static_cast<double>(noise.data.size()) - 1) < variance_tolerance);
     DOCTEST_CHECK(std::abs(neighbours / pairs) < 0.15);
-    const double shift =
-        camera.to_camera({2 * cell, 0, 0}).x / cell;  // cells to the side: which way the picture moves
+    // Cells to the side: which way the picture moves.
+    const double shift = camera.to_camera({2 * cell, 0, 0}).x / cell;
     const int by = static_cast<int>(std::lround(shift));
     Image here(cells - 2, cells, 4), there(cells - 2, cells, 4);
     for (int y = 0; y < cells; ++y)

@@ -1,5 +1,5 @@
-// What outlines from several sides enclose: spheres and boxes of which the true outlines are known, with
-// wrong and hidden ones.
+// Volumes that outlines from several sides enclose: spheres and boxes of which the true outlines are known,
+// with wrong and hidden ones.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 

@@ -61,7 +61,7 @@ DOCTEST_TEST_CASE("every array of the table is declared a column, once") {
         },
         table);
     DOCTEST_CHECK(arrays.size() == count);
-    // What is in the table besides arrays: the count of unlabelled rows and two SH degrees. All arrays are
+    // Contents of the table besides arrays: the count of unlabelled rows and two SH degrees. All arrays are
     // equally large.
     constexpr std::size_t degree = sizeof(GaussianData) - 5 * sizeof(std::vector<float>);
     DOCTEST_CHECK(sizeof(table) == sizeof(std::size_t) + 2 * degree + count * sizeof(std::vector<float>));

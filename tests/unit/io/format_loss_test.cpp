@@ -1,4 +1,4 @@
-// What formats change is measured on the written bytes and told, worst error per field.
+// Losses of formats: measured on the written bytes and told, worst error per field.
 #include <algorithm>
 #include <regex>
 

@@ -75,8 +75,8 @@ DOCTEST_TEST_CASE("SPZ round trip stays within its steps, in every version") {
     constexpr double BaseStep = 0.5 / 255 / 0.15 + 1e-5;
     constexpr double ShStep = 0.5 / 128 + 1e-6;
     constexpr double RotationFloor = 1 - 1e-5;  // nine bits per component
-    constexpr double ByteRotationFloor =
-        0.99;  // seven bits, and w, which is small, from the rest: sqrt(3 / 127.5)
+    // Seven bits, and w, which is small, from the rest: sqrt(3 / 127.5)
+    constexpr double ByteRotationFloor = 0.99;
     for (int version = 2; version <= 4; ++version)
         for (int degree = 0; degree <= 3; ++degree) {
             DOCTEST_CAPTURE(version);

@@ -169,7 +169,8 @@ DOCTEST_TEST_CASE("any order, encoding, line end and company of columns gives th
     }
 }
 
-/// What both readers say about a file; `piecewise` tells whether the one that reads pieces had to take it.
+/// Checks that both readers say one thing about a file. `piecewise` tells whether the one that reads pieces
+/// had to take it.
 void check_both_readers(const ScratchFolder& scratch, const std::string& bytes, bool piecewise) {
     const auto path = scratch.path() / "pieces.ply";
     write_file(path, bytes);

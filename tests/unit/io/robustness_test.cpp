@@ -145,8 +145,8 @@ DOCTEST_TEST_CASE(
         io::write_zip(std::vector<io::ZipMember>{{"meta.json", meta, true}, {"sh0.webp", texture, true}});
     const auto stating = [&](std::uint32_t size) {
         std::string archive = honest;
-        const std::size_t name =
-            archive.rfind("sh0.webp");  // in the directory, whose record has the size 22 bytes before
+        // In the directory, whose record has the size 22 bytes before.
+        const std::size_t name = archive.rfind("sh0.webp");
         std::memcpy(archive.data() + name - 22, &size, sizeof size);
         const auto error = error_of([&] { parse_scene(as_bytes(archive), "x.sog"); });
         return error ? error->message() : std::string();

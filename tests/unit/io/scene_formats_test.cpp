@@ -12,7 +12,7 @@
 namespace gse::test {
 namespace {
 
-/// Whether `text` holds `word`, not as a part of a longer name ("a.splat" in "a.ksplat").
+/// Tells whether `text` holds `word`, not as a part of a longer name ("a.splat" in "a.ksplat").
 bool names(const std::string& text, const std::string& word) {
     const auto inner = [](char letter) {
         return std::isalnum(static_cast<unsigned char>(letter)) != 0 || letter == '.';

@@ -67,8 +67,8 @@ bool within_grid(const Written& file, double extent) {
 
 DOCTEST_TEST_CASE("SOG round trip: the same splats in Morton order, within the steps of the format") {
     constexpr double OpacityStep = 0.5 / 255 + 1e-6;
-    constexpr double ScaleStep =
-        5.0 / 255;  // the log-scales span 5; 256 codes fitted to them are as dense everywhere
+    // The log-scales span 5; 256 codes fitted to them are as dense everywhere.
+    constexpr double ScaleStep = 5.0 / 255;
     constexpr double RotationFloor = 1 - 1e-4;  // bytes over +-1/sqrt(2): half a step is 0.0028 per component
     for (int degree = 0; degree <= 3; ++degree) {
         DOCTEST_CAPTURE(degree);
@@ -169,8 +169,8 @@ DOCTEST_TEST_CASE("SOG holds far, flat, opaque, single and equal splats") {
 DOCTEST_TEST_CASE(
     "SOG: colours that no scene has spoil nothing: every value read is finite, and the colours of others "
     "keep their steps") {
-    constexpr float Huge =
-        9000;  // rows with more than 10,000 are left out by every format (scene/statistics.cpp)
+    // Rows with more than 10,000 are left out by every format (scene/statistics.cpp)
+    constexpr float Huge = 9000;
     GaussianData data = random_gaussians(3000, 1, 74);
     for (std::size_t row = 0; row < 40; ++row)
         for (std::size_t i = 0; i < 12; ++i) data.sh[row * 12 + i] = (row + i) % 2 == 0 ? Huge : -Huge;

@@ -1,5 +1,5 @@
-// What sentences are read as: pinned for 745 of them, in sentences.jsonl. Lines with "was" name what an
-// earlier splitter of words made of them (hyphens, invisible characters).
+// Readings of 745 sentences, pinned in sentences.jsonl. Lines with "was" name the reading of an earlier
+// splitter of words (hyphens, invisible characters).
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 

@@ -132,8 +132,8 @@ DOCTEST_TEST_CASE("the energy is what its definition says, with every distance m
     };
     const std::vector<std::uint8_t> all(count, 1);
     const double labelled = static_cast<double>(std::count(some.begin(), some.end(), 1)) / count;
-    const double opinions =
-        labelled * energy(all) + (1 - labelled) * energy(none);  // one opinion: the same for every row
+    // One opinion: the same for every row.
+    const double opinions = labelled * energy(all) + (1 - labelled) * energy(none);
     DOCTEST_CHECK(cut > 1);
     DOCTEST_CHECK(energy(some) == doctest::Approx(opinions + cut).epsilon(EnergyTolerance));
 }
@@ -265,8 +265,8 @@ DOCTEST_TEST_CASE(
     DOCTEST_CHECK_EQ(labelled(held, 0.2, block, held.field.probability.size()), 0);
     auto [low, low_block, low_bumper] = scene(2, 0, 0.3);  // the ground is near it, but it has nearer ones
     DOCTEST_CHECK_EQ(labelled(low, 0.2, low_block, low.field.probability.size()), 20);
-    auto [far, far_block, far_bumper] =
-        scene(2, 0, High + 40);  // between two parts of the label, away from both, it is not its affair
+    // Between two parts of the label, away from both, it is not its affair.
+    auto [far, far_block, far_bumper] = scene(2, 0, High + 40);
     for (std::size_t row = 0; row < far_block / 2; ++row) far.data.position[row * 3 + 1] += 80;
     DOCTEST_CHECK_EQ(labelled(far, 0.2, far_block, far_bumper), 0);
 }

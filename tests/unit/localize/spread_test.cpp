@@ -73,8 +73,8 @@ DOCTEST_TEST_CASE("unseen rows take the opinion of their own ball") {
     for (std::size_t row = 0; row < 2 * PerBall; ++row) {
         DOCTEST_CHECK(label[row] == (row < PerBall ? 1 : 0));
         if (row % 3 != 0)
-            DOCTEST_CHECK(balls.field.probability[row] ==
-                          before.probability[row]);  // seen rows keep their own
+            // Seen rows keep their own.
+            DOCTEST_CHECK(balls.field.probability[row] == before.probability[row]);
     }
     DOCTEST_CHECK(balls.field.coverage == before.coverage);
 }

@@ -1,4 +1,4 @@
-// Where clicks lie in the picture that SAM's encoder sees.
+// Places of clicks in the picture that SAM's encoder sees.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 

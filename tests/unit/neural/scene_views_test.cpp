@@ -200,8 +200,8 @@ DOCTEST_TEST_CASE(
         return unet->forward(views, t, words, nullptr, {}, {2, cameras, shown});
     };
     const auto before = output(written), after = output(read);
-    constexpr double EightBits =
-        0.02;  // of the output: errors of 1 / 254 of a row's largest weight, through twenty layers
+    // Share of the output: errors of 1 / 254 of a row's largest weight, through twenty layers.
+    constexpr double EightBits = 0.02;
     DOCTEST_CHECK((before - after).norm().item<double>() < EightBits * before.norm().item<double>());
     write_shape_unet(read, scratch.path() / "again");  // what is in eight bits already stays as it is
     DOCTEST_CHECK(torch::allclose(after, output(load_shape_unet(scratch.path() / "again")), 1e-4, 1e-5));

@@ -1,4 +1,4 @@
-// What files of weights and settings claim: more memory than there is, numbers that are none.
+// Claims of files of weights and settings: more memory than there is, numbers that are none.
 #include <fstream>
 #include <nlohmann/json.hpp>
 

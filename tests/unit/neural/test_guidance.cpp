@@ -59,8 +59,8 @@ DOCTEST_TEST_CASE(
             DOCTEST_CHECK(map.height == image.height);
             DOCTEST_CHECK(*std::min_element(map.data.begin(), map.data.end()) >= 0.0f);
             DOCTEST_CHECK(*std::max_element(map.data.begin(), map.data.end()) > 0.0f);
-            DOCTEST_CHECK(*std::max_element(map.data.begin(), map.data.end()) !=
-                          1.0f);  // not divided by its own maximum
+            // Not divided by its own maximum.
+            DOCTEST_CHECK(*std::max_element(map.data.begin(), map.data.end()) != 1.0f);
         }
         DOCTEST_CHECK(source.locate(query)[0].data == maps[0].data);
         query.seed = 1;
@@ -224,8 +224,8 @@ DOCTEST_TEST_CASE("sds guidance: the pull on the unedited picture is taken off")
     const auto plain = gradient(changed, nullptr, "a bear", 1).gradient.data;
     DOCTEST_CHECK(gradient(changed, &original, "", 1).gradient.data == plain);
     DOCTEST_CHECK(gradient(changed, &original, "a bear", 0).gradient.data == plain);
-    DOCTEST_CHECK(gradient(changed, &original, "a red bear", 1).gradient.data ==
-                  plain);  // the sentence says nothing
+    // The sentence says nothing.
+    DOCTEST_CHECK(gradient(changed, &original, "a red bear", 1).gradient.data == plain);
     // An unedited picture under a sentence of the same words has nothing left to change.
     constexpr double Rounding = 1e-5;  // of the plain gradient: one forward pass more in fp32
     DOCTEST_CHECK(gradient(original, &original, "A red bear", 1).scalars.at("gradient_norm") <=

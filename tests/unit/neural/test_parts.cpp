@@ -96,8 +96,8 @@ DOCTEST_TEST_CASE("redrawn views: the unedited ones are encoded once for all rou
         for (auto& value : view.rendered.data) value = 1 - value;
     const auto first = thread_use();
     const auto targets = guidance.edit(views, input, {});
-    DOCTEST_CHECK((thread_use() - first).encoder ==
-                  2 * views.size());  // they were the renders, and not asked about
+    // They were the renders, and not asked about.
+    DOCTEST_CHECK((thread_use() - first).encoder == 2 * views.size());
     const auto second = thread_use();
     DOCTEST_CHECK(guidance.edit(views, input, {}).images[0].data == targets.images[0].data);
     DOCTEST_CHECK((thread_use() - second).encoder == views.size());

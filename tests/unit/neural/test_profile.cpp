@@ -29,7 +29,7 @@ UNetConfig sd2_config() {
     return config;
 }
 
-/// Of a field: its value and source; null when nothing is stated of it.
+/// Entry of a field: its value and source; null when nothing is stated of it.
 const ProfileEntry* entry_of(const ModelProfile& profile, const std::string& part, const std::string& field) {
     for (const auto& entry : profile.entries)
         if (entry.part == part && entry.field == field) return &entry;

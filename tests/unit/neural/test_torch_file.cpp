@@ -1,4 +1,4 @@
-// What torch.save writes: read where it is plain tensors, refused where it could be more.
+// Files of torch.save: read where they are plain tensors, refused where they could be more.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 #include <sys/resource.h>
@@ -137,8 +137,8 @@ DOCTEST_TEST_CASE("a tensor of more numbers than its storage has is refused") {
     const auto at = spread.find("K\x03K\x01\x86");  // the strides of [2, 3]
     DOCTEST_REQUIRE(at != std::string::npos);
     spread.replace(at, 4, std::string("K\0K\0", 4));
-    DOCTEST_CHECK(read_tensor_pickle(spread, "x").at("weight").strides ==
-                  std::vector<std::int64_t>{0, 0});  // six of six
+    // Six of six.
+    DOCTEST_CHECK(read_tensor_pickle(spread, "x").at("weight").strides == std::vector<std::int64_t>{0, 0});
     const auto shape = spread.find("K\x02K\x03");
     auto terabytes = spread;
     terabytes.replace(shape, 4, "J\xff\xff\xff\x7fJ\xff\xff\xff\x7f");

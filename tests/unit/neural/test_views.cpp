@@ -48,8 +48,8 @@ DOCTEST_TEST_CASE("redrawn views: repeatable, of the size that came in, and coun
     const auto before = thread_use();
     const auto targets = guidance.edit(views, input, {});
     const auto use = thread_use() - before;
-    DOCTEST_CHECK(use.unet ==
-                  2 * 3 * 2);  // views, steps, two halves; the sentence before the edit is not asked about
+    // Views, steps, two halves; the sentence before the edit is not asked about.
+    DOCTEST_CHECK(use.unet == 2 * 3 * 2);
     DOCTEST_CHECK(use.encoder == 2);  // the render is the original
     DOCTEST_CHECK(use.decoder == 2 * 2);
     DOCTEST_CHECK(use.flop > 0);
@@ -98,8 +98,8 @@ DOCTEST_TEST_CASE(
     };
     DOCTEST_CHECK(differ(0) == 0);
     DOCTEST_CHECK(differ(0.3) > 0);
-    constexpr double hardly =
-        0.001;  // of a network that nobody trained only the limit is known: it is continuous
+    // A network that nobody trained has a known limit only: it is continuous.
+    constexpr double hardly = 0.001;
     DOCTEST_CHECK(differ(hardly) < differ(1));
     DOCTEST_CHECK(differ(hardly) < differ(0.3));
 }
@@ -188,8 +188,8 @@ DOCTEST_TEST_CASE(
     };
     DOCTEST_CHECK(second(2, 1.0f, true) != second(2, 0.3f, true));
     DOCTEST_CHECK(second(1, 1.0f, true) == second(1, 0.3f, true));
-    DOCTEST_CHECK(second(2, 1.0f, false) ==
-                  second(2, 0.3f, false));  // what was there is redrawn view by view
+    // An object that was there is redrawn view by view.
+    DOCTEST_CHECK(second(2, 1.0f, false) == second(2, 0.3f, false));
 }
 
 DOCTEST_TEST_CASE(
@@ -216,8 +216,8 @@ DOCTEST_TEST_CASE(
     };
     DOCTEST_CHECK(drawn(true, 0.2f, true) != drawn(true, 0.7f, true));
     DOCTEST_CHECK(drawn(false, 0.2f, true) == drawn(false, 0.7f, true));
-    DOCTEST_CHECK(drawn(true, 0.2f, false) ==
-                  drawn(true, 0.7f, false));  // what was there is redrawn as it is
+    // An object that was there is redrawn as it is.
+    DOCTEST_CHECK(drawn(true, 0.2f, false) == drawn(true, 0.7f, false));
 }
 
 DOCTEST_TEST_CASE(
@@ -406,7 +406,7 @@ DOCTEST_TEST_CASE("the arithmetic of a UNet pass is counted as its layers do it"
     const auto one = pass(1), two = pass(2);
     DOCTEST_CHECK(one.unet == 1);
     DOCTEST_CHECK(two.unet == 2);
-    DOCTEST_CHECK(two.flop ==
-                  doctest::Approx(2 * one.flop).epsilon(0.02));  // the time embedding may be shared
+    // The time embedding may be shared.
+    DOCTEST_CHECK(two.flop == doctest::Approx(2 * one.flop).epsilon(0.02));
     DOCTEST_CHECK(one.encoder + one.decoder == 0);
 }

@@ -58,7 +58,7 @@ template <class Holder> neural::NamedTensors tensors_of(const Holder& module) {
     return tensors;
 }
 
-/// What the tiny model says it knows: the words of the tests' sentences.
+/// Words of the tiny model: those of the tests' sentences.
 inline std::vector<std::string> tiny_words() {
     return {"bear", "hat",  "dog", "square", "a",    "of",   "photo", "red",   "blue",
             "sks",  "make", "it",  "front",  "side", "back", "left",  "right", "view"};

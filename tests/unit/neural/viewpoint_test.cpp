@@ -64,8 +64,8 @@ DOCTEST_TEST_CASE("pictures of any size get shares of all sectors") {
         DOCTEST_CHECK(*std::min_element(shares.begin(), shares.end()) >= 0);
     }
     DOCTEST_CHECK(reader.shares(stripes(24, 24, 0)) != reader.shares(stripes(24, 24, 1)));
-    DOCTEST_CHECK(reader.shares(stripes(24, 24, -3)) ==
-                  reader.shares(stripes(30, 24, 0)));  // the middle of a wide one
+    // The middle of a wide one.
+    DOCTEST_CHECK(reader.shares(stripes(24, 24, -3)) == reader.shares(stripes(30, 24, 0)));
 }
 
 DOCTEST_TEST_CASE("a classifier that is not whole is refused") {

@@ -470,8 +470,8 @@ DOCTEST_TEST_CASE(
         DOCTEST_CHECK(!second.loaded);
         DOCTEST_CHECK(second.label == plain.label);
         DOCTEST_CHECK(second.weights == plain.weights);
-        DOCTEST_CHECK(start(recipe, folder.path(), true).picture ==
-                      plain.picture);  // the tuned weights, read back
+        // The tuned weights, read back.
+        DOCTEST_CHECK(start(recipe, folder.path(), true).picture == plain.picture);
         recipe.dreambooth.steps = 3;
         const auto plainer = start(recipe, {}, true), again = start(recipe, folder.path(), true);
         DOCTEST_CHECK(again.use.cached >= 2);  // two batches of the class

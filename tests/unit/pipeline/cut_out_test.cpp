@@ -50,7 +50,7 @@ GaussianSet ball_and_wall() {
     return GaussianSet(std::move(data));
 }
 
-/// The same in other colours (DC coefficients), by position and whether it is the ball.
+/// Recolours a scene (DC coefficients), by position and by whether a row is the ball.
 template <class Colour> GaussianSet with_colours(const GaussianSet& set, const Colour& colour) {
     auto data = set.to_data();
     for (std::size_t row = 0; row < BallRows + WallRows; ++row) {
@@ -161,8 +161,8 @@ DOCTEST_TEST_CASE("a thing that other views cannot see still has the side that t
 DOCTEST_TEST_CASE("things of all kinds are cut out whole from any side") {
     if (!edit::grabcut_available()) return;
     constexpr int Things = 6;
-    constexpr double LeastIou =
-        0.95;  // pooled over the pixels that the rows make up; 0.99 was measured over twelve things
+    // Pooled over the pixels that the rows make up; 0.99 was measured over twelve things.
+    constexpr double LeastIou = 0.95;
     double both = 0, any = 0;
     for (int i = 0; i < Things; ++i) {
         Random random(900 + static_cast<std::uint64_t>(i));

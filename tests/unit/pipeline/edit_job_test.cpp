@@ -115,8 +115,8 @@ DOCTEST_TEST_CASE(
 DOCTEST_TEST_CASE(
     "edit job: what takes the place of a thing, or is worn, is drawn from where the starter learned to draw "
     "things") {
-    constexpr double Near =
-        0.09;  // of the figure: what is nearer to the aim than a twentieth of the distance is not framed anew
+    // Share of the figure: what is nearer to the aim than a twentieth of the distance is not framed anew.
+    constexpr double Near = 0.09;
     struct Case {
         std::string object, prompt;
         double height;
@@ -189,8 +189,8 @@ DOCTEST_TEST_CASE(
     spec.seed = 7;
     const auto scene = synth::generate(spec);
     EditRecipe recipe;
-    recipe.request.source =
-        "hat";  // fills the pictures where it is framed alone: there the network looks for one above it
+    // Fills the pictures where it is framed alone: there the network looks for one above it.
+    recipe.request.source = "hat";
     recipe.request.prompt = "a bear wearing a green hat on the grass";
     EditJob job(recipe, EditJobInput{scene.scene, {}, load_recipe_model({})}, JobControl{});
     job.locate();

@@ -1,5 +1,5 @@
-// What of a thing wears something new: the head, where it is smaller than those of the figures that the model
-// learned from.
+// Wearer of an accessory: the head, where it is smaller than those of the figures that the model learned
+// from.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-// What the headers of files and folders say of the models in them.
+// Models as the headers of files and folders describe them.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 

@@ -93,7 +93,7 @@ DOCTEST_TEST_CASE("model settings: a value that a recipe or a user sets to the p
     apply_profile({}, recipe, recipe.given);
     DOCTEST_CHECK(listed(recipe, "request.colour_coupling") == "0.9 from user");
     DOCTEST_CHECK(recipe_from_json(recipe_to_json(recipe), {}).request.colour_coupling.is_set());
-    // What nobody set is not said to be set, and comes back as it was.
+    // A setting that nobody set is not said to be set, and comes back as it was.
     const auto plain = recipe_from_json(recipe_to_json({}), {});
     DOCTEST_CHECK(!plain.request.colour_coupling.is_set());
     DOCTEST_CHECK(!plain.given.contains("request.colour_coupling"));

@@ -1,4 +1,4 @@
-// What pictures say of the edit that made them, and what the program says of pictures and scenes.
+// Texts of pictures about the edit that made them, and of the program about pictures and scenes.
 #include "engine/pipeline/report/picture_text.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What has to be looked for again when a recipe changes, and what not.
+// Searches that a changed recipe makes necessary, and those that it does not.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 

@@ -1,5 +1,4 @@
-// What hardly comes out as asked is drawn in other ways before anything is fitted, and the best of them is
-// used.
+// Edits that hardly come out are drawn in other ways before anything is fitted; the best of them is used.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -195,9 +194,9 @@ DOCTEST_TEST_CASE(
     "fitted") {
     if (neural_library().empty() || !test::available(starter_model_path() / "model_index.json")) return;
     const auto found = edited(blue_bear(), false);
-    DOCTEST_CHECK(found.asked ==
-                  std::vector<bool>{true, true, false});  // in the scene, on a plain ground, by itself
-    DOCTEST_REQUIRE(found.judged.size() == 1);            // the artist sees the pictures that are used
+    // In the scene, on a plain ground, by itself.
+    DOCTEST_CHECK(found.asked == std::vector<bool>{true, true, false});
+    DOCTEST_REQUIRE(found.judged.size() == 1);  // the artist sees the pictures that are used
     DOCTEST_CHECK_FALSE(found.judged[0].warns);
     auto itself = blue_bear();
     itself.guidance.restyle = false;

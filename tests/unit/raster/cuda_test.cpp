@@ -32,7 +32,7 @@ bool has_kernels() {
     return false;
 }
 
-/// What goes wrong in the stand-in while this lives.
+/// Fault of the stand-in while this lives.
 class Wrong {
 public:
     explicit Wrong(const char* what) { setenv("GSE_FAKE_DRIVER", what, 1); }

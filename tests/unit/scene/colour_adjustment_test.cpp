@@ -73,8 +73,8 @@ DOCTEST_TEST_CASE("each control does what it says, and leaves the rest") {
     adjustment.hue = 120;
     const Vec3 turned = colour_after(red, adjustment);
     DOCTEST_CHECK(turned.y > turned.x);
-    DOCTEST_CHECK(dot(turned, Luma) ==
-                  doctest::Approx(luma).epsilon(2e-3));  // the matrix is given to three digits
+    // The matrix is given to three digits.
+    DOCTEST_CHECK(dot(turned, Luma) == doctest::Approx(luma).epsilon(2e-3));
     check_near(colour_after(grey, adjustment), grey);
     adjustment = {};
     adjustment.brightness = 0.5;

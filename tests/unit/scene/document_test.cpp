@@ -20,7 +20,7 @@ DocumentState fresh_state(std::size_t count, std::uint64_t seed, int degree = 1)
     return initial_state(scene, {});
 }
 
-/// What a state looks like, deeply copied.
+/// Deep copy of a state's looks.
 struct Picture {
     GaussianData rows;
     std::vector<RowId> ids;

@@ -183,8 +183,8 @@ DOCTEST_TEST_CASE("rows that an edit added belong to its label, and are nobody's
 DOCTEST_TEST_CASE("growing and shrinking go along neighbours") {
     const GaussianSet set = line_set(50);
     const NamedLabel label = line_label(50, 20, 30);
-    DOCTEST_CHECK(growth_radius(set, *label.bits) ==
-                  doctest::Approx(4));  // the 8th neighbour on a line is 4 away
+    // The 8th neighbour on a line is 4 away.
+    DOCTEST_CHECK(growth_radius(set, *label.bits) == doctest::Approx(4));
     const NamedLabel grown = grow(label, set, 2, 1.5);
     for (std::size_t row = 0; row < 50; ++row)
         DOCTEST_CHECK((*grown.bits)[row] == (row >= 18 && row < 32 ? 1 : 0));

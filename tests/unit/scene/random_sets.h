@@ -53,7 +53,7 @@ inline bool bits_equal(const GaussianSet& a, const GaussianSet& b) {
            bits_equal(a.opacity_logit(), b.opacity_logit()) && bits_equal(a.sh(), b.sh());
 }
 
-/// What an edit made of a set: rows kept in order, some of them changed, new ones at the end.
+/// Result of an edit of a set: rows kept in order, some of them changed, new ones at the end.
 struct RandomEdit {
     GaussianSet after;
     std::vector<std::int64_t> base_to_new;

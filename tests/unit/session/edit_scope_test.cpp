@@ -1,4 +1,4 @@
-// Whether a label or a search says what an edit may change.
+// Tells whether a label or a search says what an edit may change.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 

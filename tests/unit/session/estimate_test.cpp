@@ -188,8 +188,8 @@ DOCTEST_TEST_CASE("an estimate counts the views that are drawn to see where some
     const double loop = seconds(known, request, work);
     work.located = false;
     const double words = known.rounds * request.views * known.question;
-    DOCTEST_CHECK(seconds(known, request, work) ==
-                  doctest::Approx(loop + 2 * words));  // the hat is looked for, too
+    // The hat is looked for, too.
+    DOCTEST_CHECK(seconds(known, request, work) == doctest::Approx(loop + 2 * words));
     known.draws_place = 1;
     const double steps = edit::guided_steps_of_place(request);
     DOCTEST_CHECK(steps < request.place_steps);  // those that are not guided count half
@@ -198,8 +198,8 @@ DOCTEST_TEST_CASE("an estimate counts the views that are drawn to see where some
     known.place_step = 0.03;  // seen once
     DOCTEST_CHECK(seconds(known, request, work) ==
                   doctest::Approx(loop + words + request.place_views * steps * 0.03));
-    request.prompt =
-        "a bear wearing a hat on the grass";  // they show its colour, too: no view is drawn for that
+    // They show its colour, too: no view is drawn for that.
+    request.prompt = "a bear wearing a hat on the grass";
     DOCTEST_CHECK(seconds(known, request, work) ==
                   doctest::Approx(loop + words + request.place_views * steps * 0.03));
     request.prompt = "a red hat beside a bear on the grass";  // said, not drawn
@@ -222,8 +222,8 @@ DOCTEST_TEST_CASE(
     memory.scene = 10;
     memory.labelled_share = 0.5;
     memory.snapshots = 120;
-    const double scene =
-        3 * 10 + 6 * 10 * 0.5 + 120;  // the set, two put together; of half of it what steps need; snapshots
+    // The set, two put together; of half of it what steps need; snapshots.
+    const double scene = 3 * 10 + 6 * 10 * 0.5 + 120;
     DOCTEST_CHECK(app::estimated_memory_mb({}, memory) == doctest::Approx(100 + 300 + 50 + scene));
     app::CostProfile known;
     known.load_mb = 400;

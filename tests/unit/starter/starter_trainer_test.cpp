@@ -288,8 +288,8 @@ DOCTEST_TEST_CASE("mixed precision trains nearly as float does, and is not the s
     const auto single = column(scratch.path() / "float/unet.tsv", 4),
                mixed = column(scratch.path() / "mixed/unet.tsv", 4);
     DOCTEST_REQUIRE(single.size() == mixed.size());
-    constexpr double EightBits =
-        1.0 / 64;  // bfloat16 has 8 bits; products of hundreds of them are summed in float
+    // bfloat16 has 8 bits; products of hundreds of them are summed in float.
+    constexpr double EightBits = 1.0 / 64;
     for (std::size_t i = 0; i < single.size(); ++i) {
         DOCTEST_CHECK(mixed[i] == doctest::Approx(single[i]).epsilon(EightBits));
         DOCTEST_CHECK(mixed[i] != single[i]);

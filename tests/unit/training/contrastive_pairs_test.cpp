@@ -25,8 +25,8 @@ DOCTEST_TEST_CASE("false sentences of a twin differ from its true one, and are o
             DOCTEST_CHECK(text != own.text);
             std::size_t other = 0;
             for (const auto& word : language::words_of(text)) other += mine.contains(word) ? 0 : 1;
-            // Of what replaces an accessory: its name, its colour, "wearing a" or "with"; of another thing
-            // one word.
+            // The replacement of an accessory differs in name, colour, "wearing a" or "with"; another object
+            // in one word.
             DOCTEST_CHECK(other <= 4);
             ++told;
         }

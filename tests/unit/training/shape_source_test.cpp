@@ -19,7 +19,7 @@ namespace {
 
 constexpr int Size = 32;
 
-/// Whether one of the words, or one that means the same, is in the text.
+/// Tells whether one of the words, or one that means the same, is in the text.
 bool says_one(const std::string& text, std::vector<std::string> words,
               const std::vector<std::string>& synonyms) {
     words.insert(words.end(), synonyms.begin(), synonyms.end());

@@ -1,4 +1,4 @@
-// What a training picture's side is called, and what the editor calls it.
+// Names of a training picture's side, and the editor's names for it.
 #include <doctest/doctest.h>
 
 #include "engine/edit/search/front_reading.h"

@@ -22,7 +22,7 @@ constexpr Rgb Red{0.85f, 0.07f, 0.07f};  // as models draw it where light falls 
 constexpr float SameHue = 16, OtherHue = 28, MostOffRed = 36;
 // Saturation of gold, the channels' difference over the largest.
 constexpr float Colourless = 0.2f, Coloured = 0.45f;
-// Of gold the largest channel is red: what it is in its darkest and its brightest reflections.
+// Red, the largest channel of gold, in its darkest and its brightest reflections.
 constexpr float GoldShade = 0.25f, GoldLit = 0.98f;
 
 Rgb rgb_of(unsigned value) {

@@ -25,8 +25,8 @@ struct ColourRemap {
     std::array<float, 3> colour{};   // display values in [0,1]; of a metal where it is lit
     std::array<float, 3> shade{};    // of a metal where it mirrors what is dark
     bool metal = false;
-    std::optional<SurfacePattern> pattern =
-        {};  // instead of one colour; it is laid over what the edit has come to, by dye_rows()
+    // Instead of one colour; it is laid over what the edit has come to, by dye_rows()
+    std::optional<SurfacePattern> pattern = {};
 };
 
 /// Colour to lay over an edit: a colour name in its target, or right before it. The name is not in `known`,

@@ -13,10 +13,10 @@ namespace gse::edit {
 namespace {
 
 constexpr double LeastUpright = 0.1;  // of its width: what is lower is a ground itself
-constexpr double LeastGroundCover =
-    0.5;  // of the ground around it: less is no ground that a picture would show
-constexpr double LeastShown =
-    0.05;  // of the pictures: where a scene shows less of a ground, its surroundings are there
+// Share of the ground around it: less is no ground that a picture would show.
+constexpr double LeastGroundCover = 0.5;
+// Share of the pictures: where a scene shows less of a ground, its surroundings are there.
+constexpr double LeastShown = 0.05;
 constexpr std::size_t LookedAt = 4;  // views that tell
 constexpr int PlainSamples = 2;      // along a pixel's side
 

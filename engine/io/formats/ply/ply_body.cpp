@@ -142,8 +142,8 @@ float PlyBody::read_scalar(PlyType type) {
 }
 
 std::uint64_t PlyBody::read_list_size(PlyType type) {
-    const float size =
-        read_scalar(type);  // exact up to 2^24; longer lists are rounded and fail the size check
+    // Exact up to 2^24; longer lists are rounded and fail the size check.
+    const float size = read_scalar(type);
     if (!(size >= 0) || size > 4294967295.0f * 2)
         throw Error(ErrorCode::Malformed, "the PLY body holds a list with a negative or absurd length");
     return static_cast<std::uint64_t>(size);

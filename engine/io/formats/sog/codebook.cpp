@@ -50,8 +50,8 @@ bool improve(const std::vector<float>& sorted, const std::vector<double>& sums, 
         if (end > begin) {
             const auto mean =
                 static_cast<float>((sums[end] - sums[begin]) / static_cast<double>(end - begin));
-            const float inside =
-                std::clamp(mean, sorted[begin], sorted[end - 1]);  // sums of many values are rounded
+            // Sums of many values are rounded.
+            const float inside = std::clamp(mean, sorted[begin], sorted[end - 1]);
             moved |= inside != codebook.values[i];
             codebook.values[i] = inside;
         }

@@ -30,8 +30,8 @@ constexpr std::size_t PaletteColumns = 64;  // palette entries side by side in t
 constexpr std::uint64_t LargestDescription = std::uint64_t{4}
                                              << 20;  // bytes of a meta.json, which has a few thousand
 constexpr std::uint64_t LargestCount = std::uint64_t{16383} * 16383;  // a WebP picture has no more texels
-constexpr std::uint64_t LargestTexture =
-    LargestCount * 4 + (std::uint64_t{1} << 20);  // bytes of its file, were nothing compressed
+// Bytes of its file, were nothing compressed.
+constexpr std::uint64_t LargestTexture = LargestCount * 4 + (std::uint64_t{1} << 20);
 
 constexpr const char* LevelList = "lod-meta.json";  // of a streamed scene
 

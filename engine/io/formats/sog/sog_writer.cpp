@@ -28,8 +28,8 @@ constexpr std::size_t LargestPalette = 65536;  // 16-bit numbers
 constexpr std::size_t SmallestPalette = 1024;
 constexpr std::size_t EntriesPerLine = 64;  // of the centroid texture
 constexpr float LargestSogLogScale = 20;    // a size that no scene has would take a code of its own
-constexpr float LargestCoefficient =
-    100;  // nor a colour 28 times as bright as white: others would get coarser steps
+// Nor a colour 28 times as bright as white: others would get coarser steps.
+constexpr float LargestCoefficient = 100;
 constexpr std::uint64_t BytesPerRow = 100;  // textures, codebooks and palette while they are made
 
 /// A texture and the name of its file.

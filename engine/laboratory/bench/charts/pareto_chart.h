@@ -37,8 +37,8 @@ struct ChartPanel {
     std::string x_title, y_title;  // with units
     std::vector<ChartCurve> curves;
     ChartLine line = ChartLine::OwnFront;
-    ChartScale y_scale =
-        ChartScale::Percent;      // Percent: shares, from 0 on; the cost axis is always logarithmic
+    // Percent: shares, from 0 on; the cost axis is always logarithmic.
+    ChartScale y_scale = ChartScale::Percent;
     bool less_is_better = false;  // of y
     std::string title = {};       // above it, where there are several
     std::vector<ChartGuide> guides = {};

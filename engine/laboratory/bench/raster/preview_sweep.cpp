@@ -211,8 +211,8 @@ private:
             return std::max(1, static_cast<int>(std::lround(full * setting.scale)));
         };
         Camera small = camera.resized(side(camera.width), side(camera.height));
-        small.fy =
-            camera.fy * small.height / camera.height;  // rounding of the height must not bend the picture
+        // Rounding of the height must not bend the picture.
+        small.fy = camera.fy * small.height / camera.height;
         return small;
     }
 

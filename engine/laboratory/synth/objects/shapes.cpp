@@ -10,8 +10,8 @@ namespace gse::synth {
 namespace {
 
 constexpr double Tau = 2 * std::numbers::pi;
-constexpr double SoftBend =
-    0.75;                       // cosine of the angle between normals up to which a profile counts as smooth
+// Cosine of the angle between normals up to which a profile counts as smooth.
+constexpr double SoftBend = 0.75;
 constexpr double Hair = 0.002;  // model units; keeps touching surfaces from culling each other
 
 Vec3 multiply(const Vec3& a, const Vec3& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }

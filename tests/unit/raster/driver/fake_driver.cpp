@@ -36,7 +36,7 @@ bool wrong(const char* what) {
     return value != nullptr && std::strcmp(value, what) == 0;
 }
 
-/// Whether [address, address + bytes) lies in one allocation.
+/// Tells whether [address, address + bytes) lies in one allocation.
 bool known(DriverAddress address, std::size_t bytes) {
     const std::lock_guard lock(state().mutex);
     auto after = state().memory.upper_bound(address);
