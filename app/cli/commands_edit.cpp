@@ -6,7 +6,7 @@
 
 #include "app/cli/cli.h"
 #include "app/cli/dreambooth_options.h"
-#include "app/cli/engine_names.h"
+#include "app/engine_names.h"
 #include "app/session/state/edit_project.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"

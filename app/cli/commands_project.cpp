@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "app/cli/cli.h"
-#include "app/cli/engine_names.h"
+#include "app/engine_names.h"
 #include "engine/base/error.h"
 #include "engine/base/print.h"
 #include "engine/io/formats/scene_formats.h"

@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "app/cli/cli.h"
-#include "app/cli/engine_names.h"
 #include "app/cli/label_columns.h"
+#include "app/engine_names.h"
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/base/path_text.h"

@@ -3,7 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "app/cli/engine_names.h"
+#include "app/engine_names.h"
 #include "engine/pipeline/run/edit_job.h"
 
 namespace gse::app {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/cli/cli.h"
-#include "app/cli/engine_names.h"
+#include "app/engine_names.h"
 
 namespace gse::bench {}
 namespace gse::training {}

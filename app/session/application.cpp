@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <variant>
 
-#include "app/session/json_values.h"
+#include "app/session/state/json_values.h"
 #include "engine/base/desktop.h"
 #include "engine/base/error.h"
 #include "engine/base/log.h"

@@ -7,16 +7,16 @@
 #include <string>
 #include <utility>
 
-#include "app/session/edit/cost_book.h"
+#include "app/session/cost_book.h"
 #include "app/session/edit_controller.h"
 #include "app/session/export_controller.h"
 #include "app/session/file_controller.h"
 #include "app/session/label_controller.h"
 #include "app/session/model_controller.h"
+#include "app/session/preview_host.h"
 #include "app/session/search_controller.h"
+#include "app/session/state/workspace.h"
 #include "app/session/view_controller.h"
-#include "app/session/workspace.h"
-#include "app/window/preview_host.h"
 #include "ui/commands/command.h"
 #include "ui/view_model.h"
 

@@ -8,14 +8,14 @@
 #include <string>
 #include <vector>
 
-#include "app/session/edit/cost_book.h"
+#include "app/session/cost_book.h"
 #include "app/session/edit/live_edit.h"
 #include "app/session/edit/snapshots.h"
 #include "app/session/model_controller.h"
 #include "app/session/search_controller.h"
-#include "app/session/stage.h"
+#include "app/session/state/stage.h"
+#include "app/session/state/workspace.h"
 #include "app/session/view_controller.h"
-#include "app/session/workspace.h"
 
 namespace gse::app {
 

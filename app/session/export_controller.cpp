@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-#include "app/cli/engine_names.h"
+#include "app/engine_names.h"
 #include "engine/base/desktop.h"
 #include "engine/base/error.h"
 #include "engine/io/cameras/camera_json.h"

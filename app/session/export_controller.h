@@ -11,8 +11,8 @@
 #include "app/session/edit_controller.h"
 #include "app/session/label_controller.h"
 #include "app/session/search_controller.h"
+#include "app/session/state/workspace.h"
 #include "app/session/view_controller.h"
-#include "app/session/workspace.h"
 
 namespace gse::app {
 

@@ -10,7 +10,7 @@
 #include <thread>
 #include <utility>
 
-#include "app/cli/engine_names.h"
+#include "app/engine_names.h"
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/io/cameras/camera_json.h"

@@ -16,8 +16,8 @@
 #include "app/session/label_controller.h"
 #include "app/session/model_controller.h"
 #include "app/session/search_controller.h"
+#include "app/session/state/workspace.h"
 #include "app/session/view_controller.h"
-#include "app/session/workspace.h"
 
 namespace gse::app {
 

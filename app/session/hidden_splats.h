@@ -6,7 +6,7 @@
 #include <deque>
 #include <vector>
 
-#include "app/session/workspace.h"
+#include "app/session/state/workspace.h"
 #include "engine/scene/gaussian_set.h"
 #include "engine/scene/hidden_rows.h"
 

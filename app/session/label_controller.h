@@ -10,8 +10,8 @@
 #include "app/session/edit_controller.h"
 #include "app/session/model_controller.h"
 #include "app/session/search_controller.h"
+#include "app/session/state/workspace.h"
 #include "app/session/view_controller.h"
-#include "app/session/workspace.h"
 #include "engine/localize/row_picking.h"
 
 namespace gse::app {

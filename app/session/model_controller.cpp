@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "app/session/json_values.h"
+#include "app/session/state/json_values.h"
 #include "engine/base/disk_cache.h"
 #include "engine/base/error.h"
 #include "engine/base/json.h"

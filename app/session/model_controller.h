@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "app/cli/engine_names.h"
+#include "app/engine_names.h"
 #include "app/session/model_list.h"
-#include "app/session/workspace.h"
+#include "app/session/state/workspace.h"
 #include "engine/base/content_hash.h"
 #include "engine/neural/api/model_profile.h"
 #include "engine/pipeline/models/recipe_model.h"

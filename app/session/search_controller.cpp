@@ -1,5 +1,4 @@
-// The request and its search results: searches, votes of their views, and the scope of an edit (label or
-// search).
+// The request and its search: votes of its views, and the scope of an edit (label or search).
 #include "app/session/search_controller.h"
 
 #include <fmt/format.h>
@@ -12,7 +11,6 @@
 #include "app/session/state/located_label.h"
 #include "engine/base/clock.h"
 #include "engine/base/error.h"
-#include "engine/base/json.h"
 #include "engine/base/random.h"
 #include "engine/edit/request/checked_request.h"
 #include "engine/edit/request/edit_method.h"
@@ -207,19 +205,17 @@ template <> void SearchController::on(const command::LabelAnyway&) {
     const auto job = last_.job();
     if (!job || workspace_.jobs->works() || workspace_.results || job->found()) return;
     auto attention = std::make_shared<std::vector<float>>();
-    workspace_.jobs->start_work(JobKind::Search, {"Label what was found",
-                                                  [job, attention](const JobControl& control) {
-                                                      job->set_control(control);
-                                                      job->locate_anyway();
-                                                      *attention = splat_attention(*job);
-                                                  },
-                                                  [this, job, attention](const Error* error) {
-                                                      if (error != nullptr)
-                                                          return workspace_.report_end(*error);
-                                                      take_located(job, std::move(*attention));
-                                                      if (job->found()) label_located(*job, {}, {});
-                                                  },
-                                                  true});
+    auto work = [job, attention](const JobControl& control) {
+        job->set_control(control);
+        job->locate_anyway();
+        *attention = splat_attention(*job);
+    };
+    auto done = [this, job, attention](const Error* error) {
+        if (error != nullptr) return workspace_.report_end(*error);
+        take_located(job, std::move(*attention));
+        if (job->found()) label_located(*job, {}, {});
+    };
+    workspace_.jobs->start_work(JobKind::Search, {"Label what was found", work, done, true});
 }
 
 // Votes
@@ -251,13 +247,12 @@ void SearchController::vote_if_wanted() {
     const auto job = last_.job();
     if (!job || !last_.of(workspace_.document.state().current) || same_vote(wanted.with, last_.voted_with()))
         return;
-    workspace_.jobs->start_work(
-        JobKind::Vote, {"New vote",
-                        [job, wanted](const JobControl& control) {
-                            job->set_control(control);
-                            job->locate_again(wanted.with.attention_threshold, wanted.with.excluded_views);
-                        },
-                        [this, job, wanted](const Error* error) { end_vote(job, wanted, error); }, true});
+    auto work = [job, wanted](const JobControl& control) {
+        job->set_control(control);
+        job->locate_again(wanted.with.attention_threshold, wanted.with.excluded_views);
+    };
+    auto done = [this, job, wanted](const Error* error) { end_vote(job, wanted, error); };
+    workspace_.jobs->start_work(JobKind::Vote, {"New vote", work, done, true});
 }
 
 void SearchController::end_vote(const std::shared_ptr<EditJob>& job, const Vote& vote, const Error* error) {
@@ -320,13 +315,9 @@ void SearchController::refresh_reach() {
     }
     if (reach_key_ == hash.key()) return;
     reach_key_ = hash.key();
-    const auto& labels = workspace_.document.state().labels;
     const auto source = language::normalised_prompt(last_.words().source);
-    attention_corrected_ =
-        !last_.views().empty() && std::any_of(labels.begin(), labels.end(), [&](const NamedLabel& label) {
-            return (label.found_for == last_.word() || label.found_for == source) &&
-                   !label.found_for.empty() && corrected_by_hand(label);
-        });
+    attention_corrected_ = !last_.views().empty() &&
+                           corrected_after_search(workspace_.document.state().labels, {last_.word(), source});
     reach_ = {};
     labelled_by_hand_ = false;
     const NamedLabel* label = workspace_.active_label();
@@ -389,14 +380,12 @@ template <> void SearchController::on(const command::SetReach& one) { set_reach(
 template <> void SearchController::on(const command::RepeatEdit& one) {
     if (workspace_.document.empty()) return;
     for (const auto& node : workspace_.document.state().stack) {
-        if (node.id != one.id || node.recipe.empty()) continue;
-        const auto json = try_parse_json<nlohmann::ordered_json>(node.recipe);
-        if (!json.is_object() || !json.contains("request")) return;
+        if (node.id != one.id) continue;
         try {
-            edit::EditRequest request;
-            edit::read_request(request, json["request"]);
-            request.seed = Random::stream(request.seed, 77).next() % 1000000;
-            set_request(request);
+            auto request = recorded_request(node);
+            if (!request) return;
+            request->seed = Random::stream(request->seed, 77).next() % 1000000;
+            set_request(*request);
             workspace_.notices.toast("The settings are in the prompt, with a new seed.");
         } catch (const Error& error) { workspace_.notices.report(error); }
         return;

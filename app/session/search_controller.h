@@ -10,14 +10,14 @@
 #include <string>
 #include <vector>
 
-#include "app/session/edit/cost_book.h"
+#include "app/session/cost_book.h"
 #include "app/session/edit/last_search.h"
 #include "app/session/model_controller.h"
-#include "app/session/stage.h"
 #include "app/session/state/cost_profile.h"
 #include "app/session/state/edit_scope.h"
+#include "app/session/state/stage.h"
+#include "app/session/state/workspace.h"
 #include "app/session/view_controller.h"
-#include "app/session/workspace.h"
 #include "engine/base/content_hash.h"
 
 namespace gse::app {

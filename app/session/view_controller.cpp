@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "app/cli/engine_names.h"
+#include "app/engine_names.h"
 #include "engine/base/clock.h"
 #include "engine/io/cameras/camera_json.h"
 #include "engine/math/framing.h"

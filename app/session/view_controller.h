@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "app/session/hidden_splats.h"
-#include "app/session/stage.h"
-#include "app/session/workspace.h"
-#include "app/window/preview_host.h"
+#include "app/session/preview_host.h"
+#include "app/session/state/stage.h"
+#include "app/session/state/workspace.h"
 
 namespace gse::app {
 

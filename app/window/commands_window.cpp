@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "app/cli/cli.h"
-#include "app/cli/engine_names.h"
+#include "app/engine_names.h"
 #include "app/session/application.h"
 #include "app/window/viewport.h"
 #include "app/window/window_textures.h"

@@ -11,8 +11,8 @@
 #include <thread>
 #include <vector>
 
-#include "app/cli/engine_names.h"
-#include "app/window/preview_host.h"
+#include "app/engine_names.h"
+#include "app/session/preview_host.h"
 #include "engine/base/mailbox.h"
 #include "engine/base/shared_queue.h"
 #include "engine/pipeline/run/scene_tools.h"

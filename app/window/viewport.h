@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "app/cli/engine_names.h"
-#include "app/window/preview_host.h"
+#include "app/engine_names.h"
+#include "app/session/preview_host.h"
 #include "app/window/preview_native.h"
 #include "app/window/window_textures.h"
 #include "engine/preview/splat_renderer.h"

@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "app/cli/engine_names.h"
+#include "app/engine_names.h"
 #include "engine/vulkan/resources.h"
 #include "engine/window/window.h"
 #include "ui/view_model.h"

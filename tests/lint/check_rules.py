@@ -39,6 +39,17 @@ ARROWS = {
 # room -> its sub-rooms, each with the sub-rooms of the same room that it may include; "" = files directly in
 # the room
 SUB_ROOMS = {
+    "app": {
+        "": set(),
+        "session/state": {""},
+        "session/edit": {"", "session/state"},
+        "session/files": {"", "session/state"},
+        "session": {"", "session/state", "session/edit", "session/files"},
+        "cli": {"", "session/state"},
+        "window": {"", "cli", "session"},
+        "laboratory": {"", "cli", "window"},
+        "main": {"cli", "laboratory"},
+    },
     "edit": {
         "request": set(),
         "interfaces": {"request"},
@@ -173,21 +184,23 @@ def check_include(relative, line_number, target, is_header):
         yield f"{relative}:{line_number}: ui must not include {target}"
 
 
-def subroom_of(parts):
-    """Path of the folder inside its room: engine/io/formats/ply/x.h -> formats/ply."""
-    return "/".join(parts[2:-1])
+def room_of(path):
+    """Folder that is divided into sub-rooms: engine/io for engine/io/formats/ply/x.h, app for app/cli/x.h."""
+    parts = path.split("/")
+    return "/".join(parts[:2]) if parts[0] == "engine" else parts[0]
 
 
 def check_subrooms(relative, line_number, target):
     """Arrows between the sub-rooms of one room."""
-    room = relative.parts[1] if relative.parts[0] == "engine" else None
-    if room not in SUB_ROOMS or not target.startswith(f"engine/{room}/"):
+    room = room_of(str(relative))
+    table = SUB_ROOMS.get(room.removeprefix("engine/"))
+    if table is None or room_of(target) != room:
         return
-    table, own, used = SUB_ROOMS[room], subroom_of(relative.parts), subroom_of(target.split("/"))
+    own, used = (str(pathlib.PurePosixPath(path).parent)[len(room) + 1:] for path in (relative, target))
     if own not in table:
-        yield f"{relative}:{line_number}: engine/{room} has no sub-room \"{own}\" in the table"
+        yield f"{relative}:{line_number}: {room} has no sub-room \"{own}\" in the table"
     elif used != own and used not in table[own]:
-        yield f"{relative}:{line_number}: engine/{room}/{own} must not include engine/{room}/{used}"
+        yield f"{relative}:{line_number}: {room}/{own} must not include {room}/{used}"
 
 
 def check_units(root):
@@ -350,6 +363,8 @@ def self_test():
                                   "engine/io/bytes must not include engine/io/image"),
         "engine/neural/layers/p.cpp": ("// x\n#include \"engine/neural/diffusion/unet.h\"\n",
                                        "engine/neural/layers must not include engine/neural/diffusion"),
+        "app/cli/n.cpp": ("// x\n#include \"app/session/application.h\"\n",
+                          "app/cli must not include app/session"),
         "engine/neural/api/q.cpp": ("// x\n#include <torch/torch.h>\n", "is free of torch"),
         "engine/pipeline/r.cpp": ("// x\n#include \"engine/neural/weights/lora.h\"\n",
                                   "is included from outside"),

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "app/cli/engine_names.h"
-#include "app/session/stage.h"
+#include "app/engine_names.h"
 #include "app/session/state/arriving_views.h"
+#include "app/session/state/stage.h"
 #include "engine/neural/api/api.h"
 #include "engine/pipeline/run/edit_job.h"
 #include "ui/view_model.h"

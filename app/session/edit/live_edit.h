@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "app/cli/engine_names.h"
+#include "app/engine_names.h"
 #include "app/session/edit/snapshots.h"
 #include "app/session/state/cost_profile.h"
 #include "app/session/state/pending_result.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "app/cli/engine_names.h"
+#include "app/engine_names.h"
 #include "engine/base/error.h"
 #include "engine/io/scene/scene_file.h"
 #include "engine/pipeline/run/scene_loading.h"

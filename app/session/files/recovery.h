@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "app/session/workspace.h"
+#include "app/session/state/workspace.h"
 #include "engine/io/project/autosave.h"
 #include "engine/io/project/project_file.h"
 

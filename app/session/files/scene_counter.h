@@ -1,7 +1,7 @@
 // Statistics of the splats for the Scene panel, counted beside the frames: large scenes take a while.
 #pragma once
 
-#include "app/session/workspace.h"
+#include "app/session/state/workspace.h"
 #include "engine/scene/gaussian_set.h"
 #include "engine/scene/scene.h"
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "app/cli/engine_names.h"
+#include "app/engine_names.h"
 #include "app/session/state/arriving_views.h"
 #include "app/session/state/estimate.h"
 #include "engine/base/process_memory.h"

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/cli/engine_names.h"
+#include "app/engine_names.h"
 #include "engine/io/project/project_file.h"
 #include "engine/pipeline/run/edit_job.h"
 

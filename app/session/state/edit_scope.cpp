@@ -25,22 +25,34 @@ bool corrected_by_hand(const NamedLabel& label) {
            std::any_of(label.manual->begin(), label.manual->end(), [](auto by_hand) { return by_hand != 0; });
 }
 
+bool corrected_after_search(const std::vector<NamedLabel>& labels, const std::vector<std::string>& words) {
+    return std::any_of(labels.begin(), labels.end(), [&](const NamedLabel& label) {
+        return !label.found_for.empty() &&
+               std::find(words.begin(), words.end(), label.found_for) != words.end() &&
+               corrected_by_hand(label);
+    });
+}
+
 bool is_label_of(const NamedLabel& label, const std::string& word) {
     return !word.empty() && (label.name == word || label.found_for == word);
+}
+
+std::optional<edit::EditRequest> recorded_request(const EditNode& node) {
+    const auto json = try_parse_json<nlohmann::ordered_json>(node.recipe);
+    if (!json.is_object() || !json.contains("request")) return {};
+    edit::EditRequest request;
+    edit::read_request(request, json["request"]);
+    return request;
 }
 
 std::vector<language::EditSentence> applied_sentences(const std::vector<EditNode>& stack) {
     std::vector<language::EditSentence> applied;
     for (const auto& node : stack) {
-        const auto json = try_parse_json<nlohmann::ordered_json>(node.recipe);
-        if (!node.enabled || !json.is_object() || !json.contains("request")) continue;
-        edit::EditRequest request;
+        if (!node.enabled) continue;
         try {
-            edit::read_request(request, json["request"]);
+            if (const auto request = recorded_request(node)) applied.push_back(edit::edit_sentence(*request));
         } catch (const Error&) {  // of another version: what it said is not known
-            continue;
         }
-        applied.push_back(edit::edit_sentence(request));
     }
     return applied;
 }

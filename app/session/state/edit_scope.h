@@ -24,6 +24,9 @@ bool made_by_hand(const NamedLabel& label);
 /// Tells whether a search corrected, or a whole label made, by hand says more than the views do.
 bool corrected_by_hand(const NamedLabel& label);
 
+/// Tells whether a label found by a search for one of the words was corrected by hand.
+bool corrected_after_search(const std::vector<NamedLabel>& labels, const std::vector<std::string>& words);
+
 /// Tells whether it is the label of that word: by its name, or because a search for the word made it.
 bool is_label_of(const NamedLabel& label, const std::string& word);
 
@@ -37,6 +40,9 @@ bool label_says(const NamedLabel& label, const edit::EditRequest& request,
 /// object is one that the model cannot find (for example one that it drew).
 bool stands_alone(const NamedLabel& label, const edit::EditRequest& request,
                   const std::vector<std::string>& known);
+
+/// Request of an edit of the stack; nothing for edits by hand. Throws Error for one of another version.
+std::optional<edit::EditRequest> recorded_request(const EditNode& node);
 
 /// Prompts of the edits of a stack that are switched on. Edits by hand, or of another version, are passed
 /// over.

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/cli/engine_names.h"
+#include "app/engine_names.h"
 #include "engine/base/fields.h"
 #include "engine/pipeline/run/edit_job.h"
 

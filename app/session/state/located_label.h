@@ -1,7 +1,7 @@
 // Result of a search as a label of the document.
 #pragma once
 
-#include "app/cli/engine_names.h"
+#include "app/engine_names.h"
 #include "engine/pipeline/run/edit_job.h"
 #include "engine/scene/document.h"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "app/cli/engine_names.h"
+#include "app/engine_names.h"
 #include "engine/base/image.h"
 #include "engine/pipeline/run/edit_job.h"
 #include "engine/scene/document.h"

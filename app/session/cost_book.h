@@ -7,7 +7,7 @@
 
 #include "app/session/model_controller.h"
 #include "app/session/state/estimate.h"
-#include "app/session/workspace.h"
+#include "app/session/state/workspace.h"
 
 namespace gse::app {
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "app/session/notices.h"
+#include "app/session/state/notices.h"
 #include "app/session/state/waiting_results.h"
 #include "engine/base/job_thread.h"
 #include "engine/scene/document.h"

@@ -1,6 +1,6 @@
 // Ground that all controllers stand on: the document, the jobs, messages, and what belongs to the window
 // itself.
-#include "app/session/workspace.h"
+#include "app/session/state/workspace.h"
 
 #include <utility>
 

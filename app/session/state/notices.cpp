@@ -1,5 +1,5 @@
 // Messages to the artist: short notices over the viewport, one question at a time, and the log.
-#include "app/session/notices.h"
+#include "app/session/state/notices.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>

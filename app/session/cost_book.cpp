@@ -1,5 +1,5 @@
 // Costs of past work with each model on this machine, and estimates for the next edit.
-#include "app/session/edit/cost_book.h"
+#include "app/session/cost_book.h"
 
 #include <fmt/format.h>
 
