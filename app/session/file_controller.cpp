@@ -1,12 +1,10 @@
 // Files and recovery: opening, saving, recipes out of pictures, autosaves, and leaving a running edit.
 #include "app/session/file_controller.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
-#include <ctime>
 #include <thread>
 #include <utility>
 
@@ -30,12 +28,10 @@ namespace command = ui::command;
 constexpr const char* FilesBusy = "Another file is being read or written; wait for it.";
 constexpr int ThumbnailPx = 192;
 
-std::string clock_now() { return fmt::format("{:%H:%M}", fmt::localtime(std::time(nullptr))); }
-
 }  // namespace
 
 FileController::FileController(Workspace& workspace, const Parts& parts)
-    : workspace_(workspace), parts_(parts), recovery_(workspace), counter_(workspace) {
+    : workspace_(workspace), parts_(parts), recovery_(workspace), project_(workspace), counter_(workspace) {
     list_recent();
     recovery_.list();
 }
@@ -130,8 +126,14 @@ void FileController::take(OpenedWork opened) {
     if (!opened.recovered) add_recent(opened.path);
     list_recent();
     const auto now = moment();
-    saved_ = opened.recovered ? std::nullopt : std::optional(Recovery::Moment{now.revision, 0, now.keys});
+    using Moment = Recovery::Moment;
+    const auto holds = opened.recovered ? std::nullopt : std::optional(Moment{now.revision, 0, now.keys});
+    const bool alone = project_.begin(opened.project_path, holds);
     recovery_.begin(now, std::move(opened.recovered));
+    if (!alone)
+        project_.offer_copy([this](const auto& path) {
+            run(ui::FileCommand(command::SaveProject{path, {}}));
+        });
     for (const auto& note : opened.notes) {
         log::info("{}", note);
         workspace_.notices.toast(note);
@@ -234,25 +236,13 @@ template <> void FileController::on(const command::SaveProject& one) {
     const auto data = project_data();
     data->state = workspace_.document.state();
     const auto now = moment();
-    auto done = [this, target, now, then = one.then](const Error* error) {
-        if (error != nullptr) return workspace_.notices.report(*error);
-        workspace_.project_path = target.string();
-        saved_ = Recovery::Moment{now.revision, 0, now.keys};
-        saved_at_ =
-            fmt::format("saved {}{}", clock_now(), workspace_.options.autosave ? " (autosave on)" : "");
+    project_.save(target, data, {now.revision, 0, now.keys}, [this, target, then = one.then] {
         recovery_.outdate();  // what is still unsaved is written anew
         if (!unsaved()) recovery_.forget_recovered();
         add_recent(target);
         list_recent();
-        workspace_.notices.toast(fmt::format("Saved {}", target.filename().string()));
         if (then) then();
-    };
-    const auto work = [this, data, target](const JobControl& control) {
-        control.report("saving", 0, 0);
-        writer_->save(target, *data);
-    };
-    if (!workspace_.jobs->files.start({fmt::format("Save {}", target.filename().string()), work, done}))
-        workspace_.notices.toast("Another file is being read or written; save again in a moment.");
+    });
 }
 
 template <> void FileController::on(const command::CancelFileJob&) { workspace_.jobs->files.cancel(); }
@@ -266,7 +256,7 @@ Recovery::Moment FileController::moment() const {
 bool FileController::unsaved() const {
     if (workspace_.document.empty()) return false;
     const auto now = moment();
-    return now.live != 0 || saved_ != now;
+    return now.live != 0 || !project_.holds(now);
 }
 
 /// Draws what the artist sees small, on the thread that calls it.
@@ -292,7 +282,7 @@ void FileController::write_autosave(std::function<void()> then) {
     const auto now = moment();
     const auto edit = now.live != 0 ? parts_.edits.kept_json() : kept_edit_;
     if (!edit.is_null()) data->jobs["edit"] = edit;
-    recovery_.write(now, {data, parts_.edits.kept_state(), thumbnail()}, *writer_, std::move(then));
+    recovery_.write(now, {data, parts_.edits.kept_state(), thumbnail()}, project_.writer(), std::move(then));
 }
 
 template <> void FileController::on(const command::LeaveEdit& one) {
@@ -365,6 +355,7 @@ void FileController::refresh() {
     auto& jobs = *workspace_.jobs;
     if (workspace_.document.empty()) {
         if (!jobs.files.running()) recovery_.see_start_page();
+        recovery_.refresh();
     } else {
         counter_.refresh();
         if (workspace_.options.autosave && !jobs.saver.running()) {
@@ -386,7 +377,7 @@ void FileController::show(ui::DocumentPart& model) const {
     model.project_path = workspace_.project_path;
     model.suggested_project = document.empty() ? std::string() : default_project_path().string();
     model.unsaved = unsaved();
-    model.saved_at = saved_at_;
+    model.saved_at = project_.saved_at();
     model.recent = recent_;
     recovery_.show(model);
 }

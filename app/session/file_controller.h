@@ -12,6 +12,7 @@
 #include "app/session/export_controller.h"
 #include "app/session/files/opened_work.h"
 #include "app/session/files/recovery.h"
+#include "app/session/files/saved_project.h"
 #include "app/session/files/scene_counter.h"
 #include "app/session/label_controller.h"
 #include "app/session/model_controller.h"
@@ -71,15 +72,13 @@ private:
     Workspace& workspace_;
     Parts parts_;
     Recovery recovery_;
+    SavedProject project_;
     SceneCounter counter_;
     SceneSource source_;
     nlohmann::json unknown_ = nlohmann::json::object();
-    std::unique_ptr<ProjectWriter> writer_ = std::make_unique<ProjectWriter>();
-    std::vector<std::string> recent_;        // newest first
-    std::optional<Recovery::Moment> saved_;  // what the project's file holds; none = not what is open
-    std::string saved_at_;                   // "saved 14:02 (autosave on)"
-    nlohmann::json kept_edit_;               // of an edit that was stopped before its first step
-    std::optional<Leaving> leaving_;         // waits for the edit to stop
+    std::vector<std::string> recent_;  // newest first
+    nlohmann::json kept_edit_;         // of an edit that was stopped before its first step
+    std::optional<Leaving> leaving_;   // waits for the edit to stop
 };
 
 }  // namespace gse::app

@@ -15,6 +15,7 @@
 namespace gse::app {
 namespace {
 
+constexpr double ListSeconds = 2;        // between two looks for work of programs that ended
 constexpr double ThumbnailSeconds = 30;  // a picture of the scene is drawn anew this often at most
 
 std::string moment_text(std::int64_t seconds) {
@@ -142,6 +143,12 @@ void Recovery::list() {
         view.offered = !workspace_.document.empty() && (of_this || was || !start_page_seen_);
         offers_.push_back(std::move(view));
     }
+}
+
+void Recovery::refresh() {
+    if (seconds_since(listed_) < ListSeconds) return;
+    listed_ = Clock::now();
+    if (find_recoverable().size() != offers_.size()) list();
 }
 
 void Recovery::run(const ui::command::DiscardRecovery& command) {

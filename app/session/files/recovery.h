@@ -56,6 +56,8 @@ public:
 
     // Work of other sessions
     void list();
+    /// Lists anew where more can be had back: a program that was killed may end after this one began.
+    void refresh();
     void run(const ui::command::DiscardRecovery& command);
     void run(const ui::command::PostponeRecovery& command);
     void see_start_page() { start_page_seen_ = true; }
@@ -72,6 +74,7 @@ private:
     std::shared_ptr<const Image> thumbnail_;
     Clock::time_point thumbnail_made_{};
     std::vector<ui::RecoveryView> offers_;  // newest first
+    Clock::time_point listed_ = Clock::now();
 };
 
 }  // namespace gse::app

@@ -35,22 +35,34 @@ std::string read_line(const std::string& path) {
 /// Id that changes with every start of the machine. Empty if the system does not tell.
 std::string boot_id() { return read_line("/proc/sys/kernel/random/boot_id"); }
 
-/// Start of the process in ticks since the boot. Empty if the system does not tell or there is no such
-/// process.
-std::string process_start(long process) {
+/// Line of the process in /proc, from its state on; empty if there is no such process or it has ended.
+std::string stat_of(long process) {
     const std::string line = read_line(fmt::format("/proc/{}/stat", process));
-    // Field 22; the second one, the name in brackets, may hold blanks and brackets.
-    std::size_t at = line.rfind(')');
-    for (int field = 2; field < 22 && at != std::string::npos; ++field) at = line.find(' ', at + 1);
-    if (at == std::string::npos) return {};
-    return line.substr(at + 1, line.find(' ', at + 1) - at - 1);
+    // The name before it, in brackets, may hold blanks and brackets.
+    const std::size_t name_end = line.rfind(')');
+    if (name_end == std::string::npos || name_end + 2 >= line.size()) return {};
+    const char state = line[name_end + 2];
+    const bool ended = state == 'Z' || state == 'X';  // dead, though its parent has not asked for it yet
+    return ended ? std::string() : line.substr(name_end + 2);
+}
+
+/// Start of the process in ticks since the boot. Empty if there is no such process or it has ended.
+std::string process_start(long process) {
+    const std::string line = stat_of(process);
+    std::size_t at = line.empty() ? std::string::npos : 0;
+    for (int field = 3; field < 22 && at != std::string::npos; ++field) {  // the state is field 3
+        at = line.find(' ', at);
+        if (at != std::string::npos) ++at;
+    }
+    return at == std::string::npos ? std::string() : line.substr(at, line.find(' ', at) - at);
 }
 
 bool owner_lives(const Json& json) {
     const long process = json.value("process", 0L);
     if (process <= 0 || json.value("boot", "") != boot_id()) return false;
-    if (kill(static_cast<pid_t>(process), 0) != 0 && errno == ESRCH) return false;
-    return json.value("start", "") == process_start(process);
+    const std::string start = json.value("start", "");
+    if (start.empty()) return kill(static_cast<pid_t>(process), 0) == 0 || errno != ESRCH;  // no /proc
+    return start == process_start(process);
 }
 
 std::string random_id() {

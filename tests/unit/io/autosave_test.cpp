@@ -1,8 +1,13 @@
 // Autosaves, settings and recent files in folders of their own.
 #include <fmt/core.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <cstdlib>
+#include <fstream>
+#include <sstream>
 
 #include "engine/base/log.h"
 #include "engine/io/files/user_files.h"
@@ -29,6 +34,16 @@ void kill_owner(const fs::path& autosave) {
     auto json = nlohmann::json::parse(read_file(sidecar));
     json["start"] = "1";
     write_file(sidecar, json.dump());
+}
+
+/// Start of a process as /proc tells it, field 22 of its line.
+std::string start_of(pid_t process) {
+    std::ifstream stream(fmt::format("/proc/{}/stat", process));
+    std::string line, field;
+    std::getline(stream, line);
+    std::istringstream fields(line.substr(line.rfind(')') + 1));
+    for (int number = 3; number <= 22; ++number) fields >> field;
+    return field;
 }
 
 struct Quiet {
@@ -90,6 +105,27 @@ DOCTEST_TEST_CASE("an autosave that was left is offered while its process lives,
     autosave.discard();
     DOCTEST_CHECK(find_recoverable(folder.path()).size() == 1);
     DOCTEST_CHECK(fs::exists(left));
+}
+
+DOCTEST_TEST_CASE("work of a killed process is offered before its parent has asked for the process") {
+    const ScratchFolder folder;
+    ProjectWriter writer;
+    Autosave autosave(folder.path());
+    autosave.write(random_project({{}, 0, 0, random_set(20, 0, 1)}, 1), "", writer);
+    const pid_t child = fork();
+    if (child == 0)
+        while (true) pause();
+    const auto sidecar = fs::path(autosave.path()).replace_extension(".json");
+    auto json = nlohmann::json::parse(read_file(sidecar));
+    json["process"] = child;
+    json["start"] = start_of(child);
+    write_file(sidecar, json.dump());
+    DOCTEST_CHECK(find_recoverable(folder.path()).empty());  // it lives
+    kill(child, SIGKILL);
+    siginfo_t ended{};
+    DOCTEST_REQUIRE(waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOWAIT) == 0);  // a zombie
+    DOCTEST_CHECK(find_recoverable(folder.path()).size() == 1);
+    waitpid(child, nullptr, 0);
 }
 
 DOCTEST_TEST_CASE("discarding removes, damaged sidecars are passed over") {
