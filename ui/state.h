@@ -68,6 +68,7 @@ struct PromptState {
     std::vector<std::string> source_suggestions;
     std::string source_help;
     bool source_known = true;
+    double typed_at = -1e9;       // time of ImGui when a letter of a field was typed last
     std::string settings_filter;  // what "All settings" is searched for
     std::string guessed_target;
     std::string cut_at;       // first word that the text encoder does not read

@@ -12,12 +12,13 @@ constexpr int Tab = 258, F6 = 295;                       // keys that move the f
 constexpr int FirstModifier = 340, LastModifier = 347;
 constexpr int Commanding = 2 | 4 | 8;     // Control, Alt, Super: with them a letter writes nothing
 constexpr std::uint64_t FocusFrames = 3;  // until the field that Tab moves to takes characters
+constexpr std::uint64_t ClickFrames = 2;  // until the field, or what a button opens, does after a click
 
 bool is_modifier(int key) { return key >= FirstModifier && key <= LastModifier; }
 
 /// Key with an effect of its own, other than its character.
 bool acts(const InputQueue::Event& event) {
-    if (event.character || event.action != Press || is_modifier(event.key)) return false;
+    if (event.character || event.button >= 0 || event.action != Press || is_modifier(event.key)) return false;
     const bool writes = event.key >= FirstPrintable && event.key <= LastPrintable;
     return !writes || (event.modifiers & Commanding) != 0;
 }
@@ -25,6 +26,8 @@ bool acts(const InputQueue::Event& event) {
 }  // namespace
 
 bool InputQueue::fits(const Event& event) const {
+    if (event.button >= 0) return !clicked_ && !pressed_ && !other_pressed_ && !typed_;
+    if (clicked_) return false;
     if (event.character) return !pressed_ && frame_ >= free_from_;
     if (event.action != Press && event.action != Release) return true;  // a repetition; ImGui makes its own
     if (std::find(changed_.begin(), changed_.end(), event.key) != changed_.end()) return false;
@@ -34,6 +37,11 @@ bool InputQueue::fits(const Event& event) const {
 }
 
 void InputQueue::note(const Event& event) {
+    if (event.button >= 0) {
+        clicked_ = true;
+        free_from_ = frame_ + ClickFrames;
+        return;
+    }
     if (event.character) {
         typed_ = true;
         return;
@@ -45,10 +53,15 @@ void InputQueue::note(const Event& event) {
     if (event.key == Tab || event.key == F6) free_from_ = frame_ + FocusFrames;
 }
 
+bool InputQueue::click_waits() const {
+    return std::any_of(waiting_.begin(), waiting_.end(),
+                       [](const Event& event) { return event.button >= 0; });
+}
+
 std::vector<InputQueue::Event> InputQueue::next_frame() {
     ++frame_;
     changed_.clear();
-    pressed_ = other_pressed_ = typed_ = false;
+    pressed_ = other_pressed_ = typed_ = clicked_ = false;
     std::vector<Event> events;
     while (!waiting_.empty() && fits(waiting_.front())) {
         note(waiting_.front());

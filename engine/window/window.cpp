@@ -87,7 +87,8 @@ struct Window::State {
     Glfw glfw;
     void hand_on_input();
     InputQueue input;
-    bool came_in = false;  // since it was last asked for
+    std::array<bool, 5> buttons_down{};  // of the mouse, as the frames have been told; ImGui's five
+    bool came_in = false;                // since it was last asked for
     GLFWwindow* window = nullptr;
     std::optional<vulkan::Instance> instance;
     std::optional<vk::raii::SurfaceKHR> surface;
@@ -130,6 +131,12 @@ Window::State::State(const WindowOptions& wanted) : options(wanted), wanted_scal
     glfwSetCharCallback(window, [](GLFWwindow* target, unsigned character) {
         of(target).push({true, 0, 0, 0, 0, character});
     });
+    glfwSetMouseButtonCallback(window, [](GLFWwindow* target, int button, int action, int modifiers) {
+        double x = 0, y = 0;
+        glfwGetCursorPos(target, &x, &y);
+        of(target).push(
+            {false, 0, 0, action, modifiers, 0, button, static_cast<float>(x), static_cast<float>(y)});
+    });
     translate_texts();
     make_device();
 }
@@ -157,12 +164,28 @@ void Window::State::translate_texts() {
 }
 
 void Window::State::hand_on_input() {
+    auto& io = ImGui::GetIO();
+    const ImVec2 cursor_before = io.MousePos;
+    const bool held = input.click_waits();  // the cursor may have moved on since
+    std::optional<ImVec2> clicked;
     for (const auto& event : input.next_frame()) {
-        if (event.character)
+        if (event.button >= 0) {
+            if (event.button < static_cast<int>(buttons_down.size()))
+                buttons_down[static_cast<std::size_t>(event.button)] = event.action == GLFW_PRESS;
+            clicked = ImVec2(event.x, event.y);
+        } else if (event.character) {
             ImGui_ImplGlfw_CharCallback(
                 window, options.take_character ? options.take_character(event.codepoint) : event.codepoint);
-        else ImGui_ImplGlfw_KeyCallback(window, event.key, event.code, event.action, event.modifiers);
+        } else {
+            ImGui_ImplGlfw_KeyCallback(window, event.key, event.code, event.action, event.modifiers);
+        }
     }
+    ImGui_ImplGlfw_NewFrame();
+    // The backend asks for the state of the mouse as it is now; a click counts where and when it was made.
+    for (std::size_t button = 0; button < buttons_down.size(); ++button)
+        io.MouseDown[button] = buttons_down[button];
+    if (clicked) io.MousePos = *clicked;
+    else if (held) io.MousePos = cursor_before;
     if (input.waiting()) Window::wake();  // the next frame is wanted at once
 }
 
@@ -286,7 +309,6 @@ float Window::State::desktop_scale() const {
 /// Applies the scale to fonts and sizes. Glyphs are made for the pixels they are shown with.
 void Window::State::update_scale() {
     const float now = wanted_scale > 0 ? std::clamp(wanted_scale, 0.5f, 4.0f) : desktop_scale();
-    if (now == scale && !fonts_stale && !undressed) return;
     auto& io = ImGui::GetIO();
     auto& style = ImGui::GetStyle();
     if (now != scale || undressed || !io.Fonts->IsBuilt()) {

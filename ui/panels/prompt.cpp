@@ -38,6 +38,7 @@ constexpr std::array<Group, 8> Groups{{{"views", "Views"},
                                        {"snapshot_every", "Running"}}};
 
 constexpr double LeastStrength = 0;
+constexpr double TypingPause = 0.5;  // seconds without a letter, after which words are judged
 constexpr std::array<const char*, 4> Modes{"auto", "modify", "replace", "add"};
 constexpr std::array<const char*, 4> ModeHelp{
     "As the sentence says: what describes the source modifies it, what stands in its place replaces it.",
@@ -85,10 +86,14 @@ void draw_source(Context& context) {
     auto& prompt = context.state.prompt;
     dim_text("What in the scene is it about?");
     tooltip("A thing by its name, of one word or several. Empty: the target itself is looked for.");
-    context.request_changed |=
-        text_input(context, "prompt.source", context.request.source, "for example: bear");
-    if (!prompt.source_known) draw_unknown_source(context);
+    if (text_input(context, "prompt.source", context.request.source, "for example: bear")) {
+        context.request_changed = true;
+        prompt.typed_at = ImGui::GetTime();
+    }
 }
+
+/// True while a field of words is being typed into: half a word is not judged.
+bool typing(const Context& context) { return ImGui::GetTime() - context.state.prompt.typed_at < TypingPause; }
 
 void draw_sentence(Context& context) {
     auto& prompt = context.state.prompt;
@@ -98,12 +103,18 @@ void draw_sentence(Context& context) {
     if (text_input(context, "prompt.sentence", context.request.prompt,
                    "for example: a bear wearing a red hat")) {
         context.request_changed = true;
+        prompt.typed_at = ImGui::GetTime();
         // What was clicked belongs to the sentence it was clicked in.
         if (language::words_of(before) != language::words_of(context.request.prompt))
             context.request.target.clear();
     }
+}
+
+/// Words of the sentence as chips: the target is clicked, a word that is not known is exchanged.
+void draw_chips(Context& context) {
+    const auto& prompt = context.state.prompt;
     if (prompt.chips.empty()) return;
-    const ChipClick click = chips(context, "prompt.chip", prompt.chips);
+    const ChipClick click = chips(context, "prompt.chip", prompt.chips, !typing(context));
     if (click.chosen >= 0) {
         const auto& chip = prompt.chips[static_cast<std::size_t>(click.chosen)];
         const auto index = static_cast<std::size_t>(click.chosen);
@@ -122,6 +133,14 @@ void draw_sentence(Context& context) {
         context.request.prompt = with_word(context.request.prompt, index, chip.suggestion);
         context.request_changed = true;
     }
+}
+
+/// Remarks about both fields, below them: no field moves under the cursor, and Tab leads from field to field.
+void draw_remarks(Context& context) {
+    const auto& prompt = context.state.prompt;
+    if (typing(context)) return;
+    if (!prompt.source_known) draw_unknown_source(context);
+    if (prompt.chips.empty()) return;
     if (!prompt.cut_at.empty())
         coloured_text(palette::Warning,
                       fmt::format("The model reads {} words of a sentence: from \"{}\" on nothing counts.",
@@ -286,7 +305,7 @@ std::string memory_warning(const Estimate& estimate) {
 
 /// Obstacles, shown without hovering too.
 std::string obstacle_text(const Context& context) {
-    if (!context.scene_open() || context.model.job.running) return {};
+    if (!context.scene_open() || context.model.job.running || typing(context)) return {};
     const std::string why = why_not_edit(context);
     return why.empty() || why.ends_with('.') ? why : fmt::format("{}.", why);
 }
@@ -387,8 +406,6 @@ void draw_run(Context& context) {
                                 .width = stacked ? -1 : width})) {
         run_edit(context);
     }
-    const std::string obstacle = obstacle_text(context);
-    if (!obstacle.empty()) dim_text(obstacle);
 }
 
 void back_to_defaults(Context& context) {
@@ -497,6 +514,8 @@ void draw_advanced(Context& context) {
 void draw_words(Context& context) {
     draw_source(context);
     draw_sentence(context);
+    draw_chips(context);
+    draw_remarks(context);
     draw_instruction(context);
     ImGui::Spacing();
     draw_mode(context);
@@ -530,6 +549,7 @@ void draw_prompt_panel(Context& context) {
     ImGui::EndChild();
     draw_estimate(context);
     draw_reach(context);
+    if (const std::string obstacle = obstacle_text(context); !obstacle.empty()) dim_text(obstacle);
     draw_run(context);
 }
 

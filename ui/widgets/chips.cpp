@@ -35,7 +35,7 @@ std::string explained(const Chip& chip) {
     return "Click to make this word the target of the edit; with Shift, the words up to it.";
 }
 
-void draw_chip(Context& context, const Chip& chip, ImVec2 low, ImVec2 high) {
+void draw_chip(Context& context, const Chip& chip, bool unknown, ImVec2 low, ImVec2 high) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     const float round = context.em * 0.32f;
     const bool hovered = ImGui::IsItemHovered();
@@ -46,18 +46,18 @@ void draw_chip(Context& context, const Chip& chip, ImVec2 low, ImVec2 high) {
                                   : palette::Raised,
                         round);
     if (chip.target) list->AddRect(low, high, palette::Accent, round, 0, std::max(1.0f, context.em * 0.08f));
-    if (!chip.known) list->AddRect(low, high, palette::Warning, round, 0, 1);
+    if (unknown) list->AddRect(low, high, palette::Warning, round, 0, 1);
     const ImVec2 at(low.x + context.em * 0.45f, low.y + context.em * 0.2f);
     const Shown shown(chip.text);
     list->AddText(at,
-                  !chip.read   ? palette::TextDim
-                  : chip.known ? palette::Text
-                               : palette::Warning,
+                  !chip.read ? palette::TextDim
+                  : unknown  ? palette::Warning
+                             : palette::Text,
                   shown.begin(), shown.end());
     const float width = ImGui::CalcTextSize(shown.begin(), shown.end()).x;
     const float middle = std::round((low.y + high.y) * 0.5f);
     if (!chip.read) list->AddLine({at.x, middle}, {at.x + width, middle}, palette::TextDim, 1);
-    if (!chip.known) squiggle(list, {at.x, high.y - context.em * 0.16f}, width, context.em);
+    if (unknown) squiggle(list, {at.x, high.y - context.em * 0.16f}, width, context.em);
     if (chip.source && !chip.target)
         list->AddLine({at.x, high.y - context.em * 0.18f}, {at.x + width, high.y - context.em * 0.18f},
                       palette::Good, 2);
@@ -65,7 +65,7 @@ void draw_chip(Context& context, const Chip& chip, ImVec2 low, ImVec2 high) {
 
 }  // namespace
 
-ChipClick chips(Context& context, std::string_view name, std::span<const Chip> words) {
+ChipClick chips(Context& context, std::string_view name, std::span<const Chip> words, bool judged) {
     ChipClick click;
     ImGui::PushID(name.data(), name.data() + name.size());
     for (int index = 0; index < static_cast<int>(words.size()); ++index) {
@@ -80,9 +80,9 @@ ChipClick chips(Context& context, std::string_view name, std::span<const Chip> w
             click.extends = ImGui::GetIO().KeyShift;
         }
         note(context, fmt::format("{}.{}", name, index));
-        draw_chip(context, chip, low, {low.x + width, low.y + context.em * 1.5f});
+        draw_chip(context, chip, judged && !chip.known, low, {low.x + width, low.y + context.em * 1.5f});
         tooltip(explained(chip));
-        if (!chip.known && !chip.suggestion.empty()) {
+        if (judged && !chip.known && !chip.suggestion.empty()) {
             const std::string text = fmt::format("{}?", chip.suggestion);
             flow(button_width(text));
             if (button(context, {.name = fmt::format("{}.{}.suggestion", name, index),

@@ -26,6 +26,7 @@ struct ChipClick {
     int replaced = -1;     // its suggestion was taken
 };
 
-ChipClick chips(Context& context, std::string_view name, std::span<const Chip> words);
+/// Draws the words and takes clicks. Unknown words are marked, with suggestions, only where `judged`.
+ChipClick chips(Context& context, std::string_view name, std::span<const Chip> words, bool judged);
 
 }  // namespace gse::ui

@@ -78,6 +78,7 @@ DOCTEST_TEST_CASE("prompt: words, chips, suggestion, mode, seed") {
     DOCTEST_CHECK(request.target == "red");
     harness.click("prompt.chip.4");
     DOCTEST_CHECK(request.target.empty());
+    harness.frame(60);  // a second after the last letter, words are judged
     harness.click("prompt.chip.5.suggestion");
     DOCTEST_CHECK(request.prompt == "a bear wearing a red hat");
     harness.click("prompt.chip.5");
@@ -235,6 +236,27 @@ DOCTEST_TEST_CASE("another method is another sentence: a word that is only drawn
     model.request.method = "views";
     harness.frame(2);
     DOCTEST_CHECK(harness.rect("prompt.edit").enabled);
+}
+
+DOCTEST_TEST_CASE("prompt: a source that is not known puts nothing between it and the sentence") {
+    Harness harness({Wide, High, 1, Situation::Scene, false});
+    auto& request = harness.application.model().request;
+    harness.click("prompt.sentence");
+    for (int letter = 0; letter < 60; ++letter) harness.key(key::Backspace);
+    harness.click("prompt.source");
+    const auto sentence = harness.rect("prompt.sentence"), edit = harness.rect("prompt.edit");
+    harness.type("xyz");                                              // "bearxyz"
+    DOCTEST_CHECK(harness.find("prompt.source.by_hand") == nullptr);  // half a word is not judged
+    harness.frame(60);                                                // a second
+    DOCTEST_REQUIRE(harness.find("prompt.source.by_hand") != nullptr);
+    DOCTEST_CHECK(harness.rect("prompt.sentence").y == sentence.y);
+    DOCTEST_CHECK(harness.rect("prompt.edit").y == edit.y);
+    harness.key(key::Tab);
+    harness.frame(4);
+    harness.type("a red chair");
+    DOCTEST_CHECK(request.prompt == "a red chair");
+    DOCTEST_CHECK(request.source == "bearxyz");
+    DOCTEST_CHECK(harness.rect("prompt.edit").y == edit.y);
 }
 
 }  // namespace gse::test::prompt_test

@@ -138,4 +138,31 @@ DOCTEST_TEST_CASE("keys that are held together are seen together") {
     DOCTEST_CHECK(queue.next_frame().size() == 2);
 }
 
+DOCTEST_TEST_CASE(
+    "a click comes after what was typed before it, where it was made, and before what follows") {
+    InputQueue queue;
+    type(queue, "ab");
+    queue.push({false, 0, 0, 1, 0, 0, 0, 10, 20});
+    queue.push({false, 0, 0, 0, 0, 0, 0, 10, 20});
+    type(queue, "c");
+    std::string typed, order;
+    int press_frame = -1, release_frame = -1, letter_frame = -1;
+    for (int frame = 0; queue.waiting(); ++frame) {
+        DOCTEST_REQUIRE(frame < 50);
+        for (const auto& event : queue.next_frame()) {
+            if (event.character) order += static_cast<char>(event.codepoint);
+            if (event.character && event.codepoint == 'c') letter_frame = frame;
+            if (event.button < 0) continue;
+            order += event.action == 1 ? '[' : ']';
+            DOCTEST_CHECK(event.x == 10);
+            DOCTEST_CHECK(event.y == 20);
+            (event.action == 1 ? press_frame : release_frame) = frame;
+        }
+    }
+    DOCTEST_CHECK(order == "ab[]c");
+    DOCTEST_CHECK(release_frame > press_frame);
+    DOCTEST_CHECK(letter_frame >= release_frame + 2);  // the focus has moved by then
+    DOCTEST_CHECK_FALSE(queue.click_waits());
+}
+
 }  // namespace input_queue_test
