@@ -59,7 +59,7 @@ std::string job_text(const JobStatus& job) {
     std::string text = job.stage;
     if (job.total > 0) text += fmt::format("  {} / {}", job.step, job.total);
     if (job.paused) return text + "  paused";
-    if (job.eta_seconds >= 0) text += fmt::format("  {} left", duration_text(job.eta_seconds));
+    if (job.eta_seconds >= 1) text += fmt::format("  {} left", duration_text(job.eta_seconds));
     return text;
 }
 
@@ -115,8 +115,12 @@ void draw_idle(Context& context) {
         note(context, "job.error");
         return tooltip(job.error);
     }
-    bullet_dot(context.model.result_waiting ? palette::Accent : palette::Good);
-    std::string text = context.model.result_waiting ? "The edit is done: apply or discard it" : "Ready";
+    const auto& verdict = context.model.verdict;
+    const bool waits = context.model.result_waiting;
+    bullet_dot(waits && verdict.warns ? palette::Warning : waits ? palette::Accent : palette::Good);
+    std::string text = !waits                    ? "Ready"
+                       : verdict.stopped_at >= 0 ? "The edit was stopped: apply or discard what it came to"
+                                                 : "The edit is done: apply or discard it";
     if (!job.title.empty() && !job.outcome.empty())
         text = fmt::format("{}: {}{}", job.title, job.outcome,
                            context.model.result_waiting ? ". Apply or discard it" : "");

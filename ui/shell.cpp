@@ -187,7 +187,10 @@ void Shell::reset_layout() {
 }
 void Shell::show(PanelId panel) { show_panel(*state_, panel); }
 void Shell::request_quit() { state_->asked.quit = true; }
-void Shell::request_open(const std::filesystem::path& path) { state_->asked.open = utf8_of(path); }
+void Shell::request_open(const std::vector<std::filesystem::path>& paths) {
+    state_->asked.open.clear();
+    for (const auto& path : paths) state_->asked.open.push_back(utf8_of(path));
+}
 
 void Shell::write_widgets(const std::filesystem::path& path) const {
     nlohmann::ordered_json json = nlohmann::ordered_json::object();
@@ -207,7 +210,7 @@ void Shell::answer_requests(Context& context) {
     if (std::exchange(state_->asked.quit, false)) quit(context);
     if (const auto leave = std::exchange(state_->asked.leave, {}); leave.act)
         with_unsaved_work(context, leave.what, leave.act);
-    if (const auto path = std::exchange(state_->asked.open, {}); !path.empty()) open_path(context, path);
+    if (const auto paths = std::exchange(state_->asked.open, {}); !paths.empty()) open_one_of(context, paths);
     const auto& asked = context.model.question;
     if (asked.number == state_->asked.question_seen) return;
     state_->asked.question_seen = asked.number;

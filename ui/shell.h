@@ -41,7 +41,8 @@ public:
     /// Opens as if chosen from the menu: asks when there is unsaved work. For the window's close button and
     /// for dropped files.
     void request_quit();
-    void request_open(const std::filesystem::path& path);
+    /// Opens the path; of several, the one that the artist chooses.
+    void request_open(const std::vector<std::filesystem::path>& paths);
 
     /// Places of the important widgets of the last frame, in window coordinates: "prompt.edit", "tool.brush",
     /// "viewport"...

@@ -177,7 +177,7 @@ struct Asked {
         std::string what;
         std::function<void()> act;    // empty = none
     } leave;                          // once more: an edit was discarded, other work may be left
-    std::string open;                 // path to open, from outside; empty = none
+    std::vector<std::string> open;    // paths to open one of, from outside; empty = none
     std::uint64_t question_seen = 0;  // number of the application's last question that was shown
 };
 

@@ -202,7 +202,7 @@ struct ExportSettings {
     bool ease = false;
     double radius_factor = 1;  // of the fitted distance
     double elevation_degrees = 12;
-    bool around_label = true;  // centre: what is labelled, else the scene
+    bool around_label = false;  // centre: what is labelled, else the scene
     bool before_after = false;
     std::string scene_path = "edited.ply";  // format by extension
     bool with_labels = false;
@@ -220,11 +220,12 @@ struct ExportSettings {
         f("frames", self.frames, "Frames of the turntable.", Range{1, 100000});
         f("fps", self.fps, "Frames per second.", Range{1, 240});
         f("degrees", self.degrees, "How far it turns.", Range{-36000, 36000});
-        f("start_degrees", self.start_degrees, "Direction of the start, degrees.", Range{-3600, 3600});
+        f("start_degrees", self.start_degrees,
+          "Direction of the start, degrees from where you look at the scene.", Range{-3600, 3600});
         f("ease", self.ease, "Start and stop gently.");
         f("radius_factor", self.radius_factor, "Distance, relative to the fitted one.", Range{0.05, 20});
         f("elevation_degrees", self.elevation_degrees, "Height above the horizon.", Range{-89, 89});
-        f("around_label", self.around_label, "Turn around what is labelled.");
+        f("around_label", self.around_label, "Turn around what is labelled, and frame it.");
         f("before_after", self.before_after, "Before and after side by side.");
         f("scene_path", self.scene_path, "File of the scene; its ending says the format.");
         f("with_labels", self.with_labels,
@@ -346,6 +347,14 @@ struct SearchPart {
     SearchView search;
 };
 
+/// Judgement of the result that waits.
+struct ResultVerdict {
+    std::string text;     // of the model's encoder about the redrawn pictures; empty = nothing can judge them
+    bool warns = false;   // they do not show the edit
+    int stopped_at = -1;  // step at which the artist stopped it; -1 = it ran to its end
+    int steps = 0;        // that it would have run
+};
+
 /// The running or last edit and its results.
 struct EditPart {
     bool edit_running = false;
@@ -360,7 +369,8 @@ struct EditPart {
     std::size_t result_splats = 0;  // of the result that waits
     std::size_t result_changed_outside = 0;  // splats outside the label that are not as they were
     double result_psnr_outside_db = 0;
-    double result_seconds = 0;        // that it took
+    double result_seconds = 0;  // that the whole job took
+    ResultVerdict verdict;
     std::vector<ResultView> results;  // of which one waits, the others beside it
     std::size_t shown_result = 0;     // index into results
 };

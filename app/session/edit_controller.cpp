@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
+#include "engine/base/clock.h"
 #include "engine/base/error.h"
 #include "engine/edit/request/checked_request.h"
 #include "engine/edit/request/edit_method.h"
@@ -72,14 +74,18 @@ void EditController::start(std::optional<edit::EditSnapshot> from) {
         run_edit(*run, start, before, *roads, *pending, peak);
         throw_what_ended(run->job->result());
     };
-    auto done = [this, run, pending, cost_key = costs_.key(search_.request()),
-                 ticket = models_.ticket()](const Error* error) {
+    auto done = [this, run, pending, begun = std::chrono::steady_clock::now(),
+                 cost_key = costs_.key(search_.request()), ticket = models_.ticket()](const Error* error) {
         models_.take_back(ticket, run->model, run->loaded, error);
         costs_.remember(cost_key, run->measured);
         refresh();  // what was found last, and the last steps
         if (branch_) return go_on_from_branch();
-        if (pending->set.size() > 0)
-            workspace_.results.add(std::move(*pending));  // also what a shortage or a failure left
+        if (pending->set.size() > 0) {  // also what a shortage or a failure left
+            pending->seconds = seconds_since(begun);
+            pending->verdict = live_.gate.verdict;
+            pending->warns = live_.gate.warns;
+            workspace_.results.add(std::move(*pending));
+        }
         workspace_.results.come_back();
         end(error);
     };
@@ -297,6 +303,9 @@ void EditController::show(ui::EditPart& model) const {
     model.result_changed_outside = results ? results->changed_outside_label : 0;
     model.result_psnr_outside_db = results ? results->psnr_outside_db : 0;
     model.result_seconds = results ? results->seconds : 0;
+    model.verdict =
+        results ? ui::ResultVerdict{results->verdict, results->warns, results->stopped_at, results->steps}
+                : ui::ResultVerdict{};
     model.results.clear();
     for (const auto& result : results.all()) model.results.push_back({result.thumbnail, result.seed});
     model.shown_result = results.shown().value_or(0);
@@ -324,6 +333,8 @@ nlohmann::json EditController::kept_json() const {
     json["id"] = whole || !snapshots_.empty() ? workspace_.next_edit_id : 0;
     if (!live_.losses.empty()) json["iteration"] = live_.losses.back().iteration;
     json["adds"] = whole ? whole->adds : live_.adds;
+    if (whole) json["verdict"] = whole->verdict, json["warns"] = whole->warns;
+    if (whole) json["stopped_at"] = whole->stopped_at, json["steps"] = whole->steps;
     json["source"] = renamed.from;
     json["becomes"] = renamed.to;
     return json;

@@ -20,6 +20,7 @@
 #include "engine/pipeline/report/film.h"
 #include "engine/pipeline/report/picture_text.h"
 #include "engine/pipeline/run/scene_tools.h"
+#include "engine/pipeline/run/views.h"
 #include "engine/scene/row_values.h"
 #include "engine/scene/viewpoints.h"
 
@@ -82,8 +83,16 @@ raster::Settings ExportController::render_settings() const {
     return settings;
 }
 
-OrbitParameters ExportController::orbit() const {
-    OrbitParameters orbit = view_.orbit();
+/// Orbit of a turntable of those splats: all of them are in every frame, or what is labelled.
+OrbitParameters ExportController::orbit(const GaussianSet& shown) const {
+    RenderParameters frame;
+    frame.width = settings_.width, frame.height = settings_.height;
+    frame.elevation = settings_.elevation_degrees;
+    frame.fov = view_.orbit().fov_x / Degree;
+    Scene scene;
+    scene.gaussians = shown;
+    scene.info = workspace_.document.state().info;
+    OrbitParameters orbit = whole_orbit(scene, frame);
     const NamedLabel* label = workspace_.active_label();
     if (settings_.around_label && label != nullptr && label->bits) {
         const auto& bits = *label->bits;
@@ -93,7 +102,6 @@ OrbitParameters ExportController::orbit() const {
         }
     }
     orbit.radius *= settings_.radius_factor;
-    orbit.elevation = settings_.elevation_degrees * std::numbers::pi / 180;
     return orbit;
 }
 
@@ -153,9 +161,10 @@ template <> void ExportController::on(const command::ExportTurntable&) {
     film->settings = render_settings();
     film->transparent = settings_.transparent;
     film->fps = settings_.fps;
-    film->cameras =
-        turn_cameras(orbit(), {settings_.frames, settings_.fps, settings_.degrees, settings_.ease},
-                     settings_.start_degrees, settings_.width, settings_.height);
+    const auto around = orbit(film->first);
+    const double seen_from = azimuth_of(view_.camera(), around) / Degree;
+    film->cameras = turn_cameras(around, {settings_.frames, settings_.fps, settings_.degrees, settings_.ease},
+                                 seen_from + settings_.start_degrees, settings_.width, settings_.height);
     start(
         "Turntable", path, [film, path](const JobControl& control) { write_film(path, *film, control); },
         said_of_export(), true);

@@ -44,7 +44,7 @@ private:
     bool something_to_export();
     GaussianSet exported(const GaussianSet& set, const Stage& stage) const;
     std::string said_of_export() const;
-    OrbitParameters orbit() const;
+    OrbitParameters orbit(const GaussianSet& shown) const;
     raster::Settings render_settings() const;
     void write_scene(const std::filesystem::path& path);
     void start(const char* what, const std::filesystem::path& path,

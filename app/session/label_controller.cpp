@@ -334,6 +334,12 @@ template <> void LabelController::on(const command::SetEditEnabled& one) {
         for (auto& node : stack)
             if (node.id == one.id) node.enabled = one.enabled;
     });
+    const auto built = one.enabled ? std::vector<std::string>() : edits_built_on(state().stack, one.id);
+    if (built.empty()) return;
+    std::string names;
+    for (const auto& name : built) names += (names.empty() ? "\"" : "\", \"") + name;
+    workspace_.notices.toast(fmt::format(
+        "Built on what is switched off now: {}\". Some of that is not seen until it is on again.", names));
 }
 
 template <> void LabelController::on(const command::SetEditStrength& one) {

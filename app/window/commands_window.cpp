@@ -121,7 +121,7 @@ private:
         window.take_text = [this](const std::string& text) { return shell_.glyphs().shown(text); };
         window.give_text = [this](const std::string& text) { return shell_.glyphs().meant(text); };
         window.on_drop = [this](const std::vector<std::filesystem::path>& paths) {
-            if (!paths.empty()) shell_.request_open(paths.front());
+            shell_.request_open(paths);
         };
         return window;
     }

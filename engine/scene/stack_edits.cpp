@@ -55,12 +55,42 @@ DocumentState with_edit(const DocumentState& before, EditNode node, const std::s
         added[row] = ((*state.row_ids)[row] >> EditIdShift) == id ? 1 : 0;
     if (std::find(added.begin(), added.end(), std::uint8_t{1}) == added.end()) return state;
     if (beside || state.active_label < 0) {
-        state.labels.push_back(empty_label(target, added.size()));
-        state.active_label = static_cast<int>(state.labels.size()) - 1;
+        state.labels.push_back(with_added(empty_label(target, added.size()), added));
+        if (!beside) state.active_label = static_cast<int>(state.labels.size()) - 1;
+        return state;
     }
     auto& label = state.labels[static_cast<std::size_t>(state.active_label)];
     label = with_added(std::move(label), added);
     return state;
+}
+
+namespace {
+
+std::vector<RowId> sorted_union(const std::vector<RowId>& a, const std::vector<RowId>& b) {
+    std::vector<RowId> all = a;
+    all.insert(all.end(), b.begin(), b.end());
+    std::sort(all.begin(), all.end());
+    return all;
+}
+
+bool share_any(const std::vector<RowId>& a, const std::vector<RowId>& b) {
+    for (std::size_t i = 0, j = 0; i < a.size() && j < b.size(); a[i] < b[j] ? ++i : ++j)
+        if (a[i] == b[j]) return true;
+    return false;
+}
+
+}  // namespace
+
+std::vector<std::string> edits_built_on(const std::vector<EditNode>& stack, std::uint64_t id) {
+    std::vector<std::string> names;
+    std::vector<RowId> made;
+    for (const auto& node : stack) {
+        if (!node.delta) continue;
+        if (node.id == id) made = sorted_union(node.delta->changed, node.delta->added);
+        else if (node.enabled && share_any(made, sorted_union(node.delta->changed, node.delta->removed)))
+            names.push_back(node.name);
+    }
+    return names;
 }
 
 }  // namespace gse

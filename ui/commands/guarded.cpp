@@ -236,6 +236,22 @@ void open_sample(Context& context) {
                       [&commands] { commands.push(command::OpenSample{}); });
 }
 
+void open_one_of(Context& context, const std::vector<std::string>& paths) {
+    if (paths.size() == 1) return open_path(context, paths.front());
+    auto& question = context.state.question;
+    question.title = "Which one is to be opened?";
+    question.text = fmt::format("{} files came in; one scene is open at a time.", paths.size());
+    question.answers.clear();
+    for (const auto& path : paths)
+        question.answers.push_back({utf8_of(path_of(path).filename()),
+                                    false,
+                                    [state = &context.state, path] { state->asked.open = {path}; },
+                                    {},
+                                    true});
+    question.answers.push_back({"Cancel", false, {}});
+    question.pending = true;
+}
+
 void ask_open(Context& context) {
     auto* state = &context.state;
     context.state.files.ask(
@@ -245,7 +261,7 @@ void ask_open(Context& context) {
          .saves = false,
          .folder_allowed = true,
          .start = context.model.recent.empty() ? std::string() : context.model.recent.front(),
-         .answer = [state](const std::filesystem::path& path) { state->asked.open = utf8_of(path); }});
+         .answer = [state](const std::filesystem::path& path) { state->asked.open = {utf8_of(path)}; }});
 }
 
 void recover(Context& context, const std::string& file) {

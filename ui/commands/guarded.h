@@ -45,6 +45,8 @@ void cancel_job(Context& context);
 void ask_open(Context& context);
 /// Opens. Asks first when there is unsaved work.
 void open_path(Context& context, const std::string& path);
+/// Opens the path; of several, asks which.
+void open_one_of(Context& context, const std::vector<std::string>& paths);
 void open_sample(Context& context);
 void save(Context& context);
 /// Saves under another name. Calls `then` (may be empty) once it is saved.

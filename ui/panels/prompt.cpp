@@ -341,7 +341,7 @@ std::string other_reach(const Context& context) {
     if (!reach.by_label)
         return reach.label.empty() ? std::string()
                                    : fmt::format("Use label \"{}\"", shortened(reach.label, context.em * 7));
-    return context.state.prompt.source_known ? "Search" : "";
+    return context.state.prompt.source_known ? "Ignore label" : "";
 }
 
 /// Tells whether text and button have room beside each other.
@@ -555,12 +555,16 @@ void draw_prompt_panel(Context& context) {
 
 void draw_result_notice(Context& context, const char* prefix) {
     if (!context.model.result_waiting) return;
-    begin_notice(context, fmt::format("{}.result", prefix), palette::Accent);
-    wrapped_text("The edit is done. Look at it: V wipes between before and after, hold ` to flip.");
+    const auto& verdict = context.model.verdict;
+    begin_notice(context, fmt::format("{}.result", prefix),
+                 verdict.warns ? palette::Warning : palette::Accent);
+    wrapped_text(fmt::format("{} Look at it: V wipes between before and after, hold ` to flip.",
+                             verdict.stopped_at < 0 ? "The edit is done." : "The edit was stopped."));
+    if (verdict.warns) coloured_text(palette::Warning, verdict.text);
     if (button(context, {.name = fmt::format("{}.apply", prefix),
-                         .text = "Apply",
+                         .text = verdict.warns ? "Apply anyway" : "Apply",
                          .tooltip = "Keep it as an entry of the edit stack",
-                         .look = Look::Primary}))
+                         .look = verdict.warns ? Look::Normal : Look::Primary}))
         context.emit(command::ApplyResult{});
     flow(button_width("Discard"));
     if (button(context, {.name = fmt::format("{}.discard", prefix),

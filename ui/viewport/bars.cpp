@@ -70,6 +70,54 @@ void draw_results(Context& context) {
     end_foot(context);
 }
 
+/// A line of text that is not wrapped: the bar is as wide as its lines.
+void coloured_line(ImU32 colour, const std::string& text) {
+    ImGui::PushStyleColor(ImGuiCol_Text, colour);
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopStyleColor();
+}
+
+/// Verdict on the result in its colour; where it warns, with what to try.
+void draw_verdict(Context& context) {
+    const auto& verdict = context.model.verdict;
+    const ImU32 colour = verdict.warns          ? palette::Warning
+                         : verdict.text.empty() ? palette::TextDim
+                                                : palette::Good;
+    bullet_dot(colour);
+    coloured_line(verdict.warns ? colour : palette::Text,
+                  verdict.text.empty()
+                      ? "The model cannot judge these words: look at the result from all sides."
+                      : verdict.text);
+    note(context, "result.verdict");
+    if (verdict.warns)
+        coloured_line(palette::TextDim,
+                      "Try another seed, mark the place by Cut out, or only adjust its colours (Labels).");
+}
+
+void draw_result_buttons(Context& context) {
+    const bool wipes = context.model.comparison == Comparison::Wipe, warns = context.model.verdict.warns;
+    if (button(context, {.name = "result.compare",
+                         .text = wipes ? "Stop comparing" : "Compare",
+                         .tooltip = with_key(context, "Wipe between before and after", Shortcut::Wipe)}))
+        toggle_wipe(context);
+    ImGui::SameLine();
+    if (button(context, {.name = "result.another",
+                         .text = "Another",
+                         .tooltip = "The same once more with another seed; this result is kept beside it",
+                         .look = warns ? Look::Primary : Look::Normal}))
+        context.emit(command::AnotherResult{});
+    ImGui::SameLine();
+    if (button(context, {.name = "result.apply",
+                         .text = warns ? "Apply anyway" : "Apply",
+                         .tooltip = "Keep it as an entry of the edit stack",
+                         .look = warns ? Look::Normal : Look::Primary}))
+        context.emit(command::ApplyResult{});
+    ImGui::SameLine();
+    if (button(context,
+               {.name = "result.discard", .text = "Discard", .tooltip = "Leave the scene as it was"}))
+        context.emit(command::DiscardResult{});
+}
+
 /// At the foot: what is worn is at the top.
 void draw_result_bar(Context& context) {
     const auto& state = context.state.viewport;
@@ -77,16 +125,20 @@ void draw_result_bar(Context& context) {
                    true);
     const auto& model = context.model;
     const std::size_t changed = model.result_changed_outside;
-    const auto time = fmt::format("Edit done in {}", duration_text(model.result_seconds));
+    const auto took = duration_text(model.result_seconds);
+    const auto time = model.verdict.stopped_at < 0
+                          ? fmt::format("Edit done in {}", took)
+                          : fmt::format("Stopped at step {} of {}, after {}", model.verdict.stopped_at,
+                                        model.verdict.steps, took);
     const auto proof =
         fmt::format("{} splat{} outside the label changed", count_text(changed), changed == 1 ? "" : "s");
-    const bool wipes = context.model.comparison == Comparison::Wipe;
     const float words =
         ImGui::CalcTextSize(time.c_str()).x + ImGui::CalcTextSize(proof.c_str()).x + context.em * 3;
-    const float buttons = button_width("Stop comparing") + button_width("Apply") + button_width("Discard") +
-                          button_width("Another") + context.em * 2.5f;
+    const float buttons = button_width("Stop comparing") + button_width("Apply anyway") +
+                          button_width("Discard") + button_width("Another") + context.em * 2.5f;
     const bool one_line =
         words + buttons < context.state.viewport.high.x - context.state.viewport.low.x - context.em * 2;
+    draw_verdict(context);
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(time.c_str());
     note(context, "result.time");
@@ -97,25 +149,7 @@ void draw_result_bar(Context& context) {
     note(context, "result.proof");
     tooltip(fmt::format("PSNR outside the label: {:.1f} dB", model.result_psnr_outside_db));
     if (one_line) ImGui::SameLine();
-    if (button(context, {.name = "result.compare",
-                         .text = wipes ? "Stop comparing" : "Compare",
-                         .tooltip = with_key(context, "Wipe between before and after", Shortcut::Wipe)}))
-        toggle_wipe(context);
-    ImGui::SameLine();
-    if (button(context, {.name = "result.another",
-                         .text = "Another",
-                         .tooltip = "The same once more with another seed; this result is kept beside it"}))
-        context.emit(command::AnotherResult{});
-    ImGui::SameLine();
-    if (button(context, {.name = "result.apply",
-                         .text = "Apply",
-                         .tooltip = "Keep it as an entry of the edit stack",
-                         .look = Look::Primary}))
-        context.emit(command::ApplyResult{});
-    ImGui::SameLine();
-    if (button(context,
-               {.name = "result.discard", .text = "Discard", .tooltip = "Leave the scene as it was"}))
-        context.emit(command::DiscardResult{});
+    draw_result_buttons(context);
     end_foot(context);
     if (model.results.size() > 1) draw_results(context);
 }

@@ -69,20 +69,21 @@ void FileBrowser::enter(const std::filesystem::path& folder) {
     type_ahead_.clear();
 }
 
+/// Name as it will be written: with the ending that the files have.
+std::string FileBrowser::full_name() const {
+    const bool ends = question_.extensions.empty() || has_extension(name_, question_.extensions);
+    return ends || name_.empty() ? name_ : name_ + question_.extensions.front();
+}
+
 std::filesystem::path FileBrowser::chosen() const {
-    if (question_.saves) return name_.empty() ? std::filesystem::path() : folder_ / path_of(name_);
+    if (question_.saves) return name_.empty() ? std::filesystem::path() : folder_ / path_of(full_name());
     if (selected_ >= 0) return folder_ / path_of(listing_.entries[static_cast<std::size_t>(selected_)].name);
     return question_.folder_allowed ? folder_ : std::filesystem::path();
 }
 
 std::string FileBrowser::why_not() const {
-    const auto path = chosen();
-    if (path.empty()) return question_.saves ? "Type a name for the file" : "Choose a file";
-    if (!question_.saves || question_.extensions.empty() || has_extension(name_, question_.extensions))
-        return {};
-    std::string endings;
-    for (const auto& ending : question_.extensions) endings += (endings.empty() ? "" : ", ") + ending;
-    return fmt::format("The name must end in {}", endings);
+    if (!chosen().empty()) return {};
+    return question_.saves ? "Type a name for the file" : "Choose a file";
 }
 
 void FileBrowser::finish(const std::filesystem::path& path) {
@@ -265,6 +266,11 @@ void FileBrowser::draw_footer(Context& context) {
                              : selected_ < 0 && question_.folder_allowed ? "Open this folder"
                                                                          : question_.confirm;
     const float width = button_width(text) + button_width("Cancel") + ImGui::GetStyle().ItemSpacing.x;
+    if (question_.saves && full_name() != name_ && !overwrite_asked_) {
+        ImGui::AlignTextToFramePadding();
+        dim_text(fmt::format("Written as {}", full_name()));
+        ImGui::SameLine();
+    }
     if (overwrite_asked_) {
         ImGui::AlignTextToFramePadding();
         ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(palette::Warning), "The file exists.");

@@ -38,6 +38,7 @@ private:
     void keys(bool elsewhere);  // another control of the dialog has the focus
     void activate(int index);
     void finish(const std::filesystem::path& path);
+    std::string full_name() const;
     std::filesystem::path chosen() const;
     std::string why_not() const;
 

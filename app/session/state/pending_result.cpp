@@ -7,6 +7,7 @@
 #include "engine/base/error.h"
 #include "engine/base/json.h"
 #include "engine/base/log.h"
+#include "engine/edit/request/edit_method.h"
 #include "engine/language/words.h"
 #include "engine/pipeline/report/edit_output.h"
 #include "engine/pipeline/run/loop.h"
@@ -51,6 +52,8 @@ void fill_pending(EditJob& job, const nlohmann::ordered_json& report, PendingRes
     for (const auto& [stage, seconds] : result.seconds) pending.seconds += seconds;
     pending.psnr_outside_db = report["psnr_outside_db"].get<double>();
     pending.changed_outside_label = result.changed_outside_label;
+    pending.steps = edit::planned_steps(job.recipe().request);
+    if (result.stopped) pending.stopped_at = result.iterations;
     constexpr int thumbnail_px = 96;
     const Camera camera = orbit_camera(job.film_orbit(), job.film_front() + 0.35, thumbnail_px, thumbnail_px);
     pending.thumbnail = std::make_shared<const Image>(
@@ -100,6 +103,10 @@ std::optional<PendingResult> take_back_edit(DocumentState& state, const nlohmann
         pending.target = edit->value("target", "");
         pending.seed = edit->value("seed", std::uint64_t{0});
         pending.adds = edit->value("adds", false);
+        pending.verdict = edit->value("verdict", "");
+        pending.warns = edit->value("warns", false);
+        pending.stopped_at = edit->value("stopped_at", -1);
+        pending.steps = edit->value("steps", 0);
         pending.renamed = {edit->value("source", ""), edit->value("becomes", "")};
         pending.seconds = node.seconds;
         pending.psnr_outside_db = node.psnr_outside_db;

@@ -33,6 +33,10 @@ struct PendingResult {
     Renamed renamed;
     double seconds = 0, psnr_outside_db = 0;
     std::size_t changed_outside_label = 0;
+    std::string verdict;  // of the model's encoder about the pictures; empty = nothing can judge them
+    bool warns = false;   // they do not show the edit
+    int stopped_at = -1;  // step at which the artist stopped it; -1 = it ran to its end
+    int steps = 0;        // that it would have run
     std::shared_ptr<const Image> thumbnail;
 };
 

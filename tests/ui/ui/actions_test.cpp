@@ -356,14 +356,23 @@ DOCTEST_TEST_CASE("unsaved work is asked about before it goes") {
     DOCTEST_REQUIRE(harness.application.calls.size() >= 2);
     DOCTEST_CHECK(harness.application.calls[0] == "save_project ");
     DOCTEST_CHECK(harness.application.calls[1] == "quit");
-    harness.shell.request_open("/tmp/x.ply");
+    harness.shell.request_open({"/tmp/x.ply"});
     harness.frame(3);
     DOCTEST_CHECK(harness.asks("question.1", "open /tmp/x.ply"));
     harness.application.model().unsaved = false;
     harness.application.calls.clear();
-    harness.shell.request_open("/tmp/y.ply");
+    harness.shell.request_open({"/tmp/y.ply"});
     harness.frame(3);
     DOCTEST_CHECK(harness.application.asked("open /tmp/y.ply"));
+}
+
+DOCTEST_TEST_CASE("of several files that are dropped, the artist says which is opened") {
+    Harness harness({Wide, High, 1, Situation::Scene, false});
+    harness.application.model().unsaved = false;
+    harness.shell.request_open({"/tmp/x.ply", "/tmp/y.ply"});
+    harness.frame(3);
+    DOCTEST_CHECK_FALSE(harness.application.asked("open /tmp/x.ply"));
+    DOCTEST_CHECK(harness.asks("question.1", "open /tmp/y.ply"));
 }
 
 DOCTEST_TEST_CASE("keys of files and exports") {

@@ -101,10 +101,10 @@ DOCTEST_TEST_CASE("a discarded edit does not take other unsaved work along") {
 DOCTEST_TEST_CASE("opening another scene in the middle of an edit asks, a picture's recipe does not") {
     Harness harness({Wide, High, 1, Situation::Editing, false});
     harness.application.calls.clear();
-    harness.shell.request_open("/tmp/recipe.png");
+    harness.shell.request_open({"/tmp/recipe.png"});
     harness.frame(3);
     DOCTEST_CHECK(harness.application.asked("open /tmp/recipe.png"));
-    harness.shell.request_open("/tmp/other.ply");
+    harness.shell.request_open({"/tmp/other.ply"});
     harness.frame(3);
     DOCTEST_CHECK(!harness.application.asked("open /tmp/other.ply"));
     harness.click("question.0");
@@ -121,7 +121,7 @@ DOCTEST_TEST_CASE("cameras are no other scene: they are opened without a questio
     harness.application.model().unsaved = true;
     for (const auto& path : {cameras, scratch.path()}) {
         harness.application.calls.clear();
-        harness.shell.request_open(path);
+        harness.shell.request_open({path});
         harness.frame(3);
         DOCTEST_CHECK(harness.application.asked("open " + path.string()));
     }

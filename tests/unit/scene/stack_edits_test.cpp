@@ -58,6 +58,20 @@ DOCTEST_TEST_CASE("rows that are deleted go by identity, and switching the edit 
     DOCTEST_CHECK(second.delta->removed == std::vector<RowId>{0});
 }
 
+DOCTEST_TEST_CASE("edits that build on another are named") {
+    const DocumentState state = state_of(4);
+    const EditNode hat = adding(state, 7);
+    const DocumentState with_hat = with_stack(state, {hat});
+    std::vector<std::uint8_t> of_hat(with_hat.current.size(), 0), of_rest = of_hat;
+    of_hat.back() = 1, of_rest.front() = 1;
+    EditNode on_hat = removal_of(with_hat, of_hat, 8), beside = removal_of(with_hat, of_rest, 9);
+    on_hat.name = "on the hat", beside.name = "beside";
+    DOCTEST_CHECK(edits_built_on({hat, on_hat, beside}, 7) == std::vector<std::string>{"on the hat"});
+    DOCTEST_CHECK(edits_built_on({hat, on_hat, beside}, 8).empty());
+    on_hat.enabled = false;
+    DOCTEST_CHECK(edits_built_on({hat, on_hat, beside}, 7).empty());
+}
+
 DOCTEST_TEST_CASE("what an edit added belongs to the active label, or to one of its own") {
     DocumentState state = state_of(4);
     const auto nothing_active = with_edit(state, adding(state, 7), "hat", false);
@@ -72,8 +86,9 @@ DOCTEST_TEST_CASE("what an edit added belongs to the active label, or to one of 
     DOCTEST_CHECK(*grown.labels[0].bits == std::vector<std::uint8_t>{1, 0, 0, 0, 1, 1});
     const auto beside = with_edit(state, adding(state, 7), "hat", true);
     DOCTEST_REQUIRE(beside.labels.size() == 2);
-    DOCTEST_CHECK(beside.active_label == 1);
+    DOCTEST_CHECK(beside.active_label == 0);
     DOCTEST_CHECK(count_labelled(beside.labels[0]) == 1);
+    DOCTEST_CHECK(count_labelled(beside.labels[1]) == 2);
     const auto only_less =
         with_edit(state, removal_of(state, std::vector<std::uint8_t>{0, 0, 0, 1}, 8), "hat", true);
     DOCTEST_CHECK(only_less.labels.size() == 1);  // nothing was added
