@@ -1,8 +1,12 @@
 // Splitting sentences into words and finding phrases in them.
 #include "engine/language/words.h"
 
+#include <unicode/uchar.h>
+#include <unicode/utf8.h>
+
 #include <algorithm>
 #include <cctype>
+#include <cstdint>
 #include <utility>
 
 namespace gse::language {
@@ -25,7 +29,7 @@ constexpr Mark Marks[] = {{"\u2019", "'"},
                           {"\u2026", " "},
                           {"\u2013", " "},
                           {"\u2014", " "},
-                          // blanks, the zero-width space and the separators of lines and paragraphs
+                          // blanks and the separators of lines and paragraphs
                           {"\u00a0", " "},
                           {"\u1680", " "},
                           {"\u2000", " "},
@@ -39,29 +43,23 @@ constexpr Mark Marks[] = {{"\u2019", "'"},
                           {"\u2008", " "},
                           {"\u2009", " "},
                           {"\u200a", " "},
-                          {"\u200b", " "},
                           {"\u2028", " "},
                           {"\u2029", " "},
                           {"\u202f", " "},
                           {"\u205f", " "},
-                          {"\u3000", " "},
-                          // soft hyphen, joiners, marks of direction, byte order mark
-                          {"\u00ad", ""},
-                          {"\u200c", ""},
-                          {"\u200d", ""},
-                          {"\u200e", ""},
-                          {"\u200f", ""},
-                          {"\u202a", ""},
-                          {"\u202b", ""},
-                          {"\u202c", ""},
-                          {"\u202d", ""},
-                          {"\u202e", ""},
-                          {"\u2060", ""},
-                          {"\u2066", ""},
-                          {"\u2067", ""},
-                          {"\u2068", ""},
-                          {"\u2069", ""},
-                          {"\ufeff", ""}};
+                          {"\u3000", " "}};
+
+/// Bytes of the character at `at` when nothing is seen of it (zero-width space, joiners, soft hyphen, marks
+/// of direction, byte order mark); else 0.
+std::size_t invisible_bytes(std::string_view text, std::size_t at) {
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(text.data());
+    const auto length = static_cast<std::int64_t>(text.size());
+    auto next = static_cast<std::int64_t>(at);
+    UChar32 code = 0;
+    U8_NEXT(bytes, next, length, code);
+    const bool invisible = code >= 0 && u_hasBinaryProperty(code, UCHAR_DEFAULT_IGNORABLE_CODE_POINT) != 0;
+    return invisible ? static_cast<std::size_t>(next) - at : 0;
+}
 
 std::string plain_marks(std::string_view text) {
     std::string plain;
@@ -71,11 +69,11 @@ std::string plain_marks(std::string_view text) {
             const auto* mark = std::find_if(std::begin(Marks), std::end(Marks), [&](const Mark& each) {
                 return text.substr(at).starts_with(each.utf8);
             });
-            if (mark != std::end(Marks)) {
-                plain += mark->plain;
-                at += mark->utf8.size();
-                continue;
-            }
+            const std::size_t skipped =
+                mark != std::end(Marks) ? mark->utf8.size() : invisible_bytes(text, at);
+            if (mark != std::end(Marks)) plain += mark->plain;
+            at += skipped;
+            if (skipped > 0) continue;
         }
         plain += text[at++];
     }

@@ -17,8 +17,8 @@ struct Token {
 };
 
 /// Words and marks in their order. A word holds letters, digits, "-" and inner "'"; its possessive "'s" is
-/// dropped. Typographic marks and blanks count as plain ones; invisible characters vanish, but for the
-/// zero-width space, which is a blank.
+/// dropped. Typographic marks and blanks count as plain ones; characters of which nothing is seen vanish, as
+/// they do in the tokenizers of models.
 std::vector<Token> tokens_of(std::string_view text);
 
 /// Words of a text without its marks; the identifier counts as a word.

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/math/spherical_harmonics.h"
 #include "engine/raster/conventions.h"
-#include "engine/raster/spherical_harmonics.h"
 
 namespace gse::raster::plain {
 namespace {

@@ -85,6 +85,8 @@ void with_unsaved_work(Context& context, const std::string& what, std::function<
 const std::vector<std::string>& scene_extensions() {
     static const std::vector<std::string> Endings = [] {
         std::vector<std::string> endings = readable_extensions();
+        const std::vector<std::string> wrappers = wrapper_extensions();
+        endings.insert(endings.end(), wrappers.begin(), wrappers.end());
         for (const char* other : {".json", ".gsep", ".png"}) endings.emplace_back(other);
         return endings;
     }();

@@ -1,4 +1,4 @@
-// zlib and zstd behind four calls.
+// zlib and zstd behind a few calls.
 #include "engine/io/bytes/inflate.h"
 
 #include <fmt/core.h>
@@ -11,6 +11,9 @@
 
 #include "engine/base/check.h"
 #include "engine/base/error.h"
+#include "engine/base/memory.h"
+#include "engine/io/bytes/byte_reader.h"
+#include "engine/io/bytes/claims.h"
 
 namespace gse::io {
 namespace {
@@ -30,29 +33,108 @@ std::size_t next_size(std::size_t filled, std::uint64_t limit) {
                 "the file is cut off or damaged; get it again");
 }
 
+/// Gzip members one after the other, unpacked a piece at a time. Bytes behind the last one that begin no
+/// member are passed over.
+class GzipStream {
+public:
+    explicit GzipStream(std::span<const std::byte> bytes) : bytes_(bytes) {
+        GSE_CHECK(inflateInit2(&stream_, GzipWindow) == Z_OK);
+    }
+    ~GzipStream() { inflateEnd(&stream_); }
+    GzipStream(const GzipStream&) = delete;
+    GzipStream& operator=(const GzipStream&) = delete;
+
+    /// Fills the start of `target`; returns how many bytes. 0 is the end.
+    std::size_t read(std::span<std::byte> target) {
+        std::size_t filled = 0;
+        while (filled == 0 && !done_ && !target.empty()) filled = step(target);
+        return filled;
+    }
+    /// True when the stream ends with the end of a member.
+    bool whole() const { return whole_; }
+
+private:
+    std::size_t step(std::span<std::byte> target) {
+        const auto piece = static_cast<uInt>(std::min<std::size_t>(bytes_.size() - consumed_, InputPiece));
+        const auto room = static_cast<uInt>(std::min<std::size_t>(target.size(), InputPiece));
+        stream_.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(bytes_.data() + consumed_));
+        stream_.avail_in = piece;
+        stream_.next_out = reinterpret_cast<Bytef*>(target.data());
+        stream_.avail_out = room;
+        const int status = inflate(&stream_, Z_NO_FLUSH);
+        consumed_ += piece - stream_.avail_in;
+        const std::size_t got = room - stream_.avail_out;
+        in_member_ += got;
+        if (status == Z_STREAM_END) end_member();
+        else if (status == Z_BUF_ERROR) done_ = true;  // no more input
+        else if (status != Z_OK && (members_ == 0 || in_member_ > 0)) throw_broken("gzip");
+        else if (status != Z_OK) done_ = whole_ = true;  // no member begins there
+        return got;
+    }
+    void end_member() {
+        ++members_;
+        in_member_ = 0;
+        whole_ = !is_gzip(bytes_.subspan(consumed_));
+        if (whole_) done_ = true;
+        else inflateReset(&stream_);
+    }
+
+    z_stream stream_{};
+    std::span<const std::byte> bytes_;
+    std::size_t consumed_ = 0, members_ = 0, in_member_ = 0;  // the last in unpacked bytes
+    bool done_ = false, whole_ = false;
+};
+
+/// Bytes that the whole gzip stream gives, or `limit` when there are as many or more. Keeps none of them.
+std::uint64_t count_gzip(std::span<const std::byte> bytes, std::uint64_t limit) {
+    GzipStream stream(bytes);
+    std::vector<std::byte> piece(GrowthBytes);
+    std::uint64_t count = 0;
+    while (count < limit) {
+        const std::size_t got = stream.read(piece);
+        count += got;
+        if (got > 0) continue;
+        if (stream.whole()) break;
+        throw Error(ErrorCode::Malformed, "the gzip stream inside the file is cut off", "get the file again");
+    }
+    return std::min(count, limit);
+}
+
 }  // namespace
 
+bool is_gzip(std::span<const std::byte> bytes) {
+    return bytes.size() >= 2 && bytes[0] == std::byte{0x1f} && bytes[1] == std::byte{0x8b};
+}
+
 std::vector<std::byte> inflate_gzip(std::span<const std::byte> bytes, std::uint64_t limit) {
-    z_stream stream{};
-    GSE_CHECK(inflateInit2(&stream, GzipWindow) == Z_OK);
-    const std::unique_ptr<z_stream, int (*)(z_stream*)> guard(&stream, inflateEnd);
+    GzipStream stream(bytes);
     std::vector<std::byte> out;
-    std::size_t filled = 0, consumed = 0;
+    std::size_t filled = 0;
     while (filled < limit) {
         if (filled == out.size()) out.resize(next_size(filled, limit));
-        const auto piece = static_cast<uInt>(std::min<std::size_t>(bytes.size() - consumed, InputPiece));
-        const auto room = static_cast<uInt>(std::min<std::size_t>(out.size() - filled, InputPiece));
-        stream.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(bytes.data() + consumed));
-        stream.avail_in = piece;
-        stream.next_out = reinterpret_cast<Bytef*>(out.data() + filled);
-        stream.avail_out = room;
-        const int status = inflate(&stream, Z_NO_FLUSH);
-        consumed += piece - stream.avail_in;
-        filled += room - stream.avail_out;
-        if (status == Z_STREAM_END || status == Z_BUF_ERROR) break;  // the latter: no more input
-        if (status != Z_OK) throw_broken("gzip");
+        const std::size_t got = stream.read(std::span(out).subspan(filled));
+        if (got == 0) break;
+        filled += got;
     }
     out.resize(filled);
+    return out;
+}
+
+std::vector<std::byte> unpack_gzip(std::span<const std::byte> bytes, std::uint64_t file_bytes) {
+    const std::string what = "the gzip stream inside the file";
+    const std::uint64_t honest =
+                            std::max(FreeClaim, saturating_product(file_bytes + 1, BytesPerFileByte)) + 1,
+                        most = std::min(honest, free_memory());
+    const std::uint64_t size = count_gzip(bytes, most);
+    check_claim({size, file_bytes}, what);
+    if (size == most) throw out_of_memory(size);
+    std::vector<std::byte> out(static_cast<std::size_t>(size));
+    GzipStream stream(bytes);
+    for (std::size_t filled = 0; filled < out.size();) {
+        const std::size_t got = stream.read(std::span(out).subspan(filled));
+        GSE_CHECK(got > 0);
+        filled += got;
+    }
     return out;
 }
 

@@ -13,7 +13,6 @@ namespace gse::io {
 namespace {
 
 constexpr std::size_t PieceBytes = std::size_t{1} << 20;
-constexpr const char* DamagedHint = "the file is cut off or damaged; open an older copy or an autosave";
 constexpr zip_int64_t FixedTime = 946684800;  // 2000-01-01: the same content gives the same bytes
 
 struct ErrorText {
@@ -67,18 +66,20 @@ std::string write_zip(std::span<const ZipMember> members) {
 }
 
 struct ZipReader::State {
-    std::string what;
+    std::string what, hint;
     std::unique_ptr<zip_t, void (*)(zip_t*)> zip{nullptr, zip_discard};
 };
 
-ZipReader::ZipReader(std::span<const std::byte> bytes, std::string what) : state_(std::make_unique<State>()) {
+ZipReader::ZipReader(std::span<const std::byte> bytes, std::string what, std::string hint)
+    : state_(std::make_unique<State>()) {
     state_->what = std::move(what);
+    state_->hint = std::move(hint);
     ErrorText failure;
     zip_source_t* source = zip_source_buffer_create(bytes.data(), bytes.size(), 0, &failure.error);
     zip_t* zip = source != nullptr ? zip_open_from_source(source, ZIP_RDONLY, &failure.error) : nullptr;
     if (zip == nullptr) {
         if (source != nullptr) zip_source_free(source);
-        throw Error(ErrorCode::Malformed, state_->what + " is not a readable zip archive", DamagedHint);
+        throw Error(ErrorCode::Malformed, state_->what + " is not a readable zip archive", state_->hint);
     }
     state_->zip.reset(zip);
 }
@@ -94,12 +95,49 @@ std::vector<std::byte> ZipReader::read(const std::string& name, std::uint64_t mo
     const zip_int64_t index = zip_name_locate(state_->zip.get(), name.c_str(), 0);
     if (index < 0)
         throw Error(ErrorCode::Malformed, fmt::format("{} lacks its part \"{}\"", state_->what, name),
-                    DamagedHint);
+                    state_->hint);
+    return read_entry({.name = name, .index = static_cast<std::uint64_t>(index)}, most);
+}
+
+std::vector<ZipEntry> ZipReader::entries() const {
+    std::vector<ZipEntry> entries;
+    const zip_int64_t count = zip_get_num_entries(state_->zip.get(), 0);
+    for (zip_int64_t index = 0; index < count; ++index) {
+        zip_stat_t status;
+        zip_stat_init(&status);
+        if (zip_stat_index(state_->zip.get(), static_cast<zip_uint64_t>(index), 0, &status) != 0 ||
+            (status.valid & ZIP_STAT_NAME) == 0 || (status.valid & ZIP_STAT_SIZE) == 0)
+            continue;
+        ZipEntry entry{status.name, status.size, static_cast<std::uint64_t>(index), false};
+        std::replace(entry.name.begin(), entry.name.end(), '\\', '/');
+        entry.locked =
+            (status.valid & ZIP_STAT_ENCRYPTION_METHOD) != 0 && status.encryption_method != ZIP_EM_NONE;
+        if (!entry.name.empty() && !entry.name.ends_with('/')) entries.push_back(std::move(entry));
+    }
+    return entries;
+}
+
+std::string ZipReader::read_start(const ZipEntry& entry, std::size_t most) const {
     const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> file(
-        zip_fopen_index(state_->zip.get(), static_cast<zip_uint64_t>(index), 0), zip_fclose);
+        zip_fopen_index(state_->zip.get(), static_cast<zip_uint64_t>(entry.index), 0), zip_fclose);
+    std::string start(most, '\0');
+    std::size_t filled = 0;
+    while (file != nullptr && filled < most) {
+        const zip_int64_t got = zip_fread(file.get(), start.data() + filled, most - filled);
+        if (got <= 0) break;
+        filled += static_cast<std::size_t>(got);
+    }
+    start.resize(filled);
+    return start;
+}
+
+std::vector<std::byte> ZipReader::read_entry(const ZipEntry& entry, std::uint64_t most) const {
+    const auto index = static_cast<zip_uint64_t>(entry.index);
+    const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> file(zip_fopen_index(state_->zip.get(), index, 0),
+                                                                 zip_fclose);
     zip_stat_t status;
     zip_stat_init(&status);
-    zip_stat_index(state_->zip.get(), static_cast<zip_uint64_t>(index), 0, &status);
+    zip_stat_index(state_->zip.get(), index, 0, &status);
     const bool sized = (status.valid & ZIP_STAT_SIZE) != 0;  // said by the file: a hint, not trusted
     std::size_t piece =
         sized ? static_cast<std::size_t>(std::min<zip_uint64_t>(status.size + 1, PieceBytes)) : PieceBytes;
@@ -114,7 +152,8 @@ std::vector<std::byte> ZipReader::read(const std::string& name, std::uint64_t mo
         if (got < 0 || content.size() > most) break;
     }
     throw Error(ErrorCode::Malformed,
-                fmt::format("the part \"{}\" of {} cannot be unpacked", name, state_->what), DamagedHint);
+                fmt::format("the part \"{}\" of {} cannot be unpacked", entry.name, state_->what),
+                state_->hint);
 }
 
 }  // namespace gse::io

@@ -13,8 +13,10 @@ namespace {
 /// Ending of a file's name: all of a scene format's (".compressed.ply"), else the part from the last dot on.
 std::string ending_of(const std::string& file) {
     std::string ending = std::filesystem::path(file).extension().string();
+    const std::string lower = io::lower_case(file);
     for (const std::string& extension : readable_extensions())
-        if (file.ends_with(extension) && extension.size() > ending.size()) ending = extension;
+        if (lower.ends_with(extension) && extension.size() > ending.size())
+            ending = file.substr(file.size() - extension.size());
     return ending;
 }
 

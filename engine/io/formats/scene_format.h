@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <span>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "engine/base/file.h"
+#include "engine/io/bytes/part_files.h"
 #include "engine/io/formats/save_options.h"
 #include "engine/scene/scene.h"
 
@@ -68,8 +68,11 @@ struct SceneFormat {
     Scene (*read)(Bytes bytes) = nullptr;
     /// Reads without ever holding the whole file. Nothing when only read() can read or refuse it.
     std::optional<Scene> (*read_pieces)(const InputFile& file) = nullptr;
-    /// Reads the folder that one of `file_names` stands for. Throws Error.
-    Scene (*read_folder)(const std::filesystem::path& file) = nullptr;
+    /// True when a file of one of `file_names` is this format's, by its content. Asked where other scenes are
+    /// beside it.
+    bool (*describes)(std::string_view description) = nullptr;
+    /// Reads the scene for which `file`, one of `file_names`, stands among others. Throws Error.
+    Scene (*read_parts)(const PartFiles& files, const std::string& file) = nullptr;
 
     /// Hands on the bytes of a file. Throws Error before the first piece or not at all. Formats that are not
     /// exact leave out unusable rows with a warning. Returns the order: row order[i] of the usable rows

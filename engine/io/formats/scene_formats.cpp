@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 
 namespace gse {
 namespace io {
@@ -42,10 +41,7 @@ const io::SceneFormat* find_format(std::string_view name) {
 }
 
 const io::SceneFormat* format_written_to(const std::filesystem::path& path) {
-    std::string name = path.filename().string();
-    std::transform(name.begin(), name.end(), name.begin(), [](char letter) {
-        return static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-    });
+    const std::string name = io::lower_case(path.filename().string());
     const io::SceneFormat* best = nullptr;
     std::size_t longest = 0;
     for (const io::SceneFormat& format : scene_formats())
@@ -86,6 +82,8 @@ std::vector<std::string> readable_names() {
         names.insert(names.end(), format.file_names.begin(), format.file_names.end());
     return names;
 }
+
+std::vector<std::string> wrapper_extensions() { return {".zip", ".ssproj", ".gz"}; }
 
 std::vector<std::string> extensions_that_keep(bool io::SceneFormat::*keeps) {
     std::vector<std::string> extensions;

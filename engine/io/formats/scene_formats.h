@@ -25,6 +25,8 @@ std::vector<std::string> readable_extensions();
 std::vector<std::string> writable_extensions();
 /// Endings that can be read, and names of files that stand for a folder ("meta.json").
 std::vector<std::string> readable_names();
+/// Endings of files that hold a scene within: archives, projects of other programs, packed files.
+std::vector<std::string> wrapper_extensions();
 /// Endings of the formats that can be written and for which `keeps` is true, as the table orders them.
 std::vector<std::string> extensions_that_keep(bool io::SceneFormat::*keeps);
 /// Options of all formats that can be written, in the table's order. They live as long as the program.

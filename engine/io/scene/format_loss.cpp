@@ -10,6 +10,7 @@
 
 #include "engine/base/check.h"
 #include "engine/io/bytes/encoding.h"
+#include "engine/scene/scene.h"
 
 namespace gse::io {
 namespace {
@@ -20,6 +21,11 @@ constexpr double VisibleMove = 0.5;  // of the splat's own largest standard devi
 constexpr double VisibleTurn = 2;    // degrees
 constexpr double VisibleOpacity = 0.02;
 constexpr double VisibleColour = 0.02;  // of the range from black to white
+
+// The nearest view that is usual: a quarter of the distance at which a picture of this width shows the scene.
+constexpr double ViewWidth = 1920;  // pixels
+constexpr double Nearness = 4;
+constexpr double DrawnPixels2 = 0.3;  // the picture's own blur, which is added to the drawn size
 
 // Below this it is float rounding.
 constexpr double RoundingOfSizes = 1e-5, RoundingOfPositions = 1e-6, RoundingOfTurns = 1e-3,
@@ -38,10 +44,25 @@ struct Worst {
 };
 
 struct Losses {
-    Worst larger, smaller;  // log-scale
+    double blur = 0;        // blur_of_views()
+    Worst larger, smaller;  // of the drawn sizes, as logs
     Worst move, turn, opacity, colour, view_colour;
     double extent = 0;  // largest coordinate
 };
+
+/// Standard deviation that a view adds to what it draws: far smaller sizes look alike.
+double blur_of_views(const GaussianSet& set) {
+    const OrbitParameters orbit = fit_orbit(compute_statistics(set), {0, -1, 0});
+    const double pixel = 2 * orbit.radius * std::tan(0.5 * orbit.fov_x) / ViewWidth;
+    return std::sqrt(DrawnPixels2) * pixel / Nearness;
+}
+
+/// Log of the size of an axis as a view draws it.
+double drawn_log_size(double log_scale, double blur) {
+    constexpr double Sharp = 20;  // from here on, as a log, the blur is below the last digit
+    const double log_blur = std::log(blur), above = log_scale - log_blur;
+    return above > Sharp ? log_scale : log_blur + 0.5 * std::log1p(std::exp(2 * above));
+}
 
 /// Degrees between two orientations. Exact for small ones.
 double turn_between(const float* a, const float* b) {
@@ -58,9 +79,8 @@ void add_geometry(Losses& losses, const GaussianSpans& a, std::size_t i, const G
                   std::size_t j) {
     double largest = FlattestLogScale, up = 0, down = 0, distance = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        // Flatter than the flattest is flat.
-        const double before = std::max(a.log_scale[i * 3 + axis], FlattestLogScale);
-        const double change = std::max(b.log_scale[j * 3 + axis], FlattestLogScale) - before;
+        const double before = a.log_scale[i * 3 + axis], after = b.log_scale[j * 3 + axis];
+        const double change = drawn_log_size(after, losses.blur) - drawn_log_size(before, losses.blur);
         largest = std::max(largest, before);
         up = std::max(up, change);
         down = std::max(down, -change);
@@ -110,6 +130,7 @@ std::string describe_loss(const GaussianSet& written, const GaussianSet& back,
     const GaussianSpans a = written.spans(), b = back.spans();
     GSE_CHECK_EQ(a.size, b.size);
     Losses losses;
+    losses.blur = blur_of_views(written);
     for (std::size_t row = 0; row < b.size; ++row) {
         const std::size_t source = order.empty() ? row : order[row];
         add_geometry(losses, a, source, b, row);

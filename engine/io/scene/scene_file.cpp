@@ -4,9 +4,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
-#include <cctype>
-#include <charconv>
 #include <fstream>
 #include <optional>
 
@@ -16,31 +13,22 @@
 #include "engine/base/pending_file.h"
 #include "engine/io/formats/scene_formats.h"
 #include "engine/io/scene/format_loss.h"
+#include "engine/io/scene/scene_content.h"
 
 namespace gse {
 namespace {
 
-constexpr std::string_view LfsPointer = "version https://git-lfs";
+constexpr const char* PointCloud = "point_cloud.ply";  // of an iteration of a training
 
-std::string readable_hint() { return "known are " + in_words(readable_names(), "and"); }
-
-std::string lower(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(), [](char letter) {
-        return static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-    });
-    return text;
-}
-
-/// N of a folder "iteration_N".
-std::optional<long> iteration_of(const std::filesystem::path& folder) {
-    const std::string name = folder.filename().string();
-    constexpr std::string_view prefix = "iteration_";
-    if (!name.starts_with(prefix)) return std::nullopt;
-    long iteration = 0;
-    const auto [end, failure] =
-        std::from_chars(name.data() + prefix.size(), name.data() + name.size(), iteration);
-    if (failure != std::errc{} || end != name.data() + name.size()) return std::nullopt;
-    return iteration;
+/// The entry of the folder with that name, whatever its capitals. Nothing when there is none.
+std::optional<std::filesystem::path> entry_named(const std::filesystem::path& folder,
+                                                 const std::string& lower_name) {
+    std::error_code failure;
+    if (std::filesystem::exists(folder / lower_name, failure)) return folder / lower_name;
+    std::filesystem::directory_iterator entry(folder, failure);
+    for (; !failure && entry != std::filesystem::directory_iterator(); entry.increment(failure))
+        if (io::lower_case(entry->path().filename().string()) == lower_name) return entry->path();
+    return std::nullopt;
 }
 
 /// point_cloud.ply of the highest iteration below `point_cloud`.
@@ -49,11 +37,12 @@ std::optional<std::filesystem::path> highest_iteration(const std::filesystem::pa
     long best_iteration = -1;
     std::error_code ignored;
     for (const auto& entry : std::filesystem::directory_iterator(point_cloud, ignored)) {
-        const auto iteration = iteration_of(entry.path());
-        const std::filesystem::path scene = entry.path() / "point_cloud.ply";
-        if (!iteration || *iteration <= best_iteration || !std::filesystem::exists(scene, ignored)) continue;
+        const long iteration = io::iteration_of(entry.path().filename().string());
+        if (iteration <= best_iteration) continue;
+        const auto scene = entry_named(entry.path(), PointCloud);
+        if (!scene) continue;
         best = scene;
-        best_iteration = *iteration;
+        best_iteration = iteration;
     }
     return best;
 }
@@ -62,16 +51,13 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// True when a file of that name (in lower case) is of the format.
-bool has_extension_of(const io::SceneFormat& format, std::string_view name) {
-    return std::any_of(format.extensions.begin(), format.extensions.end(),
-                       [&](const std::string& extension) { return name.ends_with(extension); });
-}
-
 Scene load_file(const std::filesystem::path& path) {
-    const std::string name = lower(path.filename().string());
+    const std::string name = io::lower_case(path.filename().string());
     for (const io::SceneFormat& format : scene_formats())
-        if (contains(format.file_names, name)) return format.read_folder(path);
+        if (contains(format.file_names, name))
+            return format.read_parts(
+                *io::open_folder(path.parent_path(), fmt::format("the {} scene", format.title)),
+                path.filename().string());
     for (const io::SceneFormat& format : scene_formats())
         if (format.read_pieces != nullptr)
             if (auto scene = format.read_pieces(InputFile(path))) return std::move(*scene);
@@ -81,14 +67,13 @@ Scene load_file(const std::filesystem::path& path) {
 
 /// The scene a folder stands for by itself: an unpacked format, or an Inria output folder.
 std::optional<std::filesystem::path> scene_of_layout(const std::filesystem::path& folder) {
-    std::error_code ignored;
     for (const io::SceneFormat& format : scene_formats())
         for (const std::string& name : format.file_names)
-            if (std::filesystem::exists(folder / name, ignored)) return folder / name;
-    for (const std::filesystem::path& candidate : {folder / "point_cloud", folder})
+            if (auto description = entry_named(folder, name)) return description;
+    const auto iterations = entry_named(folder, "point_cloud");
+    for (const auto& candidate : {iterations.value_or(folder), folder})
         if (const auto scene = highest_iteration(candidate)) return scene;
-    if (std::filesystem::exists(folder / "point_cloud.ply", ignored)) return folder / "point_cloud.ply";
-    return std::nullopt;
+    return entry_named(folder, PointCloud);
 }
 
 /// First bytes of a file, none when it cannot be read.
@@ -100,29 +85,23 @@ std::string start_of(const std::filesystem::path& path) {
     return start;
 }
 
-/// True for a file that is a scene by its name, unless its format says that the content is something else.
-bool looks_like_scene(const std::filesystem::path& path) {
-    const std::string name = lower(path.filename().string());
+/// True for a file that is a scene by its name and start.
+bool is_scene_file(const std::filesystem::path& path) {
     std::error_code ignored;
-    if (name.starts_with('.') || !std::filesystem::is_regular_file(path, ignored)) return false;
-    for (const io::SceneFormat& format : scene_formats())
-        if (format.readable() && has_extension_of(format, name))
-            return format.may_be_scene == nullptr || format.may_be_scene(start_of(path));
-    return false;
+    return std::filesystem::is_regular_file(path, ignored) &&
+           io::looks_like_scene(io::lower_case(path.filename().string()), [&] { return start_of(path); });
 }
 
 Scene load_folder(const std::filesystem::path& folder) {
     if (const auto scene = scene_of_layout(folder)) return load_file(*scene);
     const auto files = scenes_in_folder(folder);
     if (files.size() == 1) return load_file(files.front());
-    if (files.empty()) throw Error(ErrorCode::NotFound, "the folder holds no scene", readable_hint(), folder);
-    constexpr std::size_t most_named = 5;
-    std::string names;
-    for (std::size_t at = 0; at < std::min(files.size(), most_named); ++at)
-        names += (at > 0 ? ", " : "") + files[at].filename().string();
+    if (files.empty())
+        throw Error(ErrorCode::NotFound, "the folder holds no scene", io::readable_hint(), folder);
+    std::vector<std::string> names;
+    for (const auto& file : files) names.push_back(file.filename().string());
     throw Error(ErrorCode::InvalidArgument,
-                fmt::format("the folder holds {} scenes ({}{})", files.size(), names,
-                            files.size() > most_named ? ", ..." : ""),
+                fmt::format("the folder holds {} scenes ({})", files.size(), io::some_of(names)),
                 "name the one you mean", folder);
 }
 
@@ -169,22 +148,7 @@ void write_in_pieces(const std::filesystem::path& path, const io::SceneFormat& f
 }  // namespace
 
 Scene parse_scene(std::span<const std::byte> bytes, std::string_view name) {
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    if (bytes.empty()) throw Error(ErrorCode::Malformed, "the file is empty");
-    if (text.starts_with(LfsPointer))
-        throw Error(ErrorCode::Malformed, "this is a Git LFS pointer, not the model itself",
-                    "run \"git lfs pull\" where it came from");
-    const std::string lower_name = lower(std::string(name));
-    for (const io::SceneFormat& format : scene_formats())
-        if (format.detect != nullptr && format.detect(bytes)) return format.read(bytes);
-    for (const io::SceneFormat& format : scene_formats()) {
-        if (!format.readable() || !has_extension_of(format, lower_name)) continue;
-        if (format.detect == nullptr) return format.read(bytes);
-        throw Error(ErrorCode::Malformed,
-                    fmt::format("the name says {}, but the content does not begin like one", format.name),
-                    "the file is damaged or misnamed");
-    }
-    throw Error(ErrorCode::Unsupported, "this is no scene format that can be read", readable_hint());
+    return io::read_content(bytes, name, {.file_bytes = bytes.size()});
 }
 
 Scene load_scene_file(const std::filesystem::path& path) {
@@ -203,7 +167,7 @@ std::vector<std::filesystem::path> scenes_in_folder(const std::filesystem::path&
     if (!std::filesystem::is_directory(folder, failure) || scene_of_layout(folder)) return files;
     std::filesystem::directory_iterator entry(folder, failure);
     for (; !failure && entry != std::filesystem::directory_iterator(); entry.increment(failure))
-        if (looks_like_scene(entry->path())) files.push_back(entry->path());
+        if (is_scene_file(entry->path())) files.push_back(entry->path());
     if (failure)
         throw Error(ErrorCode::Unreadable, "the folder cannot be read (" + failure.message() + ")",
                     "check its permissions", folder);

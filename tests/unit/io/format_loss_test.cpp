@@ -1,9 +1,11 @@
 // Losses of formats: measured on the written bytes and told, worst error per field.
 #include <algorithm>
+#include <limits>
 #include <regex>
 
 #include "engine/base/log.h"
 #include "engine/io/bytes/encoding.h"
+#include "engine/io/scene/format_loss.h"
 #include "tests/unit/io/io_helpers.h"
 
 namespace format_loss_test {
@@ -39,7 +41,8 @@ double number_after(const std::string& text, const std::string& words) {
 }  // namespace
 
 DOCTEST_TEST_CASE("sizes that SPZ clips are told with their factor and number") {
-    Scene scene = random_scene(100, 0, 1);
+    constexpr double Small = 0.0003;  // a scene in which a ten-thousandth of a unit is large
+    Scene scene = random_scene(100, 0, 1, Small);
     GaussianData data = scene.gaussians.to_data();
     // SPZ holds log-scales up to 255 / 16 - 10.
     constexpr float most = 255.0f / 16 - 10;
@@ -49,6 +52,33 @@ DOCTEST_TEST_CASE("sizes that SPZ clips are told with their factor and number") 
     const std::string said = said_of_saving(scene, "a.spz");
     DOCTEST_CHECK(said.find("sizes up to 2.8 times too small (visibly for 7 splats)") != std::string::npos);
     DOCTEST_CHECK(said.find("sizes up to 5 times too large (visibly for 1 splat)") != std::string::npos);
+}
+
+DOCTEST_TEST_CASE("flat splats whose thickness no view shows are not told to be too thick") {
+    constexpr double Roundings = 5;  // per cent: half a step of SPZ is 3.2
+    GaussianData data = random_gaussians(200, 0, 6);
+    for (std::size_t row = 0; row < 200; ++row) {
+        data.log_scale[row * 3] = row % 2 == 0 ? -23.0f : -std::numeric_limits<float>::infinity();
+        data.log_scale[row * 3 + 1] = -13.6f;
+    }
+    Scene scene;
+    scene.gaussians = GaussianSet(data);
+    for (const char* name : {"a.spz", "a.compressed.ply", "a.sog"}) {
+        const std::string said = said_of_saving(scene, name);
+        DOCTEST_CAPTURE(said);
+        DOCTEST_CHECK(said.find("times too large") == std::string::npos);
+        DOCTEST_CHECK(number_after(said, "sizes") < Roundings);
+    }
+    // Thickness that a view shows is told, and so are the larger axes.
+    const auto told = [&](std::size_t axis, float log_scale) {
+        GaussianData back = data;
+        for (std::size_t row = 0; row < 30; ++row) back.log_scale[row * 3 + axis] = log_scale;
+        const std::string text = io::describe_loss(scene.gaussians, GaussianSet(back), {});
+        return text.substr(0, text.find(", "));
+    };
+    DOCTEST_CHECK(told(0, -3).find("times too large (visibly for 30 splats)") != std::string::npos);
+    DOCTEST_CHECK(told(2, 0).find("times too large (visibly for 30 splats)") != std::string::npos);
+    DOCTEST_CHECK(told(0, -11.5f).find("visibly") == std::string::npos);
 }
 
 DOCTEST_TEST_CASE("every lossy field of every format is told, and a plain PLY loses nothing") {

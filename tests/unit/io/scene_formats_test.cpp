@@ -55,7 +55,7 @@ DOCTEST_TEST_CASE(
         DOCTEST_CHECK_FALSE(format.mime.type.empty());
         DOCTEST_REQUIRE_FALSE(format.extensions.empty());
         DOCTEST_CHECK(format.readable());
-        DOCTEST_CHECK((format.read_folder != nullptr) == !format.file_names.empty());
+        DOCTEST_CHECK((format.read_parts != nullptr) == !format.file_names.empty());
         for (const std::string& extension : format.extensions) {
             DOCTEST_CHECK(extension.starts_with('.'));
             if (format.writable()) DOCTEST_CHECK(format_written_to("a" + extension) == &format);

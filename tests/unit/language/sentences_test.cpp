@@ -100,7 +100,11 @@ DOCTEST_TEST_CASE("what a model is told and what is said to be left out agree") 
 
 DOCTEST_TEST_CASE("invisible characters lose no word") {
     DOCTEST_CHECK(words_of("a blue\u200b bear") == Words{"a", "blue", "bear"});
-    DOCTEST_CHECK(words_of("a blue\u200bbear") == Words{"a", "blue", "bear"});
+    DOCTEST_CHECK(words_of("a bl\u200bue b\u2064ear\u180e") == Words{"a", "blue", "bear"});
+    DOCTEST_CHECK(words_of("\u200b\u200d a\u200b \u2060blue\ufe0f \U000e0001bear") ==
+                  Words{"a", "blue", "bear"});
+    DOCTEST_CHECK(words_of("\u200b\ufeff").empty());
+    DOCTEST_CHECK(words_of("a \xe2\x80 bear\xff") == Words{"a", "\xe2\x80", "bear\xff"});
     DOCTEST_CHECK(words_of("\ufeffa gr\u00adeen bear\u2060") == Words{"a", "green", "bear"});
     DOCTEST_CHECK(words_of("a\u2009red\u3000bear\u2028hat") == Words{"a", "red", "bear", "hat"});
 }

@@ -13,6 +13,7 @@
 #include "engine/io/formats/ply/compressed_ply.h"
 #include "engine/io/formats/ply/gaussian_ply.h"
 #include "engine/io/formats/ply/ply_body.h"
+#include "engine/io/formats/ply/ply_colour_space.h"
 #include "engine/io/formats/ply/ply_comments.h"
 
 namespace gse::io {
@@ -227,6 +228,7 @@ Scene parse_compressed_ply(Bytes bytes) {
     scene.info.format = "compressed.ply";
     read_comments(header, scene.info);
     scene.gaussians = GaussianSet(std::move(data));
+    show_as_srgb(scene, header, bytes);
     return scene;
 }
 

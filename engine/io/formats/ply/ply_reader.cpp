@@ -18,6 +18,7 @@
 #include "engine/io/formats/ply/compressed_ply.h"
 #include "engine/io/formats/ply/gaussian_ply.h"
 #include "engine/io/formats/ply/ply_body.h"
+#include "engine/io/formats/ply/ply_colour_space.h"
 #include "engine/io/formats/ply/ply_comments.h"
 
 namespace gse::io {
@@ -329,7 +330,10 @@ Scene parse_gaussian_ply(Bytes bytes) {
                             std::size_t end) { return rows.subspan(begin * stride, (end - begin) * stride); },
                         described.header, vertex, attributes);
     };
-    return fill_scene(described, read, [&] { return body.has_rest() ? body.remaining() : std::size_t{0}; });
+    Scene scene =
+        fill_scene(described, read, [&] { return body.has_rest() ? body.remaining() : std::size_t{0}; });
+    show_as_srgb(scene, described.header, bytes);
+    return scene;
 }
 
 std::optional<Scene> load_gaussian_ply(const InputFile& file) {
@@ -340,6 +344,7 @@ std::optional<Scene> load_gaussian_ply(const InputFile& file) {
     if (!is_ply(start) || text.find("end_header") == std::string_view::npos || detect_compressed_ply(start))
         return std::nullopt;
     Described described(start);
+    if (states_colour_space(described.header)) return std::nullopt;
     const PlyElement& vertex = *described.vertex;
     const std::uint64_t behind_header = file.size() - described.header.body_offset;
     const std::size_t stride = vertex.row_bytes();

@@ -1,33 +1,26 @@
-// The parts of a SOG scene by name, from a folder or a zip archive, and its WebP textures as bytes.
+// SOG scenes among files of a folder or a zip archive, and their WebP textures as bytes.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "engine/io/bytes/part_files.h"
 #include "engine/scene/scene.h"
 
 namespace gse::io {
 
-/// Bytes of the file `name` of a scene. Throws Error when it is missing, broken or larger than `most`.
-class SogFiles {
-public:
-    virtual ~SogFiles() = default;
-    virtual std::vector<std::byte> read(const std::string& name, std::uint64_t most) const = 0;
-    /// Bytes that all files take on the disk. Their claims are measured by it.
-    virtual std::uint64_t stored_bytes() const = 0;
-};
-
 /// Reads the scene that the file `meta` among these describes. Throws Error.
-Scene read_sog(const SogFiles& files, const std::string& meta);
+Scene read_sog(const PartFiles& files, const std::string& meta);
+/// Reads the finest level of a streamed scene and its environment. `lod_meta` is its lod-meta.json. Throws
+/// Error.
+Scene read_sog_levels(const PartFiles& files, const std::string& lod_meta);
 
-std::unique_ptr<SogFiles> open_sog_folder(const std::filesystem::path& folder);
 /// The archive's bytes must outlive the result.
-std::unique_ptr<SogFiles> open_sog_archive(std::span<const std::byte> bytes);
+std::unique_ptr<PartFiles> open_sog_archive(std::span<const std::byte> bytes);
 
 /// RGBA texture, row-major. Texel i belongs to splat i.
 struct Texture {

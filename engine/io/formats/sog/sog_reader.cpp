@@ -4,22 +4,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
-#include <set>
 
 #include "engine/base/error.h"
-#include "engine/base/file.h"
-#include "engine/base/json.h"
-#include "engine/base/memory.h"
 #include "engine/io/bytes/claims.h"
 #include "engine/io/bytes/encoding.h"
 #include "engine/io/bytes/json_numbers.h"
+#include "engine/io/formats/scene_formats.h"
 #include "engine/io/formats/sog/codebook.h"
 #include "engine/io/formats/sog/sog_files.h"
 #include "engine/io/formats/sog/sog_format.h"
+#include "engine/io/formats/sog/sog_json.h"
 
 namespace gse::io {
 namespace {
@@ -29,21 +25,15 @@ using Json = nlohmann::json;
 constexpr std::size_t PaletteColumns = 64;  // palette entries side by side in the centroid texture
 constexpr std::uint64_t LargestDescription = std::uint64_t{4}
                                              << 20;  // bytes of a meta.json, which has a few thousand
-constexpr std::uint64_t LargestCount = std::uint64_t{16383} * 16383;  // a WebP picture has no more texels
 // Bytes of its file, were nothing compressed.
-constexpr std::uint64_t LargestTexture = LargestCount * 4 + (std::uint64_t{1} << 20);
+constexpr std::uint64_t LargestTexture = LargestSogCount * 4 + (std::uint64_t{1} << 20);
 
-constexpr const char* LevelList = "lod-meta.json";  // of a streamed scene
-
-[[noreturn]] void throw_malformed_sog(const std::string& what) {
-    throw Error(ErrorCode::Malformed, "the SOG scene " + what,
-                "the file is damaged or written by an unknown version");
-}
+constexpr const char *SceneDescription = "meta.json", *LevelList = "lod-meta.json";  // of a streamed scene
 
 /// Scene being read: its description and the place of its textures.
 struct Source {
     const Json& meta;
-    const SogFiles& files;
+    const PartFiles& files;
     std::size_t count = 0;
     bool version1 = false;
 
@@ -69,11 +59,25 @@ template <std::size_t N> std::array<double, N> numbers(const Json& json) {
 /// Byte -> value for one channel: a codebook (v2) or a straight line between two bounds (v1).
 using Decoder = std::array<float, CodebookSize>;
 
+/// True for a codebook whose first value is null.
+bool lacks_first_code(const Json& part) {
+    const auto values = part.find("codebook");
+    return values != part.end() && values->is_array() && !values->empty() && values->front().is_null();
+}
+
+/// Codebook of a part. Earlier writers left its first value out (null), which is where the next one and the
+/// mean step between the codes say.
 Decoder codebook(const Json& part) {
     const Json& values = part.at("codebook");
     if (values.size() < CodebookSize) throw_malformed_sog("has a codebook of fewer than 256 values");
     Decoder result{};
-    for (std::size_t i = 0; i < CodebookSize; ++i) result[i] = static_cast<float>(values.at(i).get<double>());
+    const bool gap = lacks_first_code(part);
+    for (std::size_t i = gap ? 1 : 0; i < CodebookSize; ++i)
+        result[i] = static_cast<float>(values.at(i).get<double>());
+    if (gap) {
+        const double next = values.at(1).get<double>(), last = values.at(CodebookSize - 1).get<double>();
+        result[0] = static_cast<float>(next + (next - last) / 255);
+    }
     return result;
 }
 
@@ -180,14 +184,24 @@ void read_palette_sh(const Source& source, const Texture& centroids, GaussianDat
     }
 }
 
+/// Parts whose codebooks begin with null, in words.
+std::string parts_that_lack_codes(const Json& meta) {
+    std::vector<std::string> parts;
+    for (const auto& [name, what] : {std::pair("scales", "sizes"), std::pair("sh0", "base colours"),
+                                     std::pair("shN", "view-dependent colours")})
+        if (const auto part = meta.find(name); part != meta.end() && lacks_first_code(*part))
+            parts.emplace_back(what);
+    return in_words(parts, "and");
+}
+
 std::size_t count_of(const Json& meta, bool version1) {
     const Json& stated = version1 ? meta.at("means").at("shape").at(0) : meta.at("count");
-    const std::uint64_t count = whole_number(stated, LargestCount, "number of splats of the SOG scene");
+    const std::uint64_t count = whole_number(stated, LargestSogCount, "number of splats of the SOG scene");
     if (count == 0) throw_malformed_sog("holds no splats");
     return static_cast<std::size_t>(count);
 }
 
-Scene read_scene(const SogFiles& files, const Json& meta) {
+Scene read_scene(const PartFiles& files, const Json& meta) {
     const bool version1 = !meta.contains("version");
     const std::uint64_t version =
         version1 ? 1 : whole_number(meta.at("version"), 1000, "version of the SOG scene");
@@ -213,125 +227,38 @@ Scene read_scene(const SogFiles& files, const Json& meta) {
         meta.value("antialias", false) || meta.value("model", std::string()) == "antialiased";
     if (meta.value("model", std::string()) == "2dgs")
         scene.info.warnings.push_back("the file asks for 2DGS rendering; it is drawn as 3DGS");
+    if (const std::string parts = parts_that_lack_codes(meta); !version1 && !parts.empty())
+        scene.info.warnings.push_back(fmt::format(
+            "the file lacks the first value of its codebook for {}: it is taken from the others", parts));
     scene.gaussians = GaussianSet(std::move(data));
     return scene;
 }
 
-Json parse_json(std::span<const std::byte> bytes) {
-    const char* text = reinterpret_cast<const char*>(bytes.data());
-    return gse::parse_json({text, bytes.size()}, "the description of the SOG scene");
-}
-
-/// Translates JSON exceptions (missing keys, wrong types, bad syntax) into Error.
-template <class F> auto with_json_errors(F&& body) {
-    try {
-        return body();
-    } catch (const nlohmann::json::exception& failure) {
-        throw_malformed_sog(std::string("has a description that cannot be understood (") + failure.what() +
-                            ")");
-    }
-}
-
-void append_padded(const std::vector<float>& from, std::size_t from_stride, std::vector<float>& to,
-                   std::size_t to_stride) {
-    for (std::size_t i = 0; i < from.size(); i += from_stride) {
-        to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(i),
-                  from.begin() + static_cast<std::ptrdiff_t>(i + from_stride));
-        to.insert(to.end(), to_stride - from_stride, 0.0f);
-    }
-}
-
-GaussianSet concatenate(const std::vector<GaussianSet>& parts) {
-    if (parts.size() == 1) return parts.front();
-    GaussianData all;
-    for (const GaussianSet& part : parts) all.sh_degree = std::max(all.sh_degree, part.sh_degree());
-    for (const GaussianSet& part : parts) {
-        const GaussianData data = part.to_data();
-        append_padded(data.position, 3, all.position, 3);
-        append_padded(data.log_scale, 3, all.log_scale, 3);
-        append_padded(data.rotation, 4, all.rotation, 4);
-        append_padded(data.opacity_logit, 1, all.opacity_logit, 1);
-        append_padded(data.sh, data.sh_stride(), all.sh, all.sh_stride());
-    }
-    return GaussianSet(std::move(all));
-}
-
-/// Numbers of files in the order in which they were first named.
-struct FileNumbers {
-    std::vector<std::size_t> order;
-    std::set<std::size_t> seen;
-};
-
-/// Collects the files that a node and its children name for this level. parse_json has bounded the depth.
-void collect_files(const Json& node, const std::string& level, FileNumbers& files) {
-    if (node.contains("lods") && node.at("lods").contains(level)) {
-        const std::size_t file =
-            whole_number(node.at("lods").at(level).at("file"), LargestCount, "file number of a level");
-        if (files.seen.insert(file).second) files.order.push_back(file);
-    }
-    if (!node.contains("children")) return;
-    for (const Json& child : node.at("children")) collect_files(child, level, files);
-}
-
-/// Files of the parts, each once, however often it is listed. Files outside of the scene's folder are
-/// refused.
-std::vector<std::filesystem::path> part_files(const std::filesystem::path& folder, const Json& json) {
-    FileNumbers files;
-    collect_files(json.at("tree"), "0", files);
-    if (files.order.empty()) throw_malformed_sog("names no file for its finest level");
-    std::vector<std::filesystem::path> paths;
-    std::set<std::filesystem::path> seen;
-    for (const std::size_t number : files.order) {
-        const auto name =
-            std::filesystem::path(json.at("filenames").at(number).get<std::string>()).lexically_normal();
-        if (name.is_absolute() || std::find(name.begin(), name.end(), "..") != name.end())
-            throw_malformed_sog("names a file outside of its folder");
-        if (seen.insert(name).second) paths.push_back(folder / name);
-    }
-    return paths;
-}
-
-bool detect_sog(Bytes bytes) { return bytes.size() >= 4 && std::memcmp(bytes.data(), "PK\x03\x04", 4) == 0; }
+bool detect_sog(Bytes bytes) { return is_zip(bytes); }
 
 }  // namespace
 
-Scene read_sog(const SogFiles& files, const std::string& meta) {
-    return with_json_errors(
-        [&] { return read_scene(files, parse_json(files.read(meta, LargestDescription))); });
+Scene read_sog(const PartFiles& files, const std::string& meta) {
+    return with_sog_errors(
+        [&] { return read_scene(files, parse_sog_json(files.read(meta, LargestDescription))); });
 }
 
-Scene parse_sog(Bytes bytes) { return read_sog(*open_sog_archive(bytes), "meta.json"); }
+Scene parse_sog(Bytes bytes) {
+    const auto files = open_sog_archive(bytes);
+    return read_sog(*files, SceneDescription);
+}
 
 namespace {
 
-/// Reads an unpacked archive: `meta` is its meta.json.
-Scene load_sog_folder(const std::filesystem::path& meta) {
-    return read_sog(*open_sog_folder(meta.parent_path()), meta.filename().string());
+Scene read_unpacked_sog(const PartFiles& files, const std::string& description) {
+    return lower_case(description) == LevelList ? read_sog_levels(files, description)
+                                                : read_sog(files, description);
 }
 
-/// Reads the finest level of a streamed SOG: `lod_meta` is its lod-meta.json.
-Scene load_sog_levels(const std::filesystem::path& lod_meta) {
-    return with_json_errors([&] {
-        const FileBytes file(lod_meta);
-        const Json json = parse_json(file.bytes());
-        std::vector<GaussianSet> parts;
-        Scene scene;
-        std::uint64_t bytes = 0;
-        for (const auto& file_of_part : part_files(lod_meta.parent_path(), json)) {
-            Scene part = load_sog_folder(file_of_part);
-            parts.push_back(part.gaussians);
-            bytes += part.gaussians.byte_size();
-            if (parts.size() == 1) scene.info = std::move(part.info);
-        }
-        if (parts.size() > 1) require_memory(bytes, "the scene's finest level");
-        scene.gaussians = concatenate(parts);
-        scene.info.warnings.push_back("of the levels of detail, only the finest is loaded");
-        return scene;
-    });
-}
-
-Scene read_unpacked_sog(const std::filesystem::path& file) {
-    return file.filename() == LevelList ? load_sog_levels(file) : load_sog_folder(file);
+/// True when a description is one of these scenes': other programs have a meta.json too.
+bool describes_sog(std::string_view description) {
+    return description.find("\"means\"") != std::string_view::npos ||
+           description.find("\"filenames\"") != std::string_view::npos;
 }
 
 std::vector<std::uint32_t> write_sog_archive(const Scene& scene, const SaveOptions&, const TakePiece& take) {
@@ -346,14 +273,15 @@ SceneFormat sog_format() {
     return {.name = "sog",
             .title = "SOG",
             .extensions = {".sog"},
-            .file_names = {LevelList, "meta.json"},
+            .file_names = {LevelList, SceneDescription},
             .mime = {.type = "model/x-sog",
                      .comment = "Gaussian splats (SOG)",
                      .parent = "application/zip",
                      .weight = 60},
             .detect = detect_sog,
             .read = parse_sog,
-            .read_folder = read_unpacked_sog,
+            .describes = describes_sog,
+            .read_parts = read_unpacked_sog,
             .write = write_sog_archive,
             .keeps_antialiasing = true};
 }

@@ -286,15 +286,17 @@ Scene parse_streams(Bytes bytes) {
                       parse_extensions(extensions));
 }
 
-bool is_gzip(Bytes bytes) {
-    return bytes.size() >= 2 && bytes[0] == std::byte{0x1f} && bytes[1] == std::byte{0x8b};
-}
-
 bool is_bare(Bytes bytes) {
     return bytes.size() >= 4 && load_scalar<std::uint32_t>(bytes.data()) == SpzMagic;
 }
 
-bool detect_spz(Bytes bytes) { return is_gzip(bytes) || is_bare(bytes); }
+/// Other scenes come in gzip streams too.
+bool detect_spz(Bytes bytes) {
+    if (!is_gzip(bytes)) return is_bare(bytes);
+    try {
+        return is_bare(inflate_gzip(bytes, sizeof SpzMagic));
+    } catch (const Error&) { return false; }
+}
 
 Scene parse_spz(Bytes bytes) {
     if (is_gzip(bytes)) return parse_gzip(bytes);

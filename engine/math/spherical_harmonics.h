@@ -4,7 +4,7 @@
 #include "engine/math/sh.h"
 #include "engine/math/vec.h"
 
-namespace gse::raster {
+namespace gse {
 
 inline constexpr int MaxShCoefficients = 16;
 
@@ -14,4 +14,4 @@ void sh_basis(const Vec3& direction, int degree, double* basis);
 /// Derivative of each basis value with respect to the direction's components, taken as independent variables.
 void sh_basis_gradient(const Vec3& direction, int degree, Vec3* gradient);
 
-}  // namespace gse::raster
+}  // namespace gse

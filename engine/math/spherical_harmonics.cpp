@@ -1,7 +1,7 @@
 // Spherical harmonics basis as polynomials of the direction (signs and order of the 3DGS files).
-#include "engine/raster/spherical_harmonics.h"
+#include "engine/math/spherical_harmonics.h"
 
-namespace gse::raster {
+namespace gse {
 namespace {
 
 constexpr double C1 = 0.4886025119029199;
@@ -59,4 +59,4 @@ void sh_basis_gradient(const Vec3& d, int degree, Vec3* g) {
     g[15] = Vec3{3 * (xx - yy), -6 * x * y, 0} * -C3a;
 }
 
-}  // namespace gse::raster
+}  // namespace gse
