@@ -36,12 +36,15 @@ struct Parts {
     std::string pad_token;
     ModelFacts facts;
     BundleKind kind = BundleKind::Plain;
+    std::vector<std::string> notes;
 
     /// Paths of what belongs to the model beside its weights.
     fs::path folder() const { return single_file ? root.parent_path() : root; }
 };
 
 constexpr std::int64_t LargestImageSize = 8192;  // pixels of a side
+/// Side of the latents of an SD 2.x that predicts noise; infer_unet_config() has that of 768-v.
+constexpr std::int64_t Sd2BaseSampleSize = 64;
 
 constexpr const char* FolderHint =
     "a model folder has model_index.json, tokenizer, text_encoder, unet, vae and scheduler, as diffusers "
@@ -366,6 +369,7 @@ ModelBundle load_bundle(const std::filesystem::path& path, const torch::Device& 
         freeze(bundle.unet, device);
         freeze(bundle.vae, device);
         bundle.kind = parts.kind;
+        bundle.notes = parts.notes;
         if (const auto folder = tiny_folder(parts, taesd); !folder.empty()) {
             bundle.tiny = load_tiny(folder, parts.vae);
             freeze(bundle.tiny, device);
@@ -389,11 +393,10 @@ ModelDescription describe_model(const std::filesystem::path& path) {
     });
 }
 
-void check_lora(const std::filesystem::path& model, const LoraWeights& weights) {
+void fit_lora(const std::filesystem::path& model, LoraWeights& weights) {
     const auto parts = find_parts(model);
     const WeightOptions described{torch::kMeta, torch::kFloat32, false};
-    check_lora(*UNet(parts.unet, described), weights.unet, weights.path);
-    check_lora(*ClipTextEncoder(parts.text, described), weights.text, weights.path);
+    fit_lora(weights, *UNet(parts.unet, described), *ClipTextEncoder(parts.text, described));
 }
 
 }  // namespace gse::neural

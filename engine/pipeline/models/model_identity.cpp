@@ -100,6 +100,12 @@ fs::path named_taesd(const JobParameters& job, const fs::path& folder) {
     return name.empty() || name == "none" ? fs::path() : folder / name;
 }
 
+/// Contents of a LoRA and of PEFT's configuration beside it.
+std::string lora_contents(const fs::path& file, AnswerCache& cache) {
+    const auto config = file.parent_path() / "adapter_config.json";
+    return contents_of(file, cache) + (fs::is_regular_file(config) ? " " + contents_of(config, cache) : "");
+}
+
 /// Libraries choose other kernels on another processor, which round differently.
 std::string processor() {
     std::ifstream stream("/proc/cpuinfo");
@@ -144,7 +150,7 @@ std::string model_identity(const JobParameters& job, AnswerCache& cache, int ver
         text += "tiny autoencoder\n" + contents_below(tiny, cache);
     for (const auto& lora : neural::find_loras(job.lora))  // its name may say that it was distilled
         text += fmt::format("lora {} {} {}\n", static_cast<int>(neural::lora_mark(lora.file)), lora.strength,
-                            contents_of(lora.file, cache));
+                            lora_contents(lora.file, cache));
     return digest_of_text(text);
 }
 
