@@ -63,8 +63,10 @@ void add_info(CLI::App& app, CommandContext&) {
     };
     auto options = std::make_shared<InfoOptions>();
     auto* command = app.add_subcommand(
-        "info", "Print what scenes hold and what may be wrong with them, or how pictures were made");
-    command->add_option("scene", options->scenes, "Scene files or folders, or pictures (.png)")->required();
+        "info",
+        "Print what scenes and models hold and what may be wrong with them, or how pictures were made");
+    command->add_option("scene", options->scenes, "Scene files or folders, pictures (.png), or models")
+        ->required();
     command->add_flag("--json", options->json, "Print JSON; a list for several scenes");
     command->callback([options] {
         if (options->scenes.size() > 1) return print_infos(options->scenes, options->json);

@@ -87,6 +87,7 @@ public:
     int image_size() const override { return static_cast<int>(bundle_->image_size()); }
     std::string name() const override { return bundle_->facts.name; }
     BundleKind kind() const override { return bundle_->kind; }
+    std::vector<std::string> notes() const override { return bundle_->notes; }
 
     std::unique_ptr<edit::ImageTextEncoder> image_text_encoder() const override {
         const auto folder = loaded_->path / "clip";
@@ -144,8 +145,11 @@ public:
     std::shared_ptr<TextToImage> load_lora(const std::filesystem::path& path,
                                            double strength) const override {
         auto weights = read_lora(path);
+        fit_lora(weights, *loaded_->unet, *loaded_->text_encoder);
         auto merged = guard_torch("merging a LoRA", [&] {
-            return std::make_shared<const ModelBundle>(with_lora(*loaded_, weights, strength));
+            auto bundle = with_lora(*loaded_, weights, strength);
+            for (auto& note : weights.notes()) bundle.notes.push_back(std::move(note));
+            return std::make_shared<const ModelBundle>(std::move(bundle));
         });
         return std::make_shared<Model>(loaded_, std::move(merged), std::move(weights), fast_);
     }
@@ -215,20 +219,19 @@ private:
 
 }  // namespace
 
-namespace {}  // namespace
-
 std::unique_ptr<TextToImage> load_model(const std::filesystem::path& path, const ModelOptions& options) {
     keep_buffers();
     const auto device = parse_device(options.device);
     std::vector<LoraWeights> weights;
     for (const auto& lora : options.loras) {
         weights.push_back(guard_torch("reading a LoRA", [&] { return read_lora(lora.file); }));
-        check_lora(path, weights.back());
+        fit_lora(path, weights.back());
     }
     auto bundle = load_bundle(path, device, options.taesd, options.precision);
     DistilledLoras fast;
     for (std::size_t i = 0; i < weights.size(); ++i) {
         const auto& lora = options.loras[i];
+        for (auto& note : weights[i].notes()) bundle.notes.push_back(std::move(note));
         if (lora.strength == 0) continue;  // none, and the model stays what it is
         const auto mark = lora_mark(lora.file);
         if (mark == LoraMark::None) {  // nobody else holds these weights yet

@@ -20,7 +20,7 @@ void ask_model(Context& context) {
     auto& commands = context.commands;
     context.state.files.ask({.title = "A model: folder in diffusers layout, or a .safetensors file",
                              .confirm = "Use",
-                             .extensions = {".safetensors", "model_index.json"},
+                             .extensions = {".safetensors", ".sft", "model_index.json"},
                              .saves = false,
                              .folder_allowed = true,
                              .start = context.state.models.model_path,
@@ -42,6 +42,7 @@ void draw_card(Context& context, const ModelView& model, int index) {
     if (model.bytes > 0)
         facts += fmt::format("{}{}", facts.empty() ? "" : ", ", bytes_text(static_cast<double>(model.bytes)));
     if (!facts.empty()) dim_text(facts);
+    if (!model.prediction.empty()) dim_text(model.prediction);
     dim_text(shortened(model.path, ImGui::GetContentRegionAvail().x));
     tooltip(model.path);
     if (!model.problem.empty()) coloured_text(model.usable ? palette::Warning : palette::Bad, model.problem);
@@ -63,7 +64,7 @@ void ask_lora(Context& context) {
     auto& commands = context.commands;
     context.state.files.ask({.title = "A LoRA: .safetensors of kohya, LyCORIS, PEFT or diffusers",
                              .confirm = "Add",
-                             .extensions = {".safetensors"},
+                             .extensions = {".safetensors", ".sft"},
                              .saves = false,
                              .folder_allowed = false,
                              .start = context.state.models.lora_text,
@@ -139,7 +140,7 @@ const SegmenterTexts& segmenter_texts(SegmenterRole role) {
                                        "Back to GrabCut",
                                        "sam_vit_b.pth, mobile_sam.pt, ...",
                                        "Weights of SAM or MobileSAM",
-                                       {".safetensors", ".pth", ".pt"}};
+                                       {".safetensors", ".sft", ".pth", ".pt"}};
     static const SegmenterTexts words{
         SegmenterRole::Words,
         "models.words_segmenter",

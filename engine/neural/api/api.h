@@ -63,6 +63,8 @@ public:
     virtual std::string name() const = 0;
     /// Kind of the model, which decides how views are redrawn.
     virtual BundleKind kind() const = 0;
+    /// Sentences about parts of its files that are not used, and about what was taken for granted.
+    virtual std::vector<std::string> notes() const { return {}; }
     virtual Image sample(const SampleRequest& request) const = 0;
     virtual Image img2img(const Image& image, const SampleRequest& request) const = 0;
     /// The bundle's text-image encoder; null when it has none.

@@ -476,7 +476,6 @@ SchedulerConfig SchedulerConfig::from_json(const Json& json, const std::filesyst
     reader.expect("beta_schedule", {"scaled_linear", "linear", "squaredcos_cap_v2"});
     reader.expect("prediction_type", {"epsilon", "v_prediction", "sample"});
     reader.expect("timestep_spacing", {"leading", "linspace", "trailing"});
-    reader.expect("rescale_betas_zero_snr", {false});
     reader.expect_absent("trained_betas");
     SchedulerConfig config;
     config.steps_offset = 0;
@@ -497,6 +496,7 @@ SchedulerConfig SchedulerConfig::from_json(const Json& json, const std::filesyst
     reader.get("clip_sample_range", config.clip_sample_range);
     reader.get("original_inference_steps", config.original_inference_steps);
     reader.get("timestep_scaling", config.timestep_scaling);
+    reader.get("rescale_betas_zero_snr", config.rescale_betas_zero_snr);
     reader.positive("num_train_timesteps", config.num_train_timesteps, 1 << 20);
     reader.positive("original_inference_steps", config.original_inference_steps, config.num_train_timesteps);
     if (config.clip_sample_range <= 0 || config.timestep_scaling <= 0)
@@ -516,6 +516,7 @@ Json SchedulerConfig::to_json() const {
         json["timestep_scaling"] = timestep_scaling;
     }
     json["prediction_type"] = prediction_type;
+    if (rescale_betas_zero_snr) json["rescale_betas_zero_snr"] = true;
     json["set_alpha_to_one"] = set_alpha_to_one;
     json["skip_prk_steps"] = true;
     json["steps_offset"] = steps_offset;

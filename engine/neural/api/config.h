@@ -156,6 +156,7 @@ struct SchedulerConfig {
     // Models distilled to few steps (LCM, TCD)
     std::int64_t original_inference_steps = 50;  // of the solver they were distilled from
     double timestep_scaling = 10;
+    bool rescale_betas_zero_snr = false;  // the last noise level is pure noise (Lin et al. 2024, algorithm 1)
 
     static SchedulerConfig from_json(const Json& json, const std::filesystem::path& path);
     Json to_json() const;

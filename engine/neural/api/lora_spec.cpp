@@ -12,11 +12,8 @@
 #include "engine/base/safetensors_header.h"
 
 namespace gse::neural {
-namespace {
-
 namespace fs = std::filesystem;
 
-/// Finds `word` between characters that are no letters, in either case.
 bool says_word(const std::string& text, std::string_view word) {
     const auto lower = [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); };
     std::string plain(text);
@@ -28,6 +25,8 @@ bool says_word(const std::string& text, std::string_view word) {
         if ((at == 0 || !is_letter(at - 1)) && !is_letter(at + word.size())) return true;
     return false;
 }
+
+namespace {
 
 LoraMark mark_of(const std::string& text) {
     if (says_word(text, "tcd")) return LoraMark::Tcd;
@@ -76,7 +75,7 @@ std::vector<LoraSpec> find_loras(const std::vector<std::string>& texts) {
         if (!fs::exists(lora.file, ignored))
             throw Error(ErrorCode::NotFound, "there is no LoRA file here", "name it as FILE or FILE:strength",
                         lora.file);
-        if (fs::is_directory(lora.file, ignored) || lora.file.extension() != ".safetensors")
+        if (fs::is_directory(lora.file, ignored) || !is_safetensors_name(lora.file))
             throw Error(ErrorCode::Unsupported, "this is not a LoRA file that can be read",
                         "LoRAs are read from .safetensors files; pickled ones can run programs: convert them",
                         lora.file);

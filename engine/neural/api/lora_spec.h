@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace gse::neural {
@@ -26,6 +27,9 @@ std::string lora_text(const LoraSpec& lora);
 /// All of them, in order. Throws Error as parse_lora() does, and (NotFound, Unsupported) for a file that is
 /// not there or is pickled.
 std::vector<LoraSpec> find_loras(const std::vector<std::string>& texts);
+
+/// Finds `word` (lower case) between characters that are no letters, in either case.
+bool says_word(const std::string& text, std::string_view word);
 
 /// Mark by the file's metadata, its name or the name of its folder: "lcm" or "tcd" as a word of its own.
 LoraMark lora_mark(const std::filesystem::path& file);

@@ -66,9 +66,9 @@ std::string stated_kind(const fs::path& folder) {
 }
 
 ModelNature nature_of(const UNetConfig& unet, const SchedulerConfig& scheduler, std::int64_t latent_channels,
-                      const fs::path& folder) {
+                      Origin origin, const fs::path& folder) {
     return {size_of(unet, scheduler),
-            bundle_kind(unet, scheduler, latent_channels, stated_kind(folder), folder),
+            bundle_kind(unet, scheduler, latent_channels, stated_kind(folder), origin, folder),
             unet.time_cond_proj_dim > 0};
 }
 
@@ -85,10 +85,9 @@ ModelNature checkpoint_nature(const fs::path& path) {
     unet.use_linear_projection = shape_of(header, "input_blocks.1.1.proj_in.weight").size() == 2;
     const auto beside = path.parent_path();
     unet = config_or(beside / "unet_config.json", unet);
-    // The file does not tell what an SD 2.x predicts; loading assumes velocity, too.
-    SchedulerConfig scheduler;
-    if (unet.cross_attention_dim >= Sd2TextWidth) scheduler.prediction_type = "v_prediction";
-    return nature_of(unet, config_or(beside / "scheduler_config.json", scheduler), unet.out_channels, beside);
+    const auto scheduler = checkpoint_scheduler(path, header, unet.cross_attention_dim >= Sd2TextWidth);
+    return nature_of(unet, config_or(beside / "scheduler_config.json", scheduler), unet.out_channels,
+                     model_origin(path, header), beside);
 }
 
 /// Adds the settings of a kind that redraws views in its own way, over those of its size (METHOD.md).
@@ -228,7 +227,8 @@ ModelNature model_nature(const fs::path& model, const std::vector<LoraSpec>& lor
         } else if (fs::exists(model / "unet/config.json")) {
             nature = nature_of(config_or(model / "unet/config.json", UNetConfig{}),
                                config_or(model / "scheduler/scheduler_config.json", SchedulerConfig{}),
-                               config_or(model / "vae/config.json", VaeConfig{}).latent_channels, model);
+                               config_or(model / "vae/config.json", VaeConfig{}).latent_channels,
+                               model_origin(model), model);
         }
     } catch (const Error&) {  // said when it is loaded
         return {};

@@ -5,6 +5,7 @@
 
 #include "engine/neural/api/config.h"
 #include "engine/neural/api/tokenizer.h"
+#include "engine/neural/api/tokenizer_json.h"
 
 namespace gse::neural {
 namespace {
@@ -21,7 +22,7 @@ std::int64_t places(const fs::path& model) {
 fs::path tokenizer_folder(const fs::path& model) {
     if (fs::is_directory(model)) return model / "tokenizer";
     const auto beside = model.parent_path();
-    return fs::exists(beside / "tokenizer/merges.txt") ? beside / "tokenizer" : beside;
+    return has_tokenizer(beside / "tokenizer") ? beside / "tokenizer" : beside;
 }
 
 }  // namespace

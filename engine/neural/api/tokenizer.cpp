@@ -15,6 +15,7 @@
 #include "engine/base/file.h"
 #include "engine/base/json.h"
 #include "engine/neural/api/config.h"
+#include "engine/neural/api/tokenizer_json.h"
 
 namespace gse::neural {
 namespace {
@@ -150,14 +151,21 @@ std::string content_of(const Json& value) {
 }  // namespace
 
 Tokenizer::Tokenizer(const std::filesystem::path& folder, const std::string& pad_token) : folder_(folder) {
-    read_merges(folder / "merges.txt");
-    read_vocabulary(folder);
+    const auto single = folder / "tokenizer.json";
+    const bool is_single = !std::filesystem::exists(folder / "merges.txt") && std::filesystem::exists(single);
+    if (is_single) {
+        read_single_file(single);
+    } else {
+        read_merges(folder / "merges.txt");
+        read_vocabulary(folder);
+    }
     bos_ = id_of(StartToken);
     eos_ = id_of(EndToken);
     if (bos_ < 0 || eos_ < 0)
         throw Error(ErrorCode::Malformed, "the tokenizer's vocabulary has no start or end token", {},
-                    folder / "vocab.json");
-    pad_ = unknown_ = eos_;
+                    is_single ? single : folder / "vocab.json");
+    if (pad_ < 0) pad_ = eos_;
+    if (unknown_ < 0) unknown_ = eos_;
     read_added_tokens(folder);
     read_special_tokens(folder);
     if (!pad_token.empty()) set_special_token(pad_token, pad_);
@@ -173,15 +181,33 @@ void Tokenizer::read_merges(const std::filesystem::path& path) {
         if (!line.empty() && line.back() == '\r') line.pop_back();
         begin = end + 1;
         if (line.empty() || line.starts_with("#version")) continue;
-        const auto blank = line.find(' ');
-        if (blank == std::string::npos || blank == 0 || blank + 1 == line.size() ||
-            line.find(' ', blank + 1) != std::string::npos)
-            throw Error(ErrorCode::Malformed,
-                        fmt::format("merge {} of the tokenizer is not two symbols", ranks_.size() + 1), {},
-                        path);
-        ranks_.emplace(line, static_cast<int>(ranks_.size()));
-        merge_lines_.push_back(std::move(line));
+        add_merge(std::move(line), path);
     }
+}
+
+void Tokenizer::add_merge(std::string line, const std::filesystem::path& path) {
+    const auto blank = line.find(' ');
+    if (blank == std::string::npos || blank == 0 || blank + 1 == line.size() ||
+        line.find(' ', blank + 1) != std::string::npos)
+        throw Error(ErrorCode::Malformed,
+                    fmt::format("merge {} of the tokenizer is not two symbols", ranks_.size() + 1), {}, path);
+    ranks_.emplace(line, static_cast<int>(ranks_.size()));
+    merge_lines_.push_back(std::move(line));
+}
+
+void Tokenizer::read_single_file(const std::filesystem::path& path) {
+    auto tables = read_tokenizer_json(path);
+    for (auto& line : tables.merges)
+        if (ranks_.size() < MaxMerges) add_merge(std::move(line), path);
+    vocabulary_ = std::move(tables.vocabulary);
+    for (const auto& [token, id] : vocabulary_) vocabulary_size_ = std::max(vocabulary_size_, id + 1);
+    for (const auto& [token, id] : tables.added) {
+        if (!vocabulary_.contains(token)) added_[token] = id;
+        vocabulary_size_ = std::max(vocabulary_size_, id + 1);
+    }
+    if (!tables.unknown.empty()) set_special_token(tables.unknown, unknown_);
+    if (!tables.padding.empty()) set_special_token(tables.padding, pad_);
+    if (tables.max_length >= 3 && tables.max_length <= LengthLimit) max_length_ = tables.max_length;
 }
 
 void Tokenizer::read_vocabulary(const std::filesystem::path& folder) {

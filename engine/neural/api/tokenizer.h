@@ -27,8 +27,9 @@ struct Encoding {
 
 class Tokenizer {
 public:
-    /// Reads vocab.json, merges.txt and, where present, tokenizer_config.json, special_tokens_map.json and
-    /// added_tokens.json. Without vocab.json the vocabulary follows from the merges, as in openai/CLIP.
+    /// Reads vocab.json and merges.txt, or where there is no merges.txt tokenizer.json. Where present, reads
+    /// tokenizer_config.json, special_tokens_map.json and added_tokens.json too. Without vocab.json the
+    /// vocabulary follows from the merges, as in openai/CLIP.
     /// `pad_token` overrides the padding (SD 2.x pads with "!").
     explicit Tokenizer(const std::filesystem::path& folder, const std::string& pad_token = {});
 
@@ -51,6 +52,8 @@ public:
 private:
     void read_vocabulary(const std::filesystem::path& folder);
     void read_merges(const std::filesystem::path& path);
+    void add_merge(std::string line, const std::filesystem::path& path);
+    void read_single_file(const std::filesystem::path& path);
     void read_special_tokens(const std::filesystem::path& folder);
     void set_special_token(const std::string& token, std::int64_t& target);
     void read_added_tokens(const std::filesystem::path& folder);
@@ -63,7 +66,8 @@ private:
     std::unordered_map<std::string, int> ranks_;  // "left right" -> order of the merge
     std::vector<std::string> merge_lines_;
     std::map<std::string, std::int64_t> added_;  // matched anywhere, before normalisation
-    std::int64_t bos_ = 0, eos_ = 0, pad_ = 0, unknown_ = 0;
+    std::int64_t bos_ = 0, eos_ = 0;
+    std::int64_t pad_ = -1, unknown_ = -1;  // -1 = not known yet
     std::int64_t max_length_ = 77;
     std::int64_t vocabulary_size_ = 0;
 };

@@ -9,6 +9,7 @@
 #include "engine/base/error.h"
 #include "engine/language/vocabulary.h"
 #include "engine/neural/api/tokenizer.h"
+#include "engine/neural/api/tokenizer_json.h"
 #include "engine/neural/clip/viewpoint_model.h"
 #include "engine/neural/layers/images.h"
 #include "engine/neural/layers/torch_errors.h"
@@ -36,7 +37,7 @@ public:
           config_(ClipConfig::from_json(read_json_file(existing(folder.path / "config.json")),
                                         folder.path / "config.json")),
           preprocessing_(ClipPreprocessing::read(config_, folder.path)),
-          tokenizer_(std::filesystem::exists(folder.path / "merges.txt") ? folder.path : folder.tokenizer) {
+          tokenizer_(has_tokenizer(folder.path) ? folder.path : folder.tokenizer) {
         if (folder_.known_words.empty() &&
             tokenizer_.vocabulary_size() > config_.text.vocab_size)  // else it is told nothing else
             throw Error(ErrorCode::Model,

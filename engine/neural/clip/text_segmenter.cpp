@@ -11,6 +11,7 @@
 #include "engine/base/error.h"
 #include "engine/base/memory_cache.h"
 #include "engine/neural/api/tokenizer.h"
+#include "engine/neural/api/tokenizer_json.h"
 #include "engine/neural/clip/clipseg_model.h"
 #include "engine/neural/layers/devices.h"
 #include "engine/neural/layers/images.h"
@@ -24,9 +25,11 @@ constexpr std::int64_t PictureSize = 352;  // side of the pictures CLIPSeg was t
 constexpr double LeastOfLargest = 0.5;     // probability that counts as inside, of the largest; by judgement
 std::filesystem::path existing_part(const std::filesystem::path& path) {
     if (!std::filesystem::exists(path))
-        throw Error(ErrorCode::NotFound, "the text segmenter is incomplete",
-                    "a CLIPSeg folder has config.json, merges.txt and model.safetensors or pytorch_model.bin",
-                    path);
+        throw Error(
+            ErrorCode::NotFound, "the text segmenter is incomplete",
+            "a CLIPSeg folder has config.json, merges.txt or tokenizer.json, and model.safetensors or "
+            "pytorch_model.bin",
+            path);
     return path;
 }
 
@@ -53,8 +56,8 @@ public:
         : config_(ClipSegConfig::from_json(read_json_file(existing_part(folder / "config.json")),
                                            folder / "config.json")),
           preprocessing_(preprocessing(config_, folder)),
-          tokenizer_(existing_part(folder / "merges.txt").parent_path()), device_(device),
-          pictures_(MostPictures) {
+          tokenizer_(has_tokenizer(folder) ? folder : existing_part(folder / "merges.txt").parent_path()),
+          device_(device), pictures_(MostPictures) {
         if (tokenizer_.vocabulary_size() > config_.clip.text.vocab_size)
             throw Error(ErrorCode::Model,
                         fmt::format("the tokenizer has {} tokens but the text segmenter only {}",
@@ -113,7 +116,7 @@ std::unique_ptr<edit::TextSegmenter> load_text_segmenter(const std::filesystem::
     const auto where = parse_device(device);
     if (!std::filesystem::is_directory(folder))
         throw Error(ErrorCode::NotFound, "the text segmenter is a folder, and there is none",
-                    "a CLIPSeg folder has config.json, merges.txt and weights", folder);
+                    "a CLIPSeg folder has config.json, merges.txt or tokenizer.json, and weights", folder);
     return guard_torch("loading the text segmenter",
                        [&] { return std::make_unique<ClipSegSegmenter>(folder, where); });
 }

@@ -11,8 +11,9 @@
 #include <cstdlib>
 
 #include "engine/base/error.h"
-#include "engine/base/log.h"
 #include "engine/base/memory.h"
+#include "engine/base/safetensors_header.h"
+#include "engine/neural/api/checkpoint.h"
 #include "engine/neural/layers/precision.h"
 #include "engine/neural/layers/torch_errors.h"
 #include "engine/neural/weights/key_map.h"
@@ -28,6 +29,7 @@ struct Parts {
     fs::path root;
     fs::path unet_file, vae_file, text_file;  // the same file for a single-file checkpoint
     SingleFileText text_layout = SingleFileText::Transformers;
+    VaeNames vae_names = VaeNames::Folder;
     UNetConfig unet;
     VaeConfig vae;
     TextEncoderConfig text;
@@ -36,12 +38,15 @@ struct Parts {
     std::string pad_token;
     ModelFacts facts;
     BundleKind kind = BundleKind::Plain;
+    std::vector<std::string> notes;
 
     /// Paths of what belongs to the model beside its weights.
     fs::path folder() const { return single_file ? root.parent_path() : root; }
 };
 
 constexpr std::int64_t LargestImageSize = 8192;  // pixels of a side
+/// Side of the latents of an SD 2.x that predicts noise; infer_unet_config() has that of 768-v.
+constexpr std::int64_t Sd2BaseSampleSize = 64;
 
 constexpr const char* FolderHint =
     "a model folder has model_index.json, tokenizer, text_encoder, unet, vae and scheduler, as diffusers "
@@ -53,11 +58,6 @@ constexpr const char* FolderHint =
                 "weights_only=True)[\"state_dict\"], "
                 "\"model.safetensors\")",
                 path);
-}
-
-bool is_pickle(const fs::path& path) {
-    const auto extension = path.extension().string();
-    return extension == ".ckpt" || extension == ".pt" || extension == ".pth" || extension == ".bin";
 }
 
 fs::path find_weights(const fs::path& folder, const char* stem) {
@@ -114,11 +114,34 @@ template <class Config, class Infer> Config beside_or(const fs::path& path, Infe
     return fs::exists(path) ? Config::from_json(read_json_file(path), path) : infer();
 }
 
+/// The checkpoint's own VAE, or the one beside it.
+void find_vae(Parts& parts, const SafetensorsFile& file) {
+    const auto& path = file.path();
+    const auto config = path.parent_path() / "vae_config.json";
+    parts.vae_file = path;
+    parts.vae_names = VaeNames::Checkpoint;
+    if (has_vae(file, parts.vae_names)) {
+        parts.vae =
+            beside_or<VaeConfig>(config, [&] { return infer_vae_config(file, VaeNames::Checkpoint); });
+        return;
+    }
+    parts.vae_file = vae_beside(path);
+    if (parts.vae_file.empty())
+        throw Error(ErrorCode::Model, "the checkpoint has no VAE", vae_hint(path), path);
+    const SafetensorsFile vae(parts.vae_file);
+    parts.vae_names = vae_names_of(vae);
+    const bool in_folder = parts.vae_file.stem().extension() != ".vae";
+    parts.vae = beside_or<VaeConfig>(in_folder ? parts.vae_file.parent_path() / "config.json" : config,
+                                     [&] { return infer_vae_config(vae, parts.vae_names); });
+    parts.notes.push_back(fmt::format("{}: it has no VAE; the one in {}{} is used", path.filename().string(),
+                                      in_folder ? "vae/" : "", parts.vae_file.filename().string()));
+}
+
 Parts single_file_parts(const fs::path& path) {
     Parts parts;
     parts.single_file = true;
     parts.root = path;
-    parts.unet_file = parts.vae_file = parts.text_file = path;
+    parts.unet_file = parts.text_file = path;
     const SafetensorsFile file(path);
     if (!is_single_file(file))
         throw Error(ErrorCode::Model, "the file is not a Stable Diffusion checkpoint",
@@ -128,21 +151,22 @@ Parts single_file_parts(const fs::path& path) {
     const bool second = parts.text_layout == SingleFileText::OpenClip;
     parts.unet = beside_or<UNetConfig>(beside / "unet_config.json",
                                        [&] { return infer_unet_config(file, parts.text_layout); });
-    parts.vae = beside_or<VaeConfig>(beside / "vae_config.json", [&] { return infer_vae_config(file); });
+    find_vae(parts, file);
     parts.text = beside_or<TextEncoderConfig>(beside / "text_encoder_config.json",
                                               [&] { return infer_text_config(file, parts.text_layout); });
     parts.scheduler = beside_or<SchedulerConfig>(beside / "scheduler_config.json", [&] {
-        SchedulerConfig scheduler;
-        if (second) {
-            // Nothing in the file tells the 768-v models from the 512 base ones.
-            scheduler.prediction_type = "v_prediction";
-            log::warning(
-                "{}: taken for a velocity model (SD 2.x, 768); put a scheduler_config.json beside it if it "
-                "predicts noise (SD 2.x base)",
-                path.filename().string());
-        }
+        const auto header = safetensors_header(path);
+        auto scheduler = checkpoint_scheduler(path, header, second);
+        // The tensors do not tell the 768-v models from the 512 base ones.
+        if (scheduler.prediction_type == "v_prediction" && stated_prediction(path, header).type.empty())
+            parts.notes.push_back(fmt::format(
+                "{}: taken for a velocity model (SD 2.x, 768); put a scheduler_config.json beside "
+                "it if it predicts noise (SD 2.x base)",
+                path.filename().string()));
         return scheduler;
     });
+    if (second && parts.scheduler.prediction_type == "epsilon" && !fs::exists(beside / "unet_config.json"))
+        parts.unet.sample_size = Sd2BaseSampleSize;
     parts.tokenizer = find_tokenizer(beside);
     if (second) parts.pad_token = "!";
     return parts;
@@ -192,6 +216,10 @@ TinyAutoencoder load_tiny(const fs::path& folder, const VaeConfig& vae) {
     return tiny;
 }
 
+Origin origin_of(const Parts& parts) {
+    return model_origin(parts.root, parts.single_file ? safetensors_header(parts.root) : nlohmann::json());
+}
+
 Parts find_parts(const fs::path& path) {
     std::error_code ignored;
     if (!fs::exists(path, ignored))
@@ -199,8 +227,8 @@ Parts find_parts(const fs::path& path) {
                     "name a diffusers folder or a .safetensors checkpoint", path);
     auto parts = [&] {
         if (fs::is_directory(path)) return folder_parts(path);
-        if (is_pickle(path)) refuse_pickle(path);
-        if (path.extension() != ".safetensors")
+        if (is_pickle_name(path)) refuse_pickle(path);
+        if (!is_safetensors_name(path))
             throw Error(ErrorCode::Unsupported, "this is not a model",
                         "name a diffusers folder or a .safetensors checkpoint", path);
         return single_file_parts(path);
@@ -210,7 +238,8 @@ Parts find_parts(const fs::path& path) {
     parts.text.with_projection = false;
     if (parts.facts.image_size == 0) parts.facts.image_size = parts.unet.sample_size * parts.vae.factor();
     if (parts.facts.name.empty()) parts.facts.name = path.stem().string();
-    parts.kind = bundle_kind(parts.unet, parts.scheduler, parts.vae.latent_channels, parts.facts.kind, path);
+    parts.kind = bundle_kind(parts.unet, parts.scheduler, parts.vae.latent_channels, parts.facts.kind,
+                             origin_of(parts), path);
     if (parts.kind == BundleKind::Turbo) parts.scheduler.timestep_spacing = "trailing";
     if (parts.unet.cross_attention_dim != parts.text.hidden_size)
         throw Error(ErrorCode::Model,
@@ -233,10 +262,11 @@ struct Plans {
 };
 
 Plans plans_of(const Parts& parts, const SafetensorsFile& vae_file) {
+    const auto vae = parts.vae_names == VaeNames::Folder ? vae_plan(vae_file)
+                                                         : single_file_vae_plan(parts.vae, parts.vae_names);
     if (parts.single_file)
-        return {single_file_unet_plan(parts.unet), single_file_vae_plan(parts.vae),
-                single_file_text_plan(parts.text, parts.text_layout)};
-    return {unet_plan(), vae_plan(vae_file), text_encoder_plan()};
+        return {single_file_unet_plan(parts.unet), vae, single_file_text_plan(parts.text, parts.text_layout)};
+    return {unet_plan(), vae, text_encoder_plan()};
 }
 
 void check_tokenizer(const Tokenizer& tokenizer, const Parts& parts) {
@@ -366,6 +396,7 @@ ModelBundle load_bundle(const std::filesystem::path& path, const torch::Device& 
         freeze(bundle.unet, device);
         freeze(bundle.vae, device);
         bundle.kind = parts.kind;
+        bundle.notes = parts.notes;
         if (const auto folder = tiny_folder(parts, taesd); !folder.empty()) {
             bundle.tiny = load_tiny(folder, parts.vae);
             freeze(bundle.tiny, device);
@@ -389,11 +420,10 @@ ModelDescription describe_model(const std::filesystem::path& path) {
     });
 }
 
-void check_lora(const std::filesystem::path& model, const LoraWeights& weights) {
+void fit_lora(const std::filesystem::path& model, LoraWeights& weights) {
     const auto parts = find_parts(model);
     const WeightOptions described{torch::kMeta, torch::kFloat32, false};
-    check_lora(*UNet(parts.unet, described), weights.unet, weights.path);
-    check_lora(*ClipTextEncoder(parts.text, described), weights.text, weights.path);
+    fit_lora(weights, *UNet(parts.unet, described), *ClipTextEncoder(parts.text, described));
 }
 
 }  // namespace gse::neural

@@ -83,7 +83,8 @@ struct ModelBundle {
     ModelFacts facts;
     torch::Device device = torch::kCPU;
     BundleKind kind = BundleKind::Plain;
-    TinyAutoencoder tiny{nullptr};  // where its files are
+    TinyAutoencoder tiny{nullptr};        // where its files are
+    std::vector<std::string> notes = {};  // TextToImage::notes()
 
     bool has_tiny() const { return !tiny.is_empty(); }
     std::int64_t latent_channels() const { return vae->config().latent_channels; }
@@ -108,8 +109,8 @@ struct ModelBundle {
 ModelBundle load_bundle(const std::filesystem::path& path, const torch::Device& device = torch::kCPU,
                         const std::string& taesd = {}, const std::string& precision = "fp32");
 
-/// Checks that a LoRA fits the model's networks, from their configurations. Throws as check_lora() does.
-void check_lora(const std::filesystem::path& model, const LoraWeights& weights);
+/// Fits a LoRA to the model's networks, from their configurations. Throws as fit_lora() does.
+void fit_lora(const std::filesystem::path& model, LoraWeights& weights);
 
 /// Checks that every file is there and every tensor has the right name and shape, without reading any weight.
 ModelDescription describe_model(const std::filesystem::path& path);

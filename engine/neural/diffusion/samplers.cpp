@@ -53,7 +53,8 @@ torch::Tensor as_index(double t) { return torch::full({1}, static_cast<std::int6
 // Noise level sqrt((1-a)/a) at a fractional timestep, linear between the trained ones.
 float sigma_at(const NoiseSchedule& schedule, double t) {
     const auto level = [&](std::int64_t i) {
-        const double a = schedule.alpha_cumprod(std::min(i, schedule.steps() - 1));
+        double a = schedule.alpha_cumprod(std::min(i, schedule.steps() - 1));
+        if (a <= 0) a = LeastAlphaProduct;
         return std::sqrt((1.0 - a) / a);
     };
     const auto low = static_cast<std::int64_t>(t);
@@ -234,8 +235,9 @@ private:
         }
     }
     double alpha(std::int64_t t) const {
-        if (t >= 0) return schedule_.alpha_cumprod(t);
-        return schedule_.config().set_alpha_to_one ? 1.0 : schedule_.alpha_cumprod(0);
+        if (t < 0) return schedule_.config().set_alpha_to_one ? 1.0 : schedule_.alpha_cumprod(0);
+        const double product = schedule_.alpha_cumprod(t);
+        return product > 0 ? product : LeastAlphaProduct;
     }
     torch::Tensor move(const torch::Tensor& x, const torch::Tensor& output, std::int64_t t,
                        std::int64_t previous) {

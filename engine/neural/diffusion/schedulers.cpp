@@ -32,6 +32,30 @@ torch::Tensor make_betas(const SchedulerConfig& config) {
     return torch::tensor(betas);
 }
 
+/// Betas whose product of alphas ends at 0, in fp32 as the reference (Lin et al. 2024, algorithm 1).
+torch::Tensor with_zero_terminal_snr(const torch::Tensor& betas) {
+    auto roots = torch::cumprod(1.0 - betas, 0).sqrt();
+    const auto first = roots[0].clone(), last = roots[-1].clone();
+    roots = (roots - last) * (first / (first - last));
+    const auto products = roots.square();
+    const auto later = products.slice(0, 1) / products.slice(0, 0, -1);
+    return 1.0 - torch::cat({products.slice(0, 0, 1), later});
+}
+
+torch::Tensor betas_of(const SchedulerConfig& config) {
+    const auto betas = make_betas(config);
+    return config.rescale_betas_zero_snr && config.num_train_timesteps > 1 ? with_zero_terminal_snr(betas)
+                                                                           : betas;
+}
+
+/// Products of alphas. A prediction of noise cannot be turned into a picture at 0: there it ends just above.
+torch::Tensor products_of(const torch::Tensor& betas, Prediction prediction) {
+    auto products = torch::cumprod(1.0 - betas, 0);
+    if (prediction == Prediction::Epsilon && products[-1].item<float>() <= 0)
+        products[-1] = LeastAlphaProduct;
+    return products;
+}
+
 Prediction prediction_of(const SchedulerConfig& config) {
     if (config.prediction_type == "v_prediction") return Prediction::Velocity;
     return config.prediction_type == "sample" ? Prediction::Sample : Prediction::Epsilon;
@@ -40,7 +64,7 @@ Prediction prediction_of(const SchedulerConfig& config) {
 }  // namespace
 
 NoiseSchedule::NoiseSchedule(const SchedulerConfig& config)
-    : config_(config), betas_(make_betas(config)), alphas_cumprod_(torch::cumprod(1.0 - betas_, 0)),
+    : config_(config), betas_(betas_of(config)), alphas_cumprod_(products_of(betas_, prediction_of(config))),
       prediction_(prediction_of(config)) {
     const float* data = alphas_cumprod_.data_ptr<float>();
     values_.assign(data, data + alphas_cumprod_.numel());

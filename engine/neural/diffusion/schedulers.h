@@ -50,6 +50,9 @@ private:
     Prediction prediction_;
 };
 
+/// Stand-in for an alphas_cumprod of 0 where it is divided by (diffusers: "close to 0 without being 0").
+constexpr double LeastAlphaProduct = 0x1p-24;
+
 /// alphas_cumprod [steps] of the scaled_linear schedule, fp32 on the CPU.
 torch::Tensor scaled_linear_alphas_cumprod(std::int64_t steps, double beta_start, double beta_end);
 

@@ -6,6 +6,7 @@
 
 #include "engine/base/assets.h"
 #include "engine/base/error.h"
+#include "engine/neural/api/tokenizer_json.h"
 
 namespace gse::neural {
 
@@ -17,9 +18,10 @@ fs::path find_tokenizer(const fs::path& beside) {
         beside / "tokenizer", beside,
         (assets != nullptr ? fs::path(assets) : assets_folder(GSE_ASSETS)) / "tokenizer"};
     for (const auto& candidate : candidates)
-        if (fs::exists(candidate / "merges.txt")) return candidate;
+        if (has_tokenizer(candidate)) return candidate;
     throw Error(ErrorCode::NotFound, "a single-file checkpoint has no tokenizer and none was found",
-                "put CLIP's merges.txt into a folder named tokenizer beside it", candidates[0]);
+                "put CLIP's merges.txt or tokenizer.json into a folder named tokenizer beside it",
+                candidates[0]);
 }
 
 }  // namespace gse::neural

@@ -112,6 +112,8 @@ std::string vae_key(const std::string& name, std::int64_t levels) {
     return words[0] + "." + vae_half_key(words, levels);
 }
 
+std::string vae_prefix(VaeNames names) { return std::string(names == VaeNames::Checkpoint ? VaePrefix : ""); }
+
 std::string legacy_vae_key(std::string name) {
     constexpr std::array rules{Rename{"to_q.", "query."}, Rename{"to_k.", "key."}, Rename{"to_v.", "value."},
                                Rename{"to_out.0.", "proj_attn."}};
@@ -197,16 +199,16 @@ LoadPlan single_file_unet_plan(const UNetConfig& config) {
             [](const std::string& key) { return !key.starts_with(UNetPrefix); }, "checkpoint's UNet"};
 }
 
-LoadPlan single_file_vae_plan(const VaeConfig& config) {
+LoadPlan single_file_vae_plan(const VaeConfig& config, VaeNames names) {
     const auto levels = static_cast<std::int64_t>(config.block_out_channels.size());
-    return {[levels](const std::string& name) {
-                return WeightSource{std::string(VaePrefix) + vae_key(name, levels)};
-            },
-            [](const std::string& key) {
-                return !key.starts_with(VaePrefix) || key.starts_with(std::string(VaePrefix) + "loss.") ||
-                       key.starts_with(std::string(VaePrefix) + "model_ema.");
-            },
-            "checkpoint's VAE"};
+    const auto prefix = vae_prefix(names);
+    return {
+        [levels, prefix](const std::string& name) { return WeightSource{prefix + vae_key(name, levels)}; },
+        [prefix](const std::string& key) {
+            return !key.starts_with(prefix) || key.starts_with(prefix + "loss.") ||
+                   key.starts_with(prefix + "model_ema.");
+        },
+        names == VaeNames::Checkpoint ? "checkpoint's VAE" : "VAE"};
 }
 
 LoadPlan single_file_text_plan(const TextEncoderConfig& config, SingleFileText layout) {
@@ -235,6 +237,19 @@ LoadPlan single_file_text_plan(const TextEncoderConfig& config, SingleFileText l
 
 bool is_single_file(const SafetensorsFile& file) {
     return file.contains(fmt::format("{}input_blocks.0.0.weight", UNetPrefix));
+}
+
+bool has_vae(const SafetensorsFile& file, VaeNames names) {
+    return file.contains(vae_prefix(names) + "decoder.conv_in.weight") ||
+           file.contains(vae_prefix(names) + "post_quant_conv.weight");
+}
+
+VaeNames vae_names_of(const SafetensorsFile& file) {
+    if (has_vae(file, VaeNames::Checkpoint)) return VaeNames::Checkpoint;
+    if (file.contains("decoder.mid.block_1.conv1.weight")) return VaeNames::Bare;
+    if (file.contains("decoder.mid_block.resnets.0.conv1.weight")) return VaeNames::Folder;
+    throw Error(ErrorCode::Model, "this file holds no VAE of Stable Diffusion",
+                "use one with encoder and decoder, of Stable Diffusion 1.x or 2.x", file.path());
 }
 
 SingleFileText single_file_text_layout(const SafetensorsFile& file) {
@@ -270,9 +285,10 @@ UNetConfig infer_unet_config(const SafetensorsFile& file, SingleFileText layout)
     return UNetConfig::from_json(config.to_json(), file.path());
 }
 
-VaeConfig infer_vae_config(const SafetensorsFile& file) {
-    const std::string prefix(VaePrefix);
+VaeConfig infer_vae_config(const SafetensorsFile& file, VaeNames names) {
     VaeConfig config;
+    if (names == VaeNames::Folder) return config;
+    const auto prefix = vae_prefix(names);
     for (std::size_t level = 0; level < config.block_out_channels.size(); ++level)
         config.block_out_channels[level] =
             shape_at(file, fmt::format("{}encoder.down.{}.block.0.conv2.weight", prefix, level))[0];

@@ -10,6 +10,7 @@
 #include <map>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include "engine/base/error.h"
 #include "engine/base/random.h"
@@ -94,6 +95,41 @@ std::string shape_text(const torch::Tensor& tensor) {
     return fmt::format("[{}]", fmt::join(tensor.sizes(), ","));
 }
 
+const std::string& name_of(const LoraFactor& factor) {
+    return factor.key.empty() ? factor.layer : factor.key;
+}
+
+/// Factors of layers that are not there; the others have the right shape. Throws Error (Model).
+std::vector<const LoraFactor*> unknown_layers(const torch::nn::Module& network,
+                                              const std::vector<LoraFactor>& factors,
+                                              const std::filesystem::path& path) {
+    const auto weights = weights_by_layer(network);
+    std::vector<const LoraFactor*> unknown;
+    for (const auto& factor : factors) {
+        const auto found = weights.find(factor.layer);
+        if (found == weights.end()) {
+            unknown.push_back(&factor);
+        } else if (!fits(factor, found->second)) {
+            throw Error(ErrorCode::Model,
+                        fmt::format("the LoRA's change of \"{}\" has another shape: {} and {} do not make {}",
+                                    name_of(factor), shape_text(factor.down), shape_text(factor.up),
+                                    shape_text(found->second)),
+                        "it was made for a model of another size: use it with the model it was made for",
+                        path);
+        }
+    }
+    return unknown;
+}
+
+[[noreturn]] void refuse_unknown(const std::string& first, std::size_t unknown, std::size_t all,
+                                 const std::filesystem::path& path) {
+    throw Error(
+        ErrorCode::Model,
+        fmt::format("the LoRA changes a layer the model does not have, \"{}\" ({} of {} are not there)",
+                    first, unknown, all),
+        "it was made for another kind of model: use it with the one it was made for", path);
+}
+
 }  // namespace
 
 torch::Tensor LoraFactor::change_of(const torch::Tensor& weight) const {
@@ -139,29 +175,38 @@ std::vector<LoraFactor> new_lora(const std::vector<LoraTarget>& targets, std::in
 
 void check_lora(const torch::nn::Module& network, const std::vector<LoraFactor>& factors,
                 const std::filesystem::path& path) {
-    const auto weights = weights_by_layer(network);
-    std::size_t unknown = 0;
-    const LoraFactor* first_unknown = nullptr;
-    for (const auto& factor : factors) {
-        const auto& name = factor.key.empty() ? factor.layer : factor.key;
-        const auto found = weights.find(factor.layer);
-        if (found == weights.end()) {
-            if (unknown++ == 0) first_unknown = &factor;
-        } else if (!fits(factor, found->second)) {
-            throw Error(
-                ErrorCode::Model,
-                fmt::format("the LoRA's change of \"{}\" has another shape: {} and {} do not make {}", name,
-                            shape_text(factor.down), shape_text(factor.up), shape_text(found->second)),
-                "it was made for a model of another size: use it with the model it was made for", path);
+    const auto unknown = unknown_layers(network, factors, path);
+    if (!unknown.empty()) refuse_unknown(name_of(*unknown.front()), unknown.size(), factors.size(), path);
+}
+
+void fit_lora(LoraWeights& weights, const torch::nn::Module& unet, const torch::nn::Module& text) {
+    const auto all = weights.unet.size() + weights.text.size();
+    LoraLeftOut left_out{"layer", "that the model does not have", {}, 0};
+    for (auto [network, factors] : {std::pair{&unet, &weights.unet}, std::pair{&text, &weights.text}}) {
+        std::set<std::string> gone;
+        for (const auto* factor : unknown_layers(*network, *factors, weights.path)) {
+            if (left_out.count++ == 0) left_out.first = name_of(*factor);
+            gone.insert(factor->layer);
         }
+        std::erase_if(*factors, [&](const LoraFactor& factor) { return gone.contains(factor.layer); });
     }
-    if (first_unknown == nullptr) return;
-    const auto& name = first_unknown->key.empty() ? first_unknown->layer : first_unknown->key;
-    throw Error(
-        ErrorCode::Model,
-        fmt::format("the LoRA changes a layer the model does not have, \"{}\" ({} of {} are not there)", name,
-                    unknown, factors.size()),
-        "it was made for another kind of model: use it with the one it was made for", path);
+    if (left_out.count == 0) return;
+    if (left_out.count == all) refuse_unknown(left_out.first, left_out.count, all, weights.path);
+    weights.left_out.push_back(std::move(left_out));
+}
+
+std::vector<std::string> LoraWeights::notes() const {
+    std::vector<std::string> notes;
+    if (!note.empty()) notes.push_back(note);
+    std::vector<std::string> parts;
+    for (const auto& part : left_out)
+        parts.push_back(fmt::format("{} {}{} {} (\"{}\"{})", part.count, part.noun,
+                                    part.count == 1 ? "" : "s", part.what, part.first,
+                                    part.count == 1 ? "" : ", ..."));
+    if (!parts.empty())
+        notes.push_back(fmt::format("the LoRA \"{}\" is used without {}", path.filename().string(),
+                                    fmt::join(parts, ", ")));
+    return notes;
 }
 
 void merge_lora(torch::nn::Module& network, const std::vector<LoraFactor>& factors, double strength) {

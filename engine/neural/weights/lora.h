@@ -26,10 +26,22 @@ struct LoraFactor {
     torch::Tensor change_of(const torch::Tensor& weight) const;
 };
 
+/// Tensors or layers of a LoRA's file that are not used.
+struct LoraLeftOut {
+    std::string noun, what;  // "tensor", "of norm layers"
+    std::string first;       // the first one's name in the file
+    std::size_t count = 0;
+};
+
 /// All changes of one model.
 struct LoraWeights {
     std::vector<LoraFactor> unet, text;
     std::filesystem::path path = {};  // the file they were read from
+    std::vector<LoraLeftOut> left_out = {};
+    std::string note = {};  // sentence about a statement that is not used (StatedAlphas); empty = none
+
+    /// Sentences about everything that the file holds and that is not used.
+    std::vector<std::string> notes() const;
 };
 
 /// A layer of a network that a LoRA changes.
@@ -51,6 +63,10 @@ std::vector<LoraFactor> new_lora(const std::vector<LoraTarget>& targets, std::in
 void check_lora(const torch::nn::Module& network, const std::vector<LoraFactor>& factors,
                 const std::filesystem::path& path = {});
 
+/// Leaves the layers out that the networks do not have. Throws Error (Model) as check_lora() for a layer of
+/// another shape, and where no layer is left. The networks may be on torch::kMeta.
+void fit_lora(LoraWeights& weights, const torch::nn::Module& unet, const torch::nn::Module& text);
+
 /// Adds the changes, `strength` times, to the network's weights (given new memory: no other network sees it),
 /// in fp32 whatever the weights' type. Throws as check_lora() does, before anything is changed.
 void merge_lora(torch::nn::Module& network, const std::vector<LoraFactor>& factors, double strength);
@@ -61,8 +77,10 @@ void write_lora(const std::filesystem::path& path, const LoraWeights& weights);
 /// Reads a LoRA. Names may be mixed:
 /// kohya and LyCORIS (lora_unet_*, with a middle too), PEFT (unet.*.lora_A), diffusers before PEFT
 /// (unet.*.processor.to_q_lora.down, unet.*.to_q.lora.down).
-/// A missing alpha is the rank. Throws Error (NotFound, Malformed, Unsupported, Model) that names file and
-/// tensor for other kinds of adapters and for incomplete, misshapen or non-finite ones. Nothing is read then.
+/// A missing alpha is what the file's metadata or the configuration beside it state (stated_alphas()), else
+/// the rank. Tensors that change no weight of a layer are left out, as are layers of other adapters beside
+/// those of LoRA. Throws Error (NotFound, Malformed, Unsupported, Model) that names file and tensor for other
+/// kinds of adapters and for incomplete, misshapen or non-finite ones. Nothing is read then.
 LoraWeights read_lora(const std::filesystem::path& path);
 
 }  // namespace gse::neural

@@ -392,6 +392,7 @@ std::optional<CachedModel::Facts> CachedModel::kept_facts() const {
         facts.supports_appearance_editing = json.at("restyles").get<bool>();
         facts.threshold = json.at("threshold").get<double>();
         facts.attention_size = json.at("attention_size").get<int>();
+        facts.notes = json.at("notes").get<std::vector<std::string>>();
         return facts;
     } catch (const nlohmann::json::exception&) { return std::nullopt; }
 }
@@ -414,7 +415,8 @@ const CachedModel::Facts& CachedModel::facts() const {
                 model.supports_scene_conditioning(),
                 model.supports_appearance_editing(),
                 0.5,
-                0};
+                0,
+                model.notes()};
     const auto attention = model.attention();
     facts.threshold = attention->threshold();
     facts.attention_size = attention->image_size();
@@ -427,7 +429,8 @@ const CachedModel::Facts& CachedModel::facts() const {
                               {"knows_scene", facts.supports_scene_conditioning},
                               {"restyles", facts.supports_appearance_editing},
                               {"threshold", facts.threshold},
-                              {"attention_size", facts.attention_size}};
+                              {"attention_size", facts.attention_size},
+                              {"notes", facts.notes}};
     cache_->keep("facts of " + identity_, json_text(json));
     const std::lock_guard lock(mutex_);
     if (!facts_) facts_ = std::move(facts);

@@ -41,6 +41,7 @@ public:
     int image_size() const override { return facts().image_size; }
     std::string name() const override { return facts().name; }
     neural::BundleKind kind() const override { return facts().kind; }
+    std::vector<std::string> notes() const override { return facts().notes; }
     Image sample(const neural::SampleRequest& request) const override { return real().sample(request); }
     Image img2img(const Image& image, const neural::SampleRequest& request) const override {
         return real().img2img(image, request);
@@ -76,6 +77,7 @@ private:
         bool supports_scene_conditioning = false, supports_appearance_editing = false;
         double threshold = 0.5;  // of its attention
         int attention_size = 0;
+        std::vector<std::string> notes;
     };
     const Facts& facts() const;
     std::optional<Facts> kept_facts() const;

@@ -12,6 +12,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/safetensors_header.h"
+#include "engine/neural/api/checkpoint.h"
 #include "engine/pipeline/models/installed.h"
 #include "engine/pipeline/models/model_words.h"
 
@@ -40,6 +41,34 @@ void describe_channels(std::uint64_t channels, FoundModel& model) {
     }
 }
 
+/// "predicts velocity, up to pure noise (by model.yaml)".
+std::string prediction_text(bool velocity, bool zero_terminal_snr, const std::string& source) {
+    return fmt::format("predicts {}{}{}", velocity ? "velocity" : "noise",
+                       zero_terminal_snr ? ", from pure noise on (zero terminal SNR)" : "",
+                       source.empty() ? std::string() : fmt::format(" (by {})", source));
+}
+
+/// Prediction by a scheduler_config.json; empty where it says none.
+std::string scheduler_prediction_text(const fs::path& path) {
+    const auto json = model_json(path);
+    const auto text = [&](const char* key) {
+        return json.is_object() && json.contains(key) && json[key].is_string() ? json[key].get<std::string>()
+                                                                               : std::string();
+    };
+    const auto type = text("prediction_type");
+    if (type != "epsilon" && type != "v_prediction") return {};
+    const bool rescaled = json.contains("rescale_betas_zero_snr") && json["rescale_betas_zero_snr"] == true;
+    return prediction_text(type == "v_prediction", rescaled, path.filename().string());
+}
+
+/// Prediction of a checkpoint: by scheduler_config.json beside it, or as neural::checkpoint_prediction().
+std::string checkpoint_prediction_text(const fs::path& path, const nlohmann::json& header, bool second) {
+    const auto beside = path.parent_path() / "scheduler_config.json";
+    if (fs::exists(beside)) return scheduler_prediction_text(beside);
+    const auto found = neural::checkpoint_prediction(path, header, second);
+    return prediction_text(found.velocity, found.zero_terminal_snr, found.source);
+}
+
 /// Kind of a model, told by its keys and by the width of the cross-attention.
 void describe_checkpoint(const fs::path& path, FoundModel& model) {
     const nlohmann::json header = safetensors_header(path);
@@ -64,7 +93,10 @@ void describe_checkpoint(const fs::path& path, FoundModel& model) {
     const auto width = shape_at(
         header, "model.diffusion_model.input_blocks.2.1.transformer_blocks.0.attn2.to_k.weight", 0, 0);
     model.structure = width == 1024 ? "Stable Diffusion 2.x" : "Stable Diffusion 1.x";
+    model.prediction = checkpoint_prediction_text(path, header, width == 1024);
     describe_channels(shape_at(header, "model.diffusion_model.input_blocks.0.0.weight", 2, 4), model);
+    if (model.problem.empty() && !neural::has_own_vae(header) && neural::vae_beside(path).empty())
+        model.problem = "it has no VAE; " + neural::vae_hint(path);
     model.usable = model.problem.empty();
 }
 
@@ -82,6 +114,7 @@ void describe_folder(const fs::path& path, FoundModel& model) {
         describe_channels(unet["in_channels"].get<std::uint64_t>(), model);
     if (scheduler.is_object() && scheduler.value("_class_name", "") == std::string("LCMScheduler"))
         model.structure += ", LCM";
+    model.prediction = scheduler_prediction_text(path / "scheduler/scheduler_config.json");
     for (const char* part : {"unet", "vae", "text_encoder", "tokenizer"})
         if (!fs::exists(path / part))
             model.problem += (model.problem.empty() ? "missing: " : ", ") + std::string(part);
@@ -92,7 +125,9 @@ void describe_folder(const fs::path& path, FoundModel& model) {
     model.usable = model.problem.empty();
 }
 
-FoundModel describe(const fs::path& path) {
+}  // namespace
+
+FoundModel describe_model(const fs::path& path) {
     FoundModel model;
     model.path = path.string();
     model.name = path.stem().string();
@@ -104,7 +139,7 @@ FoundModel describe(const fs::path& path) {
             describe_folder(path, model);
         } else {
             model.bytes = fs::file_size(path, failure);
-            if (path.extension() == ".safetensors") describe_checkpoint(path, model);
+            if (is_safetensors_name(path)) describe_checkpoint(path, model);
             else model.problem = "pickled checkpoints are not opened; convert it to .safetensors";
         }
     } catch (const std::exception& error) {
@@ -112,6 +147,8 @@ FoundModel describe(const fs::path& path) {
     }
     return model;
 }
+
+namespace {
 
 /// Folders of other programs and the user's own list (GSE_MODELS, separated by colons).
 std::vector<fs::path> model_folders() {
@@ -135,18 +172,17 @@ std::vector<fs::path> model_folders() {
 }  // namespace
 
 std::vector<FoundModel> find_models(const std::vector<std::string>& also) {
-    std::vector<FoundModel> models{describe(starter_model_path())};
+    std::vector<FoundModel> models{describe_model(starter_model_path())};
     const auto add = [&](const fs::path& path) {
         const auto known = [&](const auto& model) { return model.path == path.string(); };
         if (models.size() < MostModels && std::none_of(models.begin(), models.end(), known))
-            models.push_back(describe(path));
+            models.push_back(describe_model(path));
     };
     for (const auto& folder : model_folders()) {
         std::error_code failure;
         for (const auto& entry : fs::directory_iterator(folder, failure)) {
-            const auto extension = entry.path().extension();
-            const bool checkpoint = extension == ".safetensors" || extension == ".ckpt";
-            if (checkpoint || fs::exists(entry.path() / "model_index.json", failure)) add(entry.path());
+            if (is_checkpoint_name(entry.path()) || fs::exists(entry.path() / "model_index.json", failure))
+                add(entry.path());
         }
     }
     for (const auto& path : also) add(path);

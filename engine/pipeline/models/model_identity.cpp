@@ -12,6 +12,8 @@
 #include "engine/base/content_hash.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/base/safetensors_header.h"
+#include "engine/neural/api/checkpoint.h"
 #include "engine/neural/api/lora_spec.h"
 #include "engine/pipeline/models/model_words.h"
 #include "engine/pipeline/models/neural_loader.h"
@@ -23,8 +25,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t PieceBytes = std::size_t{1} << 20;
-constexpr std::array<std::string_view, 4> ModelEndings{".safetensors", ".json", ".txt",
-                                                       ".bin"};  // nothing else of a model is read
+// Nothing else of a model is read.
+constexpr std::array<std::string_view, 3> ModelEndings{".json", ".txt", ".bin"};
 
 std::string digest_of(const fs::path& path) {
     const InputFile file(path);
@@ -55,8 +57,8 @@ std::string contents_of(const fs::path& path, AnswerCache& cache) {
 }
 
 bool belongs_to_model(const fs::path& path) {
-    return std::find(ModelEndings.begin(), ModelEndings.end(), path.extension().string()) !=
-           ModelEndings.end();
+    return is_safetensors_name(path) || std::find(ModelEndings.begin(), ModelEndings.end(),
+                                                  path.extension().string()) != ModelEndings.end();
 }
 
 /// One line per file below a folder: its name there and its contents.
@@ -77,17 +79,24 @@ std::string contents_below(const fs::path& folder, AnswerCache& cache) {
     return fmt::format("{}\n", fmt::join(lines, "\n"));
 }
 
-/// A checkpoint has its configurations, and the tiny autoencoder, beside it.
+bool is_configuration(const fs::path& path) {
+    return path.extension() == ".json" || neural::is_yaml_name(path);
+}
+
+/// A checkpoint has its configurations, its tokenizer, and the tiny autoencoder, beside it.
 std::string contents_beside(const fs::path& checkpoint, AnswerCache& cache) {
     std::string text = "weights " + contents_of(checkpoint, cache) + "\n";
     std::vector<std::string> lines;
     const auto folder = fs::absolute(checkpoint).parent_path();
     for (const auto& entry : fs::directory_iterator(folder))
-        if (entry.is_regular_file() && entry.path().extension() == ".json")
+        if (entry.is_regular_file() && is_configuration(entry.path()))
             lines.push_back(entry.path().filename().string() + " " + contents_of(entry.path(), cache));
     std::sort(lines.begin(), lines.end());
     text += fmt::format("{}\n", fmt::join(lines, "\n"));
-    if (fs::is_directory(folder / "taesd")) text += contents_below(folder / "taesd", cache);
+    for (const char* part : {"taesd", "vae", "tokenizer"})
+        if (fs::is_directory(folder / part)) text += contents_below(folder / part, cache);
+    if (const auto vae = neural::vae_beside(checkpoint); !vae.empty())
+        text += "vae " + contents_of(vae, cache) + "\n";
     return text;
 }
 
@@ -98,6 +107,12 @@ fs::path named_taesd(const JobParameters& job, const fs::path& folder) {
     if (!facts.is_object() || !facts.contains("taesd") || !facts["taesd"].is_string()) return {};
     const auto name = facts["taesd"].get<std::string>();
     return name.empty() || name == "none" ? fs::path() : folder / name;
+}
+
+/// Contents of a LoRA and of PEFT's configuration beside it.
+std::string lora_contents(const fs::path& file, AnswerCache& cache) {
+    const auto config = file.parent_path() / "adapter_config.json";
+    return contents_of(file, cache) + (fs::is_regular_file(config) ? " " + contents_of(config, cache) : "");
 }
 
 /// Libraries choose other kernels on another processor, which round differently.
@@ -144,7 +159,7 @@ std::string model_identity(const JobParameters& job, AnswerCache& cache, int ver
         text += "tiny autoencoder\n" + contents_below(tiny, cache);
     for (const auto& lora : neural::find_loras(job.lora))  // its name may say that it was distilled
         text += fmt::format("lora {} {} {}\n", static_cast<int>(neural::lora_mark(lora.file)), lora.strength,
-                            contents_of(lora.file, cache));
+                            lora_contents(lora.file, cache));
     return digest_of_text(text);
 }
 

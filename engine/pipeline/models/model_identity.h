@@ -11,7 +11,7 @@ namespace gse::pipeline {
 
 /// Raised when an answer changes that stays the same by files and settings: what is kept of earlier versions
 /// is not found then.
-constexpr int AnswersVersion = 4;
+constexpr int AnswersVersion = 5;
 
 /// Hash over the contents of weights, configurations, vocabularies, LoRAs, tiny autoencoder and networks'
 /// library. Device, precision, processor, `version` and the model's own name count, too. Contents of a file

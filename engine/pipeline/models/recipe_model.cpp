@@ -19,11 +19,25 @@ std::filesystem::path model_path(const JobParameters& job) {
 
 void use_threads(const JobParameters& job) { set_network_threads(job.threads); }
 
-std::shared_ptr<neural::TextToImage> load_recipe_model(const JobParameters& job) {
+namespace {
+
+std::shared_ptr<neural::TextToImage> load_networks(const JobParameters& job) {
     auto& api = neural_api();
     use_threads(job);
     return api.load_model(model_path(job),
                           {job.device, neural::find_loras(job.lora), job.taesd, job.precision});
+}
+
+void say_notes(const neural::TextToImage& model) {
+    for (const auto& note : model.notes()) log::warning("{}", note);
+}
+
+}  // namespace
+
+std::shared_ptr<neural::TextToImage> load_recipe_model(const JobParameters& job) {
+    auto model = load_networks(job);
+    say_notes(*model);
+    return model;
 }
 
 std::shared_ptr<neural::TextToImage> open_recipe_model(const JobParameters& job,
@@ -40,9 +54,10 @@ std::shared_ptr<neural::TextToImage> open_recipe_model(const JobParameters& job,
     auto model = std::make_shared<CachedModel>(
         std::move(cache), std::move(identity), [job = JobParameters(job)]() mutable {
             job.threads = network_threads();  // they may have been set since
-            return load_recipe_model(job);
+            return load_networks(job);
         });
     if (!model->known()) model->real();  // what is wrong with it is said now
+    say_notes(*model);
     return model;
 }
 

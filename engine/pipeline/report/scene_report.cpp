@@ -8,9 +8,11 @@
 #include "engine/base/error.h"
 #include "engine/base/path_text.h"
 #include "engine/base/print.h"
+#include "engine/base/safetensors_header.h"
 #include "engine/io/image/image_file.h"
 #include "engine/io/project/load_scene.h"
 #include "engine/io/project/project_file.h"
+#include "engine/pipeline/models/model_catalogue.h"
 #include "engine/pipeline/run/scene_tools.h"
 
 namespace gse::pipeline {
@@ -84,9 +86,44 @@ std::string picture_report_text(const Json& json) {
     return text;
 }
 
+bool is_model(const std::filesystem::path& path) {
+    std::error_code ignored;
+    return is_checkpoint_name(path) || std::filesystem::exists(path / "model_index.json", ignored);
+}
+
+/// Facts of a model by its headers.
+Json model_report(const std::filesystem::path& path) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored))
+        throw Error(ErrorCode::NotFound, "there is no model here", "name a folder or a checkpoint", path);
+    const auto model = describe_model(path);
+    if (model.structure.empty())
+        throw Error(is_safetensors_name(path) ? ErrorCode::Malformed : ErrorCode::Unsupported, model.problem,
+                    "name a folder in diffusers layout or a whole checkpoint", path);
+    Json json;
+    json["file"] = text_of_path(path.string());
+    json["structure"] = model.structure;
+    json["name"] = model.name;
+    json["prediction"] = model.prediction;
+    json["mb"] = static_cast<double>(model.bytes) / 1e6;
+    json["usable"] = model.usable;
+    json["problem"] = model.problem;
+    return json;
+}
+
+std::string model_report_text(const Json& json) {
+    std::string text = fmt::format("{}\n", printable(json["file"].get<std::string>()));
+    for (const auto& [name, key] : {std::pair{"model", "structure"}, std::pair{"name", "name"},
+                                    std::pair{"prediction", "prediction"}, std::pair{"problem", "problem"}})
+        if (const auto value = json[key].get<std::string>(); !value.empty())
+            text += fmt::format("  {:<13} {}\n", name, printable(value));
+    return text + fmt::format("  {:<13} {:.1f} MB\n", "size", json["mb"].get<double>());
+}
+
 }  // namespace
 
 Json scene_report(const std::filesystem::path& path) {
+    if (is_model(path)) return model_report(path);
     if (path.extension() == ".png") return picture_report(path);
     const Scene scene = load_scene(path);
     Json report = report_of(scene, path, scene_cameras(path, "").size());
@@ -98,6 +135,7 @@ Json scene_report(const std::filesystem::path& path) {
 
 std::string report_text(const Json& json) {
     if (json.contains("text")) return picture_report_text(json);
+    if (json.contains("structure")) return model_report_text(json);
     std::string text;
     const auto line = [&](auto format, const auto&... values) {
         text += fmt::format(fmt::runtime(format), shown(values)...);

@@ -310,6 +310,8 @@ DOCTEST_TEST_CASE("lora: kohya's file there and back") {
     auto weights = read_lora(path);
     weights.unet.front().layer = "no_such_layer";
     write_lora(path, weights);
+    DOCTEST_CHECK(contains(loaded->load_lora(path)->notes().front(), "no_such_layer"));
+    write_lora(path, {{weights.unet.front()}, {}});
     DOCTEST_CHECK(contains(message_of([&] { loaded->load_lora(path); }), "no_such_layer"));
     weights = {{LoraFactor{"conv_in", torch::ones({1, 5, 3, 3}), torch::ones({16, 1, 1, 1}), 1}}, {}};
     write_lora(path, weights);

@@ -73,8 +73,8 @@ DOCTEST_TEST_CASE(
     "kinds: what the configurations tell, what may be stated, and what is refused with what it is") {
     const auto ddim = scheduler_of("DDIMScheduler");
     const auto kind = [](const UNetConfig& unet, const SchedulerConfig& scheduler,
-                         const std::string& stated = {}) {
-        return bundle_kind(unet, scheduler, 4, stated, "model");
+                         const std::string& stated = {}, Origin origin = Origin::Unknown) {
+        return bundle_kind(unet, scheduler, 4, stated, origin, "model");
     };
     UNetConfig embeds;
     embeds.time_cond_proj_dim = 256;
@@ -82,8 +82,10 @@ DOCTEST_TEST_CASE(
     DOCTEST_CHECK(kind(embeds, ddim) == BundleKind::Lcm);
     DOCTEST_CHECK(kind(UNetConfig{}, scheduler_of("LCMScheduler")) == BundleKind::Lcm);
     DOCTEST_CHECK(kind(UNetConfig{}, scheduler_of("TCDScheduler")) == BundleKind::Tcd);
-    DOCTEST_CHECK(kind(UNetConfig{}, scheduler_of("EulerDiscreteScheduler", "trailing")) ==
+    DOCTEST_CHECK(kind(UNetConfig{}, scheduler_of("EulerDiscreteScheduler", "trailing"), {}, Origin::Turbo) ==
                   BundleKind::Turbo);
+    DOCTEST_CHECK(kind(UNetConfig{}, scheduler_of("EulerDiscreteScheduler", "trailing")) ==
+                  BundleKind::Plain);
     DOCTEST_CHECK(kind(UNetConfig{}, scheduler_of("EulerDiscreteScheduler")) == BundleKind::Plain);
     DOCTEST_CHECK(kind(UNetConfig{}, scheduler_of("DDIMScheduler", "trailing")) == BundleKind::Plain);
     DOCTEST_CHECK(kind(channels(8, 4), ddim) == BundleKind::InstructPix2Pix);

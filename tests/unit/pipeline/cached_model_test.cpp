@@ -380,6 +380,12 @@ DOCTEST_TEST_CASE(
     DOCTEST_CHECK(is_new(identity(single)));
     write_file(model / "unet" / "scheduler_config.json", "{}");
     DOCTEST_CHECK(is_new(identity(single)));
+    for (const char* beside : {"weights.yaml", "weights.vae.safetensors", "tokenizer/tokenizer.json"}) {
+        write_file(model / "unet" / beside, "{}");
+        DOCTEST_CHECK_MESSAGE(is_new(identity(single)), beside);
+    }
+    write_file(folder.path() / "adapter_config.json", "{}");
+    DOCTEST_CHECK(changed([&](auto& j) { j.lora = {(folder.path() / "style.safetensors").string()}; }));
     job.model = (folder.path() / "none").string();
     DOCTEST_CHECK_THROWS_AS(identity(job), Error);
 }

@@ -34,7 +34,8 @@ void write_checkpoint(const fs::path& path,
 
 std::vector<std::pair<std::string, std::vector<int>>> whole_model(int channels, int width) {
     return {{"model.diffusion_model.input_blocks.0.0.weight", {320, channels, 3, 3}},
-            {"model.diffusion_model.input_blocks.2.1.transformer_blocks.0.attn2.to_k.weight", {320, width}}};
+            {"model.diffusion_model.input_blocks.2.1.transformer_blocks.0.attn2.to_k.weight", {320, width}},
+            {"first_stage_model.decoder.conv_in.weight", {512, 4, 3, 3}}};
 }
 
 FoundModel found_at(const std::vector<FoundModel>& models, const fs::path& path) {
@@ -56,8 +57,14 @@ DOCTEST_TEST_CASE(
     write_checkpoint(file("inpaint.safetensors"), whole_model(9, 768));
     write_checkpoint(file("lora.safetensors"), {{"lora_unet_mid.lora_up.weight", {4, 4}}});
     write_checkpoint(file("xl.safetensors"), {{"conditioner.embedders.1.model.x", {4, 4}}});
+    auto without_vae = whole_model(4, 768);
+    without_vae.pop_back();
+    write_checkpoint(file("no_vae.safetensors"), without_vae);
+    write_checkpoint(file("SHOUTED.SAFETENSORS"), whole_model(4, 768));
+    write_checkpoint(file("short.sft"), whole_model(4, 768));
     write_file(file("noise.safetensors"), "not a header");
     write_file(file("old.ckpt"), "pickled");
+    write_file(file("OLD.CKPT"), "pickled");
     write_file(file("readme.txt"), "nothing");
     setenv("GSE_MODELS", (folder.path().string() + ":/nowhere/at/all").c_str(), 1);
     const auto models = find_models({(folder.path() / "gone").string()});
@@ -79,8 +86,11 @@ DOCTEST_TEST_CASE(
                    "inpainting models are not supported"},
           Expected{"lora.safetensors", "LoRA", "no whole model"},
           Expected{"xl.safetensors", "Stable Diffusion XL", "SDXL is not"},
+          Expected{"no_vae.safetensors", "Stable Diffusion 1.x", "no_vae.vae.safetensors"},
+          Expected{"SHOUTED.SAFETENSORS", "Stable Diffusion 1.x", ""},
+          Expected{"short.sft", "Stable Diffusion 1.x", ""},
           Expected{"noise.safetensors", "", "not a safetensors file"}, Expected{"old.ckpt", "", "pickled"},
-          Expected{"gone", "", "not there any more"}}) {
+          Expected{"OLD.CKPT", "", "pickled"}, Expected{"gone", "", "not there any more"}}) {
         const FoundModel model = found_at(models, file(name));
         const std::string wanted = problem;
         DOCTEST_CHECK(model.structure == structure);
@@ -106,6 +116,23 @@ DOCTEST_TEST_CASE("model catalogue: a folder names itself and the parts that it 
     DOCTEST_CHECK(listed.bytes > 0);
     for (const char* part : {"vae", "tokenizer"}) fs::create_directories(model / part);
     DOCTEST_CHECK(found_at(find_models({model.string()}), model).usable);
+}
+
+DOCTEST_TEST_CASE("model catalogue: a model says what it predicts, and by which file that is known") {
+    const test::ScratchFolder folder;
+    const auto path = folder.path() / "model.safetensors";
+    write_checkpoint(path, whole_model(4, 768));
+    DOCTEST_CHECK(describe_model(path).prediction == "predicts noise");
+    auto marked = whole_model(4, 768);
+    marked.push_back({"v_pred", {0}});
+    marked.push_back({"ztsnr", {0}});
+    write_checkpoint(path, marked);
+    DOCTEST_CHECK(describe_model(path).prediction ==
+                  "predicts velocity, from pure noise on (zero terminal SNR) (by its tensor \"v_pred\")");
+    write_file(folder.path() / "scheduler_config.json", R"({"prediction_type": "epsilon"})");
+    DOCTEST_CHECK(describe_model(path).prediction == "predicts noise (by scheduler_config.json)");
+    DOCTEST_CHECK(describe_model(starter_model_path()).prediction ==
+                  "predicts velocity (by scheduler_config.json)");
 }
 
 }  // namespace model_catalogue_test
