@@ -14,6 +14,7 @@
 #include "engine/io/cameras/camera_json.h"
 #include "engine/io/cameras/cameras.h"
 #include "engine/io/files/user_files.h"
+#include "engine/io/image/image_file.h"
 #include "engine/pipeline/models/installed.h"
 #include "engine/pipeline/run/recipe.h"
 #include "engine/pipeline/run/scene_loading.h"
@@ -52,7 +53,7 @@ template <> void FileController::on(const command::OpenSample&) {
 void FileController::open(const std::filesystem::path& path) {
     if (workspace_.jobs->works()) return workspace_.notices.toast("Cancel the running job first.");
     const auto absolute = std::filesystem::absolute(path).lexically_normal();
-    if (absolute.extension() == ".png") return open_recipe(absolute);
+    if (names_png(absolute)) return open_recipe(absolute);
     if (only_cameras(absolute)) return open_cameras(absolute);
     start_reading(
         fmt::format("Open {}", absolute.filename().string()),
@@ -181,7 +182,8 @@ void FileController::take_cameras(const std::string& name, std::vector<View> vie
                                   const std::vector<std::string>& notes) {
     if (views.empty())
         return workspace_.notices.toast(
-            notes.empty() ? "There are no cameras in " + name + "." : notes.front(), true);
+            notes.empty() ? "There are no cameras in " + name + "." : notes.back(), true);
+    for (const auto& odd : notes) workspace_.notices.toast(odd);
     DocumentState state = workspace_.document.state();
     const std::string note = guess_up(state.info, views);
     state.views = std::move(views);

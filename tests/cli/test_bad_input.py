@@ -56,6 +56,23 @@ class BadScenes(ProgramTest):
         self.assertFalse((self.folder / "out").exists())
 
 
+class BadCameras(ProgramTest):
+    def test_cameras_beside_a_scene_do_not_hide_it(self):
+        path = self.write("scene.ply", ply_bytes(grid_rows()))
+        plain = run("info", path)
+        for text in ["[", "[1]", '[{"img_name": 3, "width": "wide"}]']:
+            self.write("cameras.json", text.encode())
+            process = run("info", path)
+            self.assertEqual(process.returncode, 0, process.stderr)
+            *facts, warning = process.stdout.splitlines()
+            self.assertEqual(facts, plain.stdout.splitlines())
+            for word in ["cameras beside the scene", "cannot be used", "cameras.json"]:
+                self.assertIn(word, warning)
+            self.assertNotIn("json.exception", warning)
+            self.assert_one_sentence(run("cameras", path, self.folder / "transforms.json"), "cameras.json")
+            self.assertFalse((self.folder / "transforms.json").exists())
+
+
 HOSTILE = SHARED / "data/hostile"
 
 

@@ -12,9 +12,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         return std::string_view(reinterpret_cast<const char*>(part.data()), part.size());
     };
     return fuzz::exercise([&] {
-        const std::vector<View> views =
-            data[0] % 2 == 0 ? parse_colmap_binary(bytes.first(split), bytes.subspan(split))
-                             : parse_colmap_text(text(bytes.first(split)), text(bytes.subspan(split)));
-        for (const View& view : views) GSE_CHECK(view.camera.fx > 0 && view.camera.width > 0);
+        const CameraList list = data[0] % 2 == 0
+                                    ? parse_colmap_binary(bytes.first(split), bytes.subspan(split))
+                                    : parse_colmap_text(text(bytes.first(split)), text(bytes.subspan(split)));
+        for (const View& view : list.views) GSE_CHECK(view.camera.fx > 0 && view.camera.width > 0);
     });
 }

@@ -1,4 +1,4 @@
-// Search for camera files beside scenes, and their kinds.
+// Cameras of files and folders, and beside scenes.
 #include "engine/io/cameras/cameras.h"
 
 #include <algorithm>
@@ -6,6 +6,10 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/base/log.h"
+#include "engine/io/bytes/letter_case.h"
+#include "engine/io/cameras/any_case.h"
+#include "engine/io/cameras/camera_folders.h"
 #include "engine/io/scene/scene_file.h"
 
 namespace gse {
@@ -13,43 +17,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_there(const fs::path& path) {
-    std::error_code ignored;
-    return fs::exists(path, ignored);
+CameraList load_colmap(const io::ColmapFiles& model) {
+    const FileBytes cameras(model.cameras), images(model.images);
+    return model.binary ? parse_colmap_binary(cameras.bytes(), images.bytes())
+                        : parse_colmap_text(cameras.text(), images.text());
 }
 
-bool is_colmap_folder(const fs::path& folder, const char* ending) {
-    return is_there(folder / (std::string("cameras") + ending)) &&
-           is_there(folder / (std::string("images") + ending));
-}
-
-/// The folder of a COLMAP model at or below `folder`.
-std::optional<fs::path> find_colmap(const fs::path& folder) {
-    for (const fs::path& candidate :
-         {folder, folder / "sparse" / "0", folder / "sparse", folder / "colmap" / "sparse" / "0"})
-        if (is_colmap_folder(candidate, ".bin") || is_colmap_folder(candidate, ".txt")) return candidate;
-    return std::nullopt;
-}
-
-/// A camera file or COLMAP folder directly at `folder`.
-std::optional<fs::path> find_in_folder(const fs::path& folder) {
-    if (is_there(folder / "cameras.json")) return folder / "cameras.json";
-    if (const auto colmap = find_colmap(folder)) return colmap;
-    for (const char* name : {"transforms.json", "transforms_train.json"})
-        if (is_there(folder / name)) return folder / name;
-    return std::nullopt;
-}
-
-std::vector<View> load_colmap(const fs::path& folder) {
-    if (is_colmap_folder(folder, ".bin")) {
-        const FileBytes cameras(folder / "cameras.bin"), images(folder / "images.bin");
-        return parse_colmap_binary(cameras.bytes(), images.bytes());
-    }
-    const FileBytes cameras(folder / "cameras.txt"), images(folder / "images.txt");
-    return parse_colmap_text(cameras.text(), images.text());
-}
-
-std::vector<View> load_json(const fs::path& path, const fs::path& scene) {
+CameraList load_json(const fs::path& path, const fs::path& scene) {
     const FileBytes file(path);
     const std::size_t first = file.text().find_first_not_of(" \t\r\n\xef\xbb\xbf");
     if (first != std::string_view::npos && file.text()[first] == '[') return parse_cameras_json(file.text());
@@ -58,23 +32,28 @@ std::vector<View> load_json(const fs::path& path, const fs::path& scene) {
                                  fs::is_directory(scene, ignored) ? scene : scene.parent_path());
 }
 
-std::vector<View> load_any(const fs::path& path, const fs::path& scene) {
+CameraList load_folder(const fs::path& folder, const fs::path& scene) {
+    auto found = io::find_in_folder(folder);
+    if (!found)
+        throw Error(ErrorCode::NotFound, "the folder holds no cameras",
+                    "it needs cameras.json, transforms.json or a COLMAP sparse model", folder);
+    CameraList list = with_path(found->path, [&] {
+        return found->colmap ? load_colmap(*found->colmap) : load_json(found->path, scene);
+    });
+    if (!found->note.empty()) list.notes.push_back(std::move(found->note));
+    return list;
+}
+
+CameraList load_any(const fs::path& path, const fs::path& scene) {
     std::error_code ignored;
-    if (fs::is_directory(path, ignored)) {
-        const auto found = find_in_folder(path);
-        if (!found)
-            throw Error(ErrorCode::NotFound, "the folder holds no cameras",
-                        "it needs cameras.json, transforms.json or a COLMAP sparse model", path);
-        if (!fs::is_directory(*found, ignored)) return load_json(*found, scene);
-        return load_colmap(*found);
-    }
-    if (!is_there(path))
+    if (fs::is_directory(path, ignored)) return load_folder(path, scene);
+    if (!fs::exists(path, ignored))
         throw Error(ErrorCode::NotFound, "the camera file does not exist", "check the name", path);
-    const std::string ending = path.extension().string();
+    const std::string ending = io::lower_case(path.extension().string());
     if (ending == ".json") return load_json(path, scene);
     if (ending == ".bin" || ending == ".txt") {
         const fs::path folder = path.parent_path();
-        if (is_colmap_folder(folder, ending.c_str())) return load_colmap(folder);
+        if (const auto model = io::colmap_files(folder, ending)) return load_colmap(*model);
         throw Error(ErrorCode::NotFound, "a COLMAP model needs both cameras and images files", "", folder);
     }
     throw Error(ErrorCode::Unsupported, "this is no camera file that can be read",
@@ -99,26 +78,28 @@ std::vector<fs::path> folders_of(const fs::path& scene_path) {
 
 }  // namespace
 
+CameraList read_cameras(const fs::path& path, const fs::path& scene) {
+    return with_path(path, [&] { return load_any(path, scene); });
+}
+
 std::vector<View> load_cameras(const fs::path& path, const fs::path& scene) {
-    try {
-        return load_any(path, scene);
-    } catch (const Error& error) {
-        if (!error.path().empty()) throw;
-        throw Error(error.code(), error.message(), error.hint(), path);
-    }
+    CameraList list = read_cameras(path, scene);
+    for (const std::string& note : list.notes) log::warning("{}", note);
+    return std::move(list.views);
 }
 
 bool only_cameras(const fs::path& path) {
     std::error_code ignored;
-    const std::string name = path.filename().string(), ending = path.extension().string();
+    const std::string name = io::lower_case(path.filename().string());
+    const std::string ending = io::lower_case(path.extension().string());
     if (!fs::is_directory(path, ignored)) {
         if (ending == ".json") return name.ends_with("cameras.json") || name.starts_with("transforms");
-        const bool colmap =
-            (ending == ".bin" || ending == ".txt") && (path.stem() == "cameras" || path.stem() == "images");
-        return colmap && is_colmap_folder(path.parent_path(), ending.c_str());
+        const std::string stem = io::lower_case(path.stem().string());
+        const bool colmap = (ending == ".bin" || ending == ".txt") && (stem == "cameras" || stem == "images");
+        return colmap && io::colmap_files(path.parent_path(), ending).has_value();
     }
     try {
-        return find_in_folder(path) && !holds_scene(path);
+        return io::find_in_folder(path) && !holds_scene(path);
     } catch (const Error&) {  // it cannot be read: whoever opens it says so
         return false;
     }
@@ -143,17 +124,19 @@ double visible_share(const std::vector<View>& views, std::span<const float> posi
 }
 
 std::optional<fs::path> find_cameras(const fs::path& scene_path) {
-    const fs::path own = scene_path.parent_path() / (scene_path.stem().string() + ".cameras.json");
-    if (is_there(own)) return own;
+    const fs::path own = scene_path.stem().string() + ".cameras.json";
+    if (auto found = io::AnyCase().find(scene_path.parent_path(), own)) return found;
     for (const fs::path& folder : folders_of(scene_path))
-        if (const auto found = find_in_folder(folder)) return found;
+        if (io::find_in_folder(folder)) return folder;
     return std::nullopt;
 }
 
-bool names_transforms(const fs::path& path) { return path.filename().string().starts_with("transforms"); }
+bool names_transforms(const fs::path& path) {
+    return io::lower_case(path.filename().string()).starts_with("transforms");
+}
 
 void save_cameras(const fs::path& path, const std::vector<View>& views) {
-    if (path.extension() != ".json")
+    if (io::lower_case(path.extension().string()) != ".json")
         throw Error(ErrorCode::InvalidArgument,
                     "the name does not end in a camera format that can be written",
                     "use cameras.json (3DGS) or transforms.json (nerfstudio)", path);

@@ -12,6 +12,7 @@
 #include "engine/io/bytes/byte_reader.h"
 #include "engine/io/bytes/claims.h"
 #include "engine/io/bytes/encoding.h"
+#include "engine/io/bytes/letter_case.h"
 #include "engine/io/image/media.h"
 #include "engine/io/image/png.h"
 
@@ -54,6 +55,10 @@ void write_mask_png(const std::filesystem::path& path, const Mask& mask) {
     std::vector<std::uint8_t> bytes(mask.data.size());
     for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = mask.data[i] != 0 ? 255 : 0;
     write_file(path, io::encode_png({mask.width, mask.height, 1, bytes}, {}));
+}
+
+bool names_png(const std::filesystem::path& path) {
+    return io::lower_case(path.extension().string()) == ".png";
 }
 
 Mask read_mask(const std::filesystem::path& path) {

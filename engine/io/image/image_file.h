@@ -28,6 +28,9 @@ void write_png(const std::filesystem::path& path, const Image& image, const PngT
 /// Writes the mask as 0 / 255 grey.
 void write_mask_png(const std::filesystem::path& path, const Mask& mask);
 
+/// True for a name that ends in .png, in any case.
+bool names_png(const std::filesystem::path& path);
+
 /// Reads an image as a mask. A grey value above one half is inside.
 Mask read_mask(const std::filesystem::path& path);
 

@@ -9,11 +9,11 @@
 #include "engine/base/path_text.h"
 #include "engine/base/print.h"
 #include "engine/base/safetensors_header.h"
+#include "engine/io/cameras/cameras.h"
 #include "engine/io/image/image_file.h"
 #include "engine/io/project/load_scene.h"
 #include "engine/io/project/project_file.h"
 #include "engine/pipeline/models/model_catalogue.h"
-#include "engine/pipeline/run/scene_tools.h"
 
 namespace gse::pipeline {
 namespace {
@@ -22,7 +22,20 @@ using Json = nlohmann::ordered_json;
 
 Json list_of(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
 
-Json report_of(const Scene& scene, const std::filesystem::path& path, std::size_t cameras) {
+/// Cameras of a project, or beside a scene. Those that cannot be used do not hide the scene: a note says so.
+CameraList cameras_of(const std::filesystem::path& path) {
+    CameraList cameras;
+    try {
+        if (is_project_file(path)) cameras.views = read_project_summary(path).views;
+        else if (const auto found = find_cameras(path)) cameras = read_cameras(*found, path);
+    } catch (const Error& error) {
+        if (is_project_file(path)) throw;
+        cameras.notes.push_back(fmt::format("the cameras beside the scene cannot be used: {}", error.what()));
+    }
+    return cameras;
+}
+
+Json report_of(const Scene& scene, const std::filesystem::path& path, const CameraList& cameras) {
     const SceneStatistics statistics = compute_statistics(scene.gaussians);
     Json json;
     json["file"] = text_of_path(path.string());
@@ -30,7 +43,7 @@ Json report_of(const Scene& scene, const std::filesystem::path& path, std::size_
     json["splats"] = scene.gaussians.size();
     json["sh_degree"] = scene.gaussians.sh_degree();
     json["attribute_mb"] = static_cast<double>(scene.gaussians.byte_size()) / 1e6;
-    json["cameras"] = cameras;
+    json["cameras"] = cameras.views.size();
     json["up"] = list_of(scene.info.up);
     json["up_known"] = scene.info.up_known;
     json["antialiased"] = scene.info.antialiased;
@@ -46,6 +59,7 @@ Json report_of(const Scene& scene, const std::filesystem::path& path, std::size_
     json["labels"] = Json::array();
     for (const auto& label : scene.labels.labels) json["labels"].push_back(label.name);
     json["warnings"] = scene.info.warnings;
+    for (const std::string& note : cameras.notes) json["warnings"].push_back(note);
     return json;
 }
 
@@ -124,9 +138,9 @@ std::string model_report_text(const Json& json) {
 
 Json scene_report(const std::filesystem::path& path) {
     if (is_model(path)) return model_report(path);
-    if (path.extension() == ".png") return picture_report(path);
+    if (names_png(path)) return picture_report(path);
     const Scene scene = load_scene(path);
-    Json report = report_of(scene, path, scene_cameras(path, "").size());
+    Json report = report_of(scene, path, cameras_of(path));
     if (is_project_file(path))
         for (const auto& edit : read_project_summary(path).stack)
             report["edits"].push_back(edit.name + (edit.enabled ? "" : " (off)"));

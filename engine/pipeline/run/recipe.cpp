@@ -94,7 +94,7 @@ constexpr const char* RecipeHint = "use the recipe.json of an edit, or a picture
 
 nlohmann::ordered_json read_recipe_json(const std::filesystem::path& path) {
     std::string text;
-    if (path.extension() == ".png") {
+    if (names_png(path)) {
         const auto chunks = read_png_text(path);
         const auto found = chunks.find("Recipe");
         if (found == chunks.end())

@@ -32,9 +32,11 @@ SceneCameras cameras_of_scene(const GaussianSet& set, const std::filesystem::pat
     SceneCameras cameras;
     if (named == "none") return cameras;
     try {
-        if (!named.empty()) cameras.views = load_cameras(named, scene_path);
-        else if (const auto found = find_cameras(scene_path))
-            cameras.views = load_cameras(*found, scene_path);
+        CameraList list;
+        if (!named.empty()) list = read_cameras(named, scene_path);
+        else if (const auto found = find_cameras(scene_path)) list = read_cameras(*found, scene_path);
+        cameras.views = std::move(list.views);
+        for (const std::string& note : list.notes) cameras.notes.push_back(fmt::format("Cameras: {}.", note));
     } catch (const Error& error) {
         if (!named.empty()) throw;
         cameras.notes.push_back(std::string("The cameras beside the scene cannot be used: ") + error.what());

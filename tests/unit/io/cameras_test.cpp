@@ -111,8 +111,8 @@ DOCTEST_TEST_CASE("every COLMAP model is read, in binary and in text, and says w
     for (const ModelCase& model : model_cases()) {
         DOCTEST_CAPTURE(model.name);
         const std::string cameras = binary_cameras(model), images = binary_images(pose, "a b.jpg");
-        const auto binary = parse_colmap_binary(as_bytes(cameras), as_bytes(images));
-        const auto text = parse_colmap_text(text_cameras(model), text_image(pose, "a b.jpg", "1 2 -1"));
+        const auto binary = parse_colmap_binary(as_bytes(cameras), as_bytes(images)).views;
+        const auto text = parse_colmap_text(text_cameras(model), text_image(pose, "a b.jpg", "1 2 -1")).views;
         DOCTEST_REQUIRE(binary.size() == 1);
         DOCTEST_REQUIRE(text.size() == 1);
         DOCTEST_CHECK(binary[0].distorted == model.distorted);
@@ -130,7 +130,7 @@ DOCTEST_TEST_CASE("an image without points has an empty second line") {
     const std::string images = text_image(some_camera(1), "b.jpg", "") +
                                text_image(some_camera(2), "a.jpg", "") +
                                text_image(some_camera(3), "c.jpg", "");
-    const auto views = parse_colmap_text(text_cameras(model_cases()[1]), images);
+    const auto views = parse_colmap_text(text_cameras(model_cases()[1]), images).views;
     DOCTEST_REQUIRE(views.size() == 3);
     DOCTEST_CHECK(views[0].name == "a.jpg");
     DOCTEST_CHECK(length(views[0].camera.centre() - some_camera(2).centre()) < 1e-9);
@@ -235,7 +235,7 @@ DOCTEST_TEST_CASE("cameras are written in the form that the name asks for, and n
 DOCTEST_TEST_CASE("a Blender frame: field of view over the width, OpenGL axes turned to ours") {
     const char* text = R"({"camera_angle_x": 1.5707963267948966, "w": 200, "h": 100, "frames": [
         {"file_path": "./train/r_0", "transform_matrix": [[1,0,0,1],[0,1,0,2],[0,0,1,3],[0,0,0,1]]}]})";
-    const auto views = parse_transforms_json(text, {});
+    const auto views = parse_transforms_json(text, {}).views;
     DOCTEST_REQUIRE(views.size() == 1);
     const Camera& camera = views[0].camera;
     DOCTEST_CHECK(camera.fx == doctest::Approx(100));
@@ -253,7 +253,7 @@ DOCTEST_TEST_CASE("nerfstudio: distortion, values per frame, the world its splat
         {"file_path": "a.jpg", "transform_matrix": [[1,0,0,1],[0,1,0,2],[0,0,1,3],[0,0,0,1]]},
         {"file_path": "b.jpg", "k1": 0.1, "fl_x": 50, "w": 300, "h": 150,
          "transform_matrix": [[1,0,0,1],[0,1,0,2],[0,0,1,3],[0,0,0,1]]}]})";
-    const auto views = parse_transforms_json(text, {});
+    const auto views = parse_transforms_json(text, {}).views;
     DOCTEST_REQUIRE(views.size() == 2);
     DOCTEST_CHECK(!views[0].distorted);
     DOCTEST_CHECK(views[0].camera.fy == 110);

@@ -4,10 +4,12 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/base/json.h"
 #include "engine/io/cameras/cameras.h"
 #include "engine/io/project/load_scene.h"
 #include "engine/io/scene/scene_file.h"
 #include "engine/laboratory/synth/synth.h"
+#include "engine/pipeline/report/scene_report.h"
 #include "engine/pipeline/run/scene_loading.h"
 #include "tests/test_paths.h"
 
@@ -58,6 +60,38 @@ DOCTEST_TEST_CASE("a broken camera file is noted, one that was named is an error
     DOCTEST_REQUIRE(loaded.notes.size() == 1);
     DOCTEST_CHECK(loaded.notes[0].find("cannot be used") != std::string::npos);
     DOCTEST_CHECK_THROWS_AS(pipeline::load_scene_with_cameras(scene, cameras.string()), Error);
+}
+
+DOCTEST_TEST_CASE("one bad camera beside a scene costs that camera, and a note names it") {
+    const ScratchFolder scratch;
+    const auto scene = some_scene(scratch);
+    save_cameras_json(scratch.path() / "cameras.json", around(scene, {0, 0, 1}));
+    auto entries = try_parse_json(read_file(scratch.path() / "cameras.json"));
+    entries[2]["img_name"] = "third.png";
+    entries[2]["position"] = nullptr;
+    write_file(scratch.path() / "cameras.json", entries.dump());
+    const auto loaded = pipeline::load_scene_with_cameras(scene);
+    DOCTEST_CHECK(loaded.views.size() == 5);
+    DOCTEST_REQUIRE(loaded.notes.size() == 2);  // the other one tells which way is up
+    DOCTEST_CHECK(loaded.notes[0].find("third.png") != std::string::npos);
+    const auto report = pipeline::scene_report(scene);
+    DOCTEST_CHECK(report.at("cameras") == 5);
+    DOCTEST_CHECK(report.at("warnings").dump().find("third.png") != std::string::npos);
+}
+
+DOCTEST_TEST_CASE("cameras that cannot be used do not hide what the report says of their scene") {
+    const ScratchFolder scratch;
+    const auto scene = some_scene(scratch);
+    const auto whole = pipeline::scene_report(scene);
+    write_file(scratch.path() / "cameras.json", "[{\"id\": 0");
+    const auto report = pipeline::scene_report(scene);
+    DOCTEST_CHECK(report.at("splats") == whole.at("splats"));
+    DOCTEST_CHECK(report.at("bounds") == whole.at("bounds"));
+    DOCTEST_CHECK(report.at("cameras") == 0);
+    DOCTEST_REQUIRE(report.at("warnings").size() == whole.at("warnings").size() + 1);
+    const std::string text = pipeline::report_text(report);
+    DOCTEST_CHECK(text.find("the cameras beside the scene cannot be used") != std::string::npos);
+    DOCTEST_CHECK(text.find("cameras.json") != std::string::npos);
 }
 
 DOCTEST_TEST_CASE("cameras that look elsewhere are left out, with a word, and say nothing about up") {
