@@ -14,6 +14,7 @@
 #include "engine/io/formats/scene_formats.h"
 #include "engine/io/scene/format_loss.h"
 #include "engine/io/scene/scene_content.h"
+#include "engine/io/scene/wrapped_scene.h"
 
 namespace gse {
 namespace {
@@ -92,6 +93,12 @@ bool is_scene_file(const std::filesystem::path& path) {
            io::looks_like_scene(io::lower_case(path.filename().string()), [&] { return start_of(path); });
 }
 
+bool is_packed_file(const std::filesystem::path& path) {
+    std::error_code ignored;
+    return io::is_packed_scene(io::lower_case(path.filename().string())) &&
+           std::filesystem::is_regular_file(path, ignored);
+}
+
 Scene load_folder(const std::filesystem::path& folder) {
     if (const auto scene = scene_of_layout(folder)) return load_file(*scene);
     const auto files = scenes_in_folder(folder);
@@ -162,15 +169,17 @@ Scene load_scene_file(const std::filesystem::path& path) {
 }
 
 std::vector<std::filesystem::path> scenes_in_folder(const std::filesystem::path& folder) {
-    std::vector<std::filesystem::path> files;
+    std::vector<std::filesystem::path> files, packed;
     std::error_code failure;
     if (!std::filesystem::is_directory(folder, failure) || scene_of_layout(folder)) return files;
     std::filesystem::directory_iterator entry(folder, failure);
     for (; !failure && entry != std::filesystem::directory_iterator(); entry.increment(failure))
         if (is_scene_file(entry->path())) files.push_back(entry->path());
+        else if (is_packed_file(entry->path())) packed.push_back(entry->path());
     if (failure)
         throw Error(ErrorCode::Unreadable, "the folder cannot be read (" + failure.message() + ")",
                     "check its permissions", folder);
+    if (files.empty()) files = std::move(packed);
     std::sort(files.begin(), files.end());
     return files;
 }

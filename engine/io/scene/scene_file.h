@@ -14,7 +14,8 @@
 
 namespace gse {
 
-/// Reads a scene file of any format in scene_formats(), an unpacked format (meta.json), or a folder. Folders
+/// Reads a scene file of any format in scene_formats(), an unpacked format (meta.json), a zip archive or gzip
+/// stream with one scene inside, a SuperSplat project, or a folder. Folders
 /// are an Inria output folder (highest iteration) or hold one scene file. Of levels of detail, the finest is
 /// read. load_scene() reads projects too. Throws Error with one clear sentence.
 ///
@@ -22,14 +23,15 @@ namespace gse {
 /// bit.
 Scene load_scene_file(const std::filesystem::path& path);
 
-/// Scene files of a folder by name, to ask which one is meant. Empty for a folder that is a scene by itself
+/// Scene files of a folder by name, to ask which one is meant; packed ones (.ply.gz) where there are no
+/// others. Empty for a folder that is a scene by itself
 /// (SOG, Inria output). Throws Error when the folder cannot be read.
 std::vector<std::filesystem::path> scenes_in_folder(const std::filesystem::path& folder);
 /// True when load_scene_file() would find a scene in the folder. Throws Error when the folder cannot be read.
 bool holds_scene(const std::filesystem::path& folder);
 
-/// Reads a scene file in memory. `name` only tells formats without a magic number (.splat). Unpacked formats
-/// are not readable this way.
+/// Reads a scene file in memory, wrapped or not. `name` only tells formats without a magic number (.splat).
+/// Unpacked formats are readable this way inside of an archive.
 Scene parse_scene(std::span<const std::byte> bytes, std::string_view name);
 
 /// Rows of a written scene.

@@ -22,7 +22,8 @@ constexpr const char* Document = "document.json";
 constexpr std::uint64_t LargestDocument = std::uint64_t{64} << 20;  // bytes; poses and keys of a film
 constexpr std::uint64_t AnyPart = ~std::uint64_t{0};
 constexpr const char* DamagedHint = "the file is cut off or damaged; save the project again";
-const Quat HalfTurn(0, 0, 0, 1);  // about z, as every part is shown there
+constexpr double Rounding = 1e-6;  // of single precision
+const Quat HalfTurn(0, 0, 0, 1);   // about z, as every part is shown there
 
 std::string part_name(std::size_t index) { return fmt::format("splat_{}.ply", index); }
 
@@ -125,14 +126,15 @@ Scene read_supersplat_project(const PartFiles& files, const Wrapping& wrapping) 
             place(data, placement);
             part.gaussians = GaussianSet(std::move(data));
             const Vec3& scale = placement.scale;
-            stretched = stretched || scale.x != scale.y || scale.y != scale.z;
+            stretched = stretched || length(scale - Vec3{scale.x, scale.x, scale.x}) > Rounding * scale.x;
         }
         graded = graded || is_graded(parts[i]);
         joined.add(std::move(part));
     }
     if (hidden > 0)
-        joined.warn(fmt::format("{} hidden part{} of the SuperSplat project left out", hidden,
-                                hidden == 1 ? " is" : "s are"));
+        joined.warn(hidden == 1
+                        ? "a hidden part of the SuperSplat project is left out"
+                        : fmt::format("{} hidden parts of the SuperSplat project are left out", hidden));
     if (graded)
         joined.warn(
             "the colour settings of the SuperSplat project are not applied: colours are those "

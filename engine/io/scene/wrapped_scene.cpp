@@ -19,7 +19,7 @@ namespace {
 constexpr int MostWrappers = 4;  // a download within a download
 constexpr std::uint64_t AnyBytes = ~std::uint64_t{0};
 constexpr std::uint64_t LargestList = std::uint64_t{64} << 20;  // bytes of a list of parts
-constexpr std::size_t MostDescribed = 1000;                     // more are several all the same
+constexpr std::size_t MostDescribed = 100;                      // more are several all the same
 constexpr const char* UnpackHint = "unpack it and open the one you mean";
 
 std::string_view last_of(std::string_view name) { return name.substr(name.rfind('/') + 1); }
@@ -60,7 +60,7 @@ std::string without_gz(std::string name) {
 
 /// True for an archive, or a packed scene.
 bool is_wrapper(const std::string& lower_name) {
-    if (lower_name.ends_with(".gz")) return has_scene_ending(without_gz(lower_name));
+    if (lower_name.ends_with(".gz")) return is_packed_scene(lower_name);
     const auto endings = wrapper_extensions();
     return std::any_of(endings.begin(), endings.end(),
                        [&](const std::string& ending) { return lower_name.ends_with(ending); });
@@ -158,6 +158,12 @@ Scene read_member(const PartArchive& files, const Member& member, const Wrapping
 }
 
 }  // namespace
+
+bool is_packed_scene(const std::string& lower_name) {
+    return !lower_name.starts_with('.') &&
+           (lower_name.ends_with(".ssproj") ||
+            (lower_name.ends_with(".gz") && has_scene_ending(without_gz(lower_name))));
+}
 
 Scene read_gzip(Bytes bytes, const std::string& name, const Wrapping& wrapping) {
     const Wrapping inner = deeper(wrapping);

@@ -9,6 +9,10 @@
 
 namespace gse::io {
 
+/// True for a name (in lower case) that promises a scene inside: "a.ply.gz", "a.ssproj". A zip archive may
+/// hold anything.
+bool is_packed_scene(const std::string& lower_name);
+
 /// Reads the scene in a gzip stream. `name` is that of the file in lower case; ".gz" at its end is dropped.
 /// Throws Error.
 Scene read_gzip(Bytes bytes, const std::string& name, const Wrapping& wrapping);

@@ -44,6 +44,7 @@ DOCTEST_TEST_CASE("sizes that SPZ clips are told with their factor and number") 
     constexpr double Small = 0.0003;  // a scene in which a ten-thousandth of a unit is large
     Scene scene = random_scene(100, 0, 1, Small);
     GaussianData data = scene.gaussians.to_data();
+    for (float& value : data.log_scale) value = value / 6 - 9;
     // SPZ holds log-scales up to 255 / 16 - 10.
     constexpr float most = 255.0f / 16 - 10;
     for (std::size_t row = 0; row < 7; ++row) data.log_scale[row * 3] = most + std::log(2.8f);

@@ -321,6 +321,17 @@ DOCTEST_TEST_CASE("the reported downloads open as what they hold") {
     DOCTEST_CHECK(same_bits(splat.gaussians.position(), ply.position()));
 }
 
+DOCTEST_TEST_CASE("a folder of one packed scene is that scene; a plain one beside it goes first") {
+    ScratchFolder scratch;
+    write_file(scratch.path() / "Scene.PLY.GZ", io::deflate_gzip(written_as("ply", random_scene(5, 0, 1))));
+    write_file(scratch.path() / "notes.txt.gz", io::deflate_gzip("hello"));
+    write_file(scratch.path() / "images.zip", zipped({{"a.png", "no"}}));
+    DOCTEST_CHECK(load_scene(scratch.path()).gaussians.size() == 5);
+    save_scene(scratch.path() / "other.ply", random_scene(6, 0, 1));
+    DOCTEST_CHECK(load_scene(scratch.path()).gaussians.size() == 6);
+    DOCTEST_CHECK(scenes_in_folder(scratch.path()).size() == 1);
+}
+
 DOCTEST_TEST_CASE("a SuperSplat project gives its parts in their places") {
     const Scene first = random_scene(12, 3, 1), second = random_scene(5, 3, 2);
     const auto project = [&](const nlohmann::json& a, const nlohmann::json& b) {
@@ -341,7 +352,7 @@ DOCTEST_TEST_CASE("a SuperSplat project gives its parts in their places") {
     hidden["visible"] = false;
     graded["saturation"] = 0.5;
     DOCTEST_CHECK(project(usual, hidden).gaussians.size() == 12);
-    DOCTEST_CHECK(warns(project(usual, hidden), "1 hidden part"));
+    DOCTEST_CHECK(warns(project(usual, hidden), "a hidden part"));
     DOCTEST_CHECK(warns(project(graded, usual), "colour settings"));
     // Half a turn about x and then about z is one about y; y points up there and down in the file.
     moved["rotation"] = {1, 0, 0, 0};
