@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/io/formats/save_options.h"
+#include "engine/io/scene/open_options.h"
 #include "engine/scene/scene.h"
 
 namespace gse {
@@ -19,8 +20,8 @@ namespace gse {
 /// read. load_scene() reads projects too. Throws Error with one clear sentence.
 ///
 /// Infinite opacity logits that come from 8-bit 0 or 255 are clamped. Values of PLY files are kept bit for
-/// bit.
-Scene load_scene_file(const std::filesystem::path& path);
+/// bit. Coordinates of PLY files far from the origin lose SceneInfo::offset.
+Scene load_scene_file(const std::filesystem::path& path, const OpenOptions& options = {});
 
 /// Scene files of a folder by name, to ask which one is meant. Empty for a folder that is a scene by itself
 /// (SOG, Inria output). Throws Error when the folder cannot be read.
