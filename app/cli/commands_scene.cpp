@@ -31,7 +31,7 @@ struct SceneOptions {
     std::filesystem::path input, output;
     RenderParameters render;
     TurntableParameters turn;
-    OpenOptions open;
+    ReadingOptions reading;
     SaveOptions save;
     bool labels = false;
     bool drop = false;
@@ -39,7 +39,7 @@ struct SceneOptions {
 };
 
 /// One broken file of several does not hide the others.
-void print_infos(const std::vector<std::filesystem::path>& paths, const OpenOptions& open, bool as_json) {
+void print_infos(const std::vector<std::filesystem::path>& paths, const ReadingOptions& open, bool as_json) {
     std::size_t failed = 0;
     Json list = Json::array();
     for (const auto& path : paths) {
@@ -61,7 +61,7 @@ void print_infos(const std::vector<std::filesystem::path>& paths, const OpenOpti
 void add_info(CLI::App& app, CommandContext&) {
     struct InfoOptions {
         std::vector<std::filesystem::path> scenes;
-        OpenOptions open;
+        ReadingOptions reading;
         bool json = false;
     };
     auto options = std::make_shared<InfoOptions>();
@@ -69,10 +69,10 @@ void add_info(CLI::App& app, CommandContext&) {
         "info", "Print what scenes hold and what may be wrong with them, or how pictures were made");
     command->add_option("scene", options->scenes, "Scene files or folders, or pictures (.png)")->required();
     command->add_flag("--json", options->json, "Print JSON; a list for several scenes");
-    bind_fields(*command, options->open, "Reading");
+    bind_fields(*command, options->reading, "Reading");
     command->callback([options] {
-        if (options->scenes.size() > 1) return print_infos(options->scenes, options->open, options->json);
-        const Json json = scene_report(options->scenes.front(), options->open);
+        if (options->scenes.size() > 1) return print_infos(options->scenes, options->reading, options->json);
+        const Json json = scene_report(options->scenes.front(), options->reading);
         if (options->json) print_json(json);
         else fmt::print("{}", report_text(json));
     });
@@ -117,9 +117,9 @@ void add_convert(CLI::App& app, CommandContext&) {
     command->add_flag("--labels", options->labels,
                       fmt::format("Keep label columns ({} only)", labelled_formats()));
     command->add_flag("--drop-unusable", options->drop, "Leave out splats with NaN or illegal infinities");
-    bind_fields(*command, options->open, "Reading");
+    bind_fields(*command, options->reading, "Reading");
     command->callback([options] {
-        Scene scene = load_scene(options->input, options->open);
+        Scene scene = load_scene(options->input, options->reading);
         if (options->drop) {
             const std::size_t before = scene.gaussians.size();
             scene.extra = filtered(scene.extra, usable_rows(scene.gaussians));
@@ -142,7 +142,7 @@ void add_adjust(CLI::App& app, CommandContext&) {
     struct AdjustOptions {
         std::filesystem::path input, output;
         ColourAdjustment colours;
-        OpenOptions open;
+        ReadingOptions reading;
         bool use_label = false;
     };
     auto options = std::make_shared<AdjustOptions>();
@@ -152,9 +152,9 @@ void add_adjust(CLI::App& app, CommandContext&) {
     command->add_flag("--use-label", options->use_label,
                       "Adjust the splats that the scene's own label marks, not all");
     bind_fields(*command, options->colours, "Colours");
-    bind_fields(*command, options->open, "Reading");
+    bind_fields(*command, options->reading, "Reading");
     command->callback([options] {
-        Scene scene = load_scene(options->input, options->open);
+        Scene scene = load_scene(options->input, options->reading);
         const auto& labels = scene.labels.labels;
         if (options->use_label && labels.empty())
             throw Error(ErrorCode::InvalidArgument, "the scene has no label",
@@ -205,9 +205,9 @@ void add_render(CLI::App& app, CommandContext&) {
     command->add_flag("--transparent", *transparent,
                       "Transparent where the scene does not cover the picture");
     bind_fields(*command, options->render, "Picture");
-    bind_fields(*command, options->open, "Reading");
+    bind_fields(*command, options->reading, "Reading");
     command->callback([options, transparent] {
-        const Scene scene = load_scene(options->input, options->open);
+        const Scene scene = load_scene(options->input, options->reading);
         Painter painter;
         const Camera camera = choose_camera(scene, options->input, options->render);
         auto settings = raster_settings(options->render, scene.info);
@@ -229,7 +229,7 @@ struct FilmOptions {
 FilmRequest film_request(const FilmOptions& options) {
     const auto& render = options.scene.render;
     const auto& turn = options.scene.turn;
-    const Scene scene = load_scene(options.scene.input, options.scene.open);
+    const Scene scene = load_scene(options.scene.input, options.scene.reading);
     const Vec3& offset = scene.info.offset;
     FilmRequest film;
     film.first = scene.gaussians;
@@ -261,7 +261,7 @@ void add_turntable(CLI::App& app, CommandContext& context) {
     command->add_flag("--transparent", options->transparent, "Transparent background (PNG frames)");
     bind_fields(*command, options->scene.render, "Picture");
     bind_fields(*command, options->scene.turn, "Turn");
-    bind_fields(*command, options->scene.open, "Reading");
+    bind_fields(*command, options->scene.reading, "Reading");
     command->callback([options, &context] {
         write_film(options->scene.output, film_request(*options), context.job());
         print("{}\n", options->scene.output.string());

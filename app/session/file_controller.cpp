@@ -55,7 +55,7 @@ template <> void FileController::on(const command::OpenSample&) {
     open(assets_path() / "scenes/bear/scene.ply");
 }
 
-void FileController::open(const std::filesystem::path& path, const OpenOptions& options) {
+void FileController::open(const std::filesystem::path& path, const ReadingOptions& options) {
     if (workspace_.jobs->works()) return workspace_.notices.toast("Cancel the running job first.");
     const auto absolute = std::filesystem::absolute(path).lexically_normal();
     if (absolute.extension() == ".png") return open_recipe(absolute);

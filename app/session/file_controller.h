@@ -49,7 +49,7 @@ private:
         std::function<void()> then;
     };
     template <class C> void on(const C& command);
-    void open(const std::filesystem::path& path, const OpenOptions& options = {});
+    void open(const std::filesystem::path& path, const ReadingOptions& options = {});
     void offer_activated(const std::filesystem::path& path);
     void open_recipe(const std::filesystem::path& picture);
     void open_cameras(const std::filesystem::path& path);

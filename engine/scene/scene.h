@@ -42,7 +42,7 @@ struct SceneInfo {
     bool up_known = false;              // true when the file stated it
     bool antialiased = false;           // trained with opacity compensation
     Vec3 offset{};                      // position in the file's world = position here + offset
-    bool activated = false;             // opened as a file of sizes and opacities, see OpenOptions
+    bool activated = false;             // opened as a file of sizes and opacities, see ReadingOptions
     bool looks_activated = false;       // holds what looks like sizes and opacities, not logs and logits
     std::vector<std::string> warnings;  // what was odd but survivable, one sentence each
     std::vector<std::string> lists;     // columns of the file that hold lists, which no file of ours keeps

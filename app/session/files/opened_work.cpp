@@ -32,7 +32,7 @@ void read_project(OpenedWork& opened) {
     opened.notes = opened.data.warnings;
 }
 
-void read_scene(OpenedWork& opened, const OpenOptions& options) {
+void read_scene(OpenedWork& opened, const ReadingOptions& options) {
     auto [scene, views, notes] = load_scene_with_cameras(opened.path, {}, options);
     opened.data.source = scene_source(opened.path, scene.gaussians);
     opened.notes = std::move(notes);
@@ -46,7 +46,7 @@ void read_scene(OpenedWork& opened, const OpenOptions& options) {
 
 }  // namespace
 
-OpenedWork open_work(const std::filesystem::path& path, const OpenOptions& options,
+OpenedWork open_work(const std::filesystem::path& path, const ReadingOptions& options,
                      const JobControl& control) {
     OpenedWork opened;
     opened.path = path;

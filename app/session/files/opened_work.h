@@ -10,7 +10,7 @@
 #include "engine/base/progress.h"
 #include "engine/io/project/autosave.h"
 #include "engine/io/project/project_file.h"
-#include "engine/io/scene/open_options.h"
+#include "engine/io/scene/reading_options.h"
 #include "engine/scene/document.h"
 #include "engine/scene/scene.h"
 
@@ -30,7 +30,7 @@ struct OpenedWork {
 };
 
 /// Reads a scene, a project or the one scene of a folder. Throws Error.
-OpenedWork open_work(const std::filesystem::path& path, const OpenOptions& options,
+OpenedWork open_work(const std::filesystem::path& path, const ReadingOptions& options,
                      const JobControl& control);
 /// Reads the autosave in `file`. Throws Error.
 OpenedWork recover_work(const std::filesystem::path& file, const JobControl& control);

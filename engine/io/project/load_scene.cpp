@@ -27,7 +27,7 @@ Scene load_project_scene(const std::filesystem::path& path) {
 
 }  // namespace
 
-Scene load_scene(const std::filesystem::path& path, const OpenOptions& options) {
+Scene load_scene(const std::filesystem::path& path, const ReadingOptions& options) {
     if (!is_project_file(path)) return load_scene_file(path, options);
     if (options.activated)
         throw Error(ErrorCode::InvalidArgument, "a project remembers how its scene was opened",

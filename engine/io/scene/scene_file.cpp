@@ -215,7 +215,7 @@ Scene parse_scene(std::span<const std::byte> bytes, std::string_view name) {
     throw Error(ErrorCode::Unsupported, "this is no scene format that can be read", readable_hint());
 }
 
-Scene load_scene_file(const std::filesystem::path& path, const OpenOptions& options) {
+Scene load_scene_file(const std::filesystem::path& path, const ReadingOptions& options) {
     Scene scene = with_path(path, [&] {
         std::error_code ignored;
         Scene read = std::filesystem::is_directory(path, ignored) ? load_folder(path) : load_file(path);

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "engine/io/formats/save_options.h"
-#include "engine/io/scene/open_options.h"
+#include "engine/io/scene/reading_options.h"
 #include "engine/scene/scene.h"
 
 namespace gse {
@@ -21,7 +21,7 @@ namespace gse {
 ///
 /// Infinite opacity logits that come from 8-bit 0 or 255 are clamped. Values of PLY files are kept bit for
 /// bit. Coordinates of PLY files far from the origin lose SceneInfo::offset.
-Scene load_scene_file(const std::filesystem::path& path, const OpenOptions& options = {});
+Scene load_scene_file(const std::filesystem::path& path, const ReadingOptions& options = {});
 
 /// Scene files of a folder by name, to ask which one is meant. Empty for a folder that is a scene by itself
 /// (SOG, Inria output). Throws Error when the folder cannot be read.

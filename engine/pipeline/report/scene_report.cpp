@@ -94,7 +94,7 @@ std::string picture_report_text(const Json& json) {
 
 }  // namespace
 
-Json scene_report(const std::filesystem::path& path, const OpenOptions& options) {
+Json scene_report(const std::filesystem::path& path, const ReadingOptions& options) {
     if (path.extension() == ".png") return picture_report(path);
     const Scene scene = load_scene(path, options);
     Json report = report_of(scene, path, scene_cameras(path, "").size());

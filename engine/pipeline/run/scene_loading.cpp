@@ -64,7 +64,7 @@ std::string guess_up(SceneInfo& info, const std::vector<View>& views) {
 }
 
 LoadedScene load_scene_with_cameras(const std::filesystem::path& path, const std::string& cameras,
-                                    const OpenOptions& options) {
+                                    const ReadingOptions& options) {
     LoadedScene loaded{load_scene(path, options), {}, {}};
     SceneCameras found = cameras_of_scene({loaded.scene.gaussians, loaded.scene.info.offset, path}, cameras);
     loaded.views = std::move(found.views);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/io/scene/open_options.h"
+#include "engine/io/scene/reading_options.h"
 #include "engine/scene/scene.h"
 
 namespace gse::pipeline {
@@ -44,6 +44,6 @@ struct LoadedScene {
 
 /// `cameras` as `named` above. Throws Error.
 LoadedScene load_scene_with_cameras(const std::filesystem::path& path, const std::string& cameras = {},
-                                    const OpenOptions& options = {});
+                                    const ReadingOptions& options = {});
 
 }  // namespace gse::pipeline

@@ -12,6 +12,8 @@ namespace {
 
 // From here on a float's step is above a tenth of a millimetre in a world of metres.
 constexpr double LeastOffset = 1000;
+// Beyond it lie no coordinates of this earth, in millimetres neither.
+constexpr double LargestOffset = 1e10;
 constexpr std::size_t MostSamples = 100'000;
 
 /// Median of the finite positions of an axis, of every so many rows in a large scene.
@@ -30,19 +32,19 @@ Vec3 median_of(std::span<const double> positions) {
     return {median_of_axis(positions, 0), median_of_axis(positions, 1), median_of_axis(positions, 2)};
 }
 
-bool is_far(const Vec3& at) {
-    return std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)}) >= LeastOffset;
-}
+double largest_of(const Vec3& at) { return std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)}); }
 
 }  // namespace
 
 Vec3 world_offset(std::span<const double> positions) {
     const Vec3 median = median_of(positions);
-    return is_far(median) ? Vec3{std::round(median.x), std::round(median.y), std::round(median.z)} : Vec3{};
+    const double far = largest_of(median);
+    if (far < LeastOffset || far > LargestOffset) return {};
+    return {std::round(median.x), std::round(median.y), std::round(median.z)};
 }
 
 bool suits_offset(std::span<const double> positions, const Vec3& offset) {
-    return !is_far(median_of(positions) - offset);
+    return largest_of(offset) <= LargestOffset && largest_of(median_of(positions) - offset) < LeastOffset;
 }
 
 GaussianSet moved(const GaussianSet& set, const Vec3& by) {

@@ -129,6 +129,28 @@ DOCTEST_TEST_CASE("an offset is taken off doubles in every encoding, and off not
     DOCTEST_CHECK(has_offset(read(make_ply(far_columns(data, Utm, 1), Rows, {})).info.offset));
 }
 
+DOCTEST_TEST_CASE("a far scene that is written and read again is the same bit for bit") {
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        GaussianData data =
+            random_gaussians(Rows, 0, seed, std::pow(10.0, static_cast<double>(seed % 8) - 4));
+        data.position[6] = 0;
+        auto columns = far_columns(data, Utm + Vec3{0.1234567, 0.5, -0.499999});
+        columns[0].value = [sound = columns[0].value](std::size_t row) {
+            return row == 5 ? 0.0 : sound(row);
+        };
+        const Scene scene = read(make_ply(columns, Rows, {}));
+        const std::string written = written_as("ply", scene);
+        DOCTEST_CHECK(same_bits(read(written).gaussians, scene.gaussians));
+        DOCTEST_CHECK(written_as("ply", read(written)) == written);
+    }
+}
+
+DOCTEST_TEST_CASE("coordinates of no world are read as before") {
+    const GaussianData data = random_gaussians(Rows, 0, 30);
+    for (const double far : {1e12, 1e300})
+        DOCTEST_CHECK_FALSE(has_offset(read(make_ply(far_columns(data, {far, 0, 0}), Rows, {})).info.offset));
+}
+
 DOCTEST_TEST_CASE("positions that are not numbers do not move the offset") {
     const GaussianData data = random_gaussians(Rows, 0, 10);
     auto columns = far_columns(data, Utm);
@@ -292,6 +314,19 @@ DOCTEST_TEST_CASE(
         {"scalar_Classification", "float", [](std::size_t row) { return static_cast<double>(row); }});
     const Scene scene = read(make_ply(columns, Rows, {}));
     DOCTEST_CHECK(names_of(scene.extra) == std::vector<std::string>{"red", "scalar_Classification"});
+}
+
+DOCTEST_TEST_CASE("a label column of numbers that are no label stays, unless a label is written") {
+    const GaussianData data = random_gaussians(Rows, 0, 26);
+    std::vector<Column> columns = columns_of(data);
+    columns.push_back({"label", "uchar", [](std::size_t row) { return static_cast<double>(row % 7); }});
+    const Scene scene = read(make_ply(columns, Rows, {}));
+    DOCTEST_CHECK(column_of(written_as("ply", scene), "label")[13] == 6);
+    SaveOptions options;
+    options.from_label = &scene.labels.labels.at(0);
+    const std::string labelled = written_as("ply", scene, options);
+    DOCTEST_CHECK(column_of(labelled, "label")[13] == 1);
+    DOCTEST_CHECK(read(labelled).extra.empty());
 }
 
 DOCTEST_TEST_CASE("rows that stay keep their columns through edits, new ones get zeros") {

@@ -29,19 +29,22 @@ constexpr std::size_t ReadBytes = std::size_t{1} << 20;       // asked of a file
 constexpr std::size_t LongestHeader = std::size_t{64} << 10;  // of a file that is not read as a whole
 constexpr float SurfelLogScale = -13.8155f;                   // third axis of a 2DGS surfel: 1e-6 units
 
-void add_label(Scene& scene, std::vector<float> bits, std::vector<float> weights, const std::string& name) {
-    if (bits.empty() && weights.empty()) return;
-    if (const std::size_t odd = hold_weights(bits))
+/// Returns true when the numbers of the column "label" are more than those of a label.
+bool add_label(Scene& scene, std::vector<float> bits, std::vector<float> weights, const std::string& name) {
+    if (bits.empty() && weights.empty()) return false;
+    const std::size_t odd_bits = hold_weights(bits);
+    if (odd_bits > 0)
         scene.info.warnings.push_back(
             fmt::format("the column \"label\" has values other than 0 and 1 for {} splats: those above 0.5 "
                         "count as labelled, whatever they are",
-                        odd));
+                        odd_bits));
     if (const std::size_t odd = hold_weights(weights))
         scene.info.warnings.push_back(held_weights_text(odd, "the column \"label_weight\""));
     if (bits.empty()) bits = weights;
     Label label = make_label(name, std::move(bits), 0.5f);
     if (!weights.empty()) label.weight = std::make_shared<const std::vector<float>>(std::move(weights));
     scene.labels.labels.push_back(std::move(label));
+    return odd_bits > 0;
 }
 
 /// The scene that a header describes, without its rows.
@@ -84,6 +87,7 @@ struct RawScene {
     std::vector<double> position;  // in place of data.position where the file has doubles
     std::vector<float> label, label_weight, filter;
     std::vector<std::vector<std::byte>> extra;  // of layout.extra
+    std::vector<std::byte> label_numbers;       // as the file has them
 };
 
 bool has_doubles(const Described& described) {
@@ -131,13 +135,21 @@ std::vector<PlyTarget> targets_of(const Described& described, RawScene& raw) {
         raw.position.reserve(count * 3);
         targets.push_back({.columns = layout.position, .doubles = &raw.position});
     }
+    const auto add_bytes = [&](int column, std::vector<std::byte>& bytes) {
+        const PlyType type = described.type_of(column);
+        bytes.reserve(count * ply_type_size(type));
+        targets.push_back({.columns = {column}, .bytes = &bytes, .type = type});
+    };
+    if (layout.label[0] != Absent) add_bytes(layout.label[0], raw.label_numbers);
     raw.extra.resize(layout.extra.size());
-    for (std::size_t i = 0; i < layout.extra.size(); ++i) {
-        const PlyType type = described.type_of(layout.extra[i]);
-        raw.extra[i].reserve(count * ply_type_size(type));
-        targets.push_back({.columns = {layout.extra[i]}, .bytes = &raw.extra[i], .type = type});
-    }
+    for (std::size_t i = 0; i < layout.extra.size(); ++i) add_bytes(layout.extra[i], raw.extra[i]);
     return targets;
+}
+
+/// A column of the file with the numbers that were read of it.
+ExtraColumn column_of(const Described& described, int column, std::vector<std::byte> numbers) {
+    return {described.vertex->properties[static_cast<std::size_t>(column)].name, described.type_of(column),
+            std::make_shared<const std::vector<std::byte>>(std::move(numbers))};
 }
 
 /// The columns that are kept. Normals of zeros, which most writers put there, are not among them.
@@ -149,8 +161,7 @@ ExtraColumns take_extra(const Described& described, RawScene& raw) {
         const bool normal = name == "nx" || name == "ny" || name == "nz";
         const auto is_zero = [](std::byte byte) { return byte == std::byte{0}; };
         if (normal && std::all_of(raw.extra[i].begin(), raw.extra[i].end(), is_zero)) continue;
-        columns.push_back({name, described.type_of(column),
-                           std::make_shared<const std::vector<std::byte>>(std::move(raw.extra[i]))});
+        columns.push_back(column_of(described, column, std::move(raw.extra[i])));
     }
     return columns;
 }
@@ -193,7 +204,9 @@ Scene fill_scene(Described& described, const PlyRowSource& source, const std::fu
         warnings.push_back(activated_text(activated));
     }
     filled.extra = take_extra(described, raw);
-    add_label(filled, std::move(raw.label), std::move(raw.label_weight), label_name);
+    if (add_label(filled, std::move(raw.label), std::move(raw.label_weight), label_name) &&
+        layout.label[0] != Absent)
+        filled.extra.push_back(column_of(described, layout.label[0], std::move(raw.label_numbers)));
     return filled;
 }
 

@@ -149,8 +149,13 @@ void fuse_filter(GaussianData& data, std::span<const float> filter) {
 NearPositions near_positions(std::span<const double> positions, const std::optional<Vec3>& stated) {
     NearPositions near{stated && suits_offset(positions, *stated) ? *stated : world_offset(positions), {}};
     near.values.resize(positions.size());
-    for (std::size_t i = 0; i < positions.size(); ++i)
-        near.values[i] = static_cast<float>(positions[i] - near.offset[static_cast<int>(i % 3)]);
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        const double offset = near.offset[static_cast<int>(i % 3)];
+        const auto value = static_cast<float>(positions[i] - offset);
+        // The sum as a file holds it, so that writing and reading again changes nothing.
+        near.values[i] =
+            offset == 0 ? value : static_cast<float>((static_cast<double>(value) + offset) - offset);
+    }
     return near;
 }
 

@@ -48,7 +48,8 @@ struct KeptColumns {
     std::size_t bytes = 0;  // of `last`
 };
 
-KeptColumns kept_columns(const Scene& scene) {
+/// Columns named as the label's make room for those.
+KeptColumns kept_columns(const Scene& scene, const LabelColumns& labels) {
     constexpr std::array<std::string_view, 3> normals = {"nx", "ny", "nz"};
     KeptColumns kept;
     for (const ExtraColumn& column : scene.extra) {
@@ -56,6 +57,9 @@ KeptColumns kept_columns(const Scene& scene) {
             throw Error(ErrorCode::InvalidArgument,
                         fmt::format("the column \"{}\" has {} values for {} splats", column.name,
                                     column.size(), scene.gaussians.size()));
+        if ((column.name == "label" && !labels.label.empty()) ||
+            (column.name == "label_weight" && !labels.weight.empty()))
+            continue;
         const auto normal = std::find(normals.begin(), normals.end(), column.name) - normals.begin();
         if (normal < 3) {
             kept.normal[static_cast<std::size_t>(normal)] = &column;
@@ -143,7 +147,7 @@ void put_place(RowBuffer& buffer, const GaussianSpans& set, std::size_t row, con
 std::vector<std::uint32_t> write_gaussian_ply(const Scene& scene, const SaveOptions& options,
                                               const TakePiece& take) {
     const LabelColumns columns = label_columns(scene, options);
-    const KeptColumns kept = kept_columns(scene);
+    const KeptColumns kept = kept_columns(scene, columns);
     const GaussianSpans set = scene.gaussians.spans();
     const std::size_t rest = rest_of_degree(set.sh_degree);
     take(header_text(scene, options, columns, kept));

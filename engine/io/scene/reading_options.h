@@ -3,7 +3,7 @@
 
 namespace gse {
 
-struct OpenOptions {
+struct ReadingOptions {
     static constexpr const char* ActivatedHelp =
         "The PLY file holds sizes and opacities themselves, not their logarithms and logits; info says when "
         "a "
