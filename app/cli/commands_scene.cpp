@@ -20,6 +20,7 @@
 #include "engine/pipeline/report/scene_report.h"
 #include "engine/pipeline/run/scene_tools.h"
 #include "engine/scene/colour_adjustment.h"
+#include "engine/scene/origin/world_offset.h"
 
 namespace gse::app {
 namespace {
@@ -30,6 +31,7 @@ struct SceneOptions {
     std::filesystem::path input, output;
     RenderParameters render;
     TurntableParameters turn;
+    ReadingOptions reading;
     SaveOptions save;
     bool labels = false;
     bool drop = false;
@@ -37,12 +39,12 @@ struct SceneOptions {
 };
 
 /// One broken file of several does not hide the others.
-void print_infos(const std::vector<std::filesystem::path>& paths, bool as_json) {
+void print_infos(const std::vector<std::filesystem::path>& paths, const ReadingOptions& open, bool as_json) {
     std::size_t failed = 0;
     Json list = Json::array();
     for (const auto& path : paths) {
         try {
-            const Json json = scene_report(path);
+            const Json json = scene_report(path, open);
             if (as_json) list.push_back(json);
             else fmt::print("{}", report_text(json));
         } catch (const Error& error) {
@@ -59,6 +61,7 @@ void print_infos(const std::vector<std::filesystem::path>& paths, bool as_json) 
 void add_info(CLI::App& app, CommandContext&) {
     struct InfoOptions {
         std::vector<std::filesystem::path> scenes;
+        ReadingOptions reading;
         bool json = false;
     };
     auto options = std::make_shared<InfoOptions>();
@@ -68,9 +71,10 @@ void add_info(CLI::App& app, CommandContext&) {
     command->add_option("scene", options->scenes, "Scene files or folders, pictures (.png), or models")
         ->required();
     command->add_flag("--json", options->json, "Print JSON; a list for several scenes");
+    bind_fields(*command, options->reading, "Reading");
     command->callback([options] {
-        if (options->scenes.size() > 1) return print_infos(options->scenes, options->json);
-        const Json json = scene_report(options->scenes.front());
+        if (options->scenes.size() > 1) return print_infos(options->scenes, options->reading, options->json);
+        const Json json = scene_report(options->scenes.front(), options->reading);
         if (options->json) print_json(json);
         else fmt::print("{}", report_text(json));
     });
@@ -115,10 +119,12 @@ void add_convert(CLI::App& app, CommandContext&) {
     command->add_flag("--labels", options->labels,
                       fmt::format("Keep label columns ({} only)", labelled_formats()));
     command->add_flag("--drop-unusable", options->drop, "Leave out splats with NaN or illegal infinities");
+    bind_fields(*command, options->reading, "Reading");
     command->callback([options] {
-        Scene scene = load_scene(options->input);
+        Scene scene = load_scene(options->input, options->reading);
         if (options->drop) {
             const std::size_t before = scene.gaussians.size();
+            scene.extra = filtered(scene.extra, usable_rows(scene.gaussians));
             scene.gaussians = drop_unusable(scene.gaussians);
             if (scene.gaussians.size() != before) scene.labels = {};
             log::info("{} unusable splats were dropped", before - scene.gaussians.size());
@@ -138,6 +144,7 @@ void add_adjust(CLI::App& app, CommandContext&) {
     struct AdjustOptions {
         std::filesystem::path input, output;
         ColourAdjustment colours;
+        ReadingOptions reading;
         bool use_label = false;
     };
     auto options = std::make_shared<AdjustOptions>();
@@ -147,8 +154,9 @@ void add_adjust(CLI::App& app, CommandContext&) {
     command->add_flag("--use-label", options->use_label,
                       "Adjust the splats that the scene's own label marks, not all");
     bind_fields(*command, options->colours, "Colours");
+    bind_fields(*command, options->reading, "Reading");
     command->callback([options] {
-        Scene scene = load_scene(options->input);
+        Scene scene = load_scene(options->input, options->reading);
         const auto& labels = scene.labels.labels;
         if (options->use_label && labels.empty())
             throw Error(ErrorCode::InvalidArgument, "the scene has no label",
@@ -199,8 +207,9 @@ void add_render(CLI::App& app, CommandContext&) {
     command->add_flag("--transparent", *transparent,
                       "Transparent where the scene does not cover the picture");
     bind_fields(*command, options->render, "Picture");
+    bind_fields(*command, options->reading, "Reading");
     command->callback([options, transparent] {
-        const Scene scene = load_scene(options->input);
+        const Scene scene = load_scene(options->input, options->reading);
         Painter painter;
         const Camera camera = choose_camera(scene, options->input, options->render);
         auto settings = raster_settings(options->render, scene.info);
@@ -222,12 +231,14 @@ struct FilmOptions {
 FilmRequest film_request(const FilmOptions& options) {
     const auto& render = options.scene.render;
     const auto& turn = options.scene.turn;
-    const Scene scene = load_scene(options.scene.input);
+    const Scene scene = load_scene(options.scene.input, options.scene.reading);
+    const Vec3& offset = scene.info.offset;
     FilmRequest film;
     film.first = scene.gaussians;
     if (!options.before.empty()) {
         film.second = std::make_shared<const GaussianSet>(scene.gaussians);
-        film.first = load_scene(options.before).gaussians;
+        const Scene before = load_scene(options.before);
+        film.first = moved(before.gaussians, before.info.offset - offset);
     }
     film.settings = raster_settings(render, scene.info);
     film.transparent = options.transparent;
@@ -235,8 +246,8 @@ FilmRequest film_request(const FilmOptions& options) {
     film.cameras =
         options.path.empty()
             ? turn_cameras(whole_orbit(scene, render), turn, render.azimuth, render.width, render.height)
-            : path_cameras(load_camera_path(options.path, render.width, render.height), turn.fps,
-                           render.width, render.height);
+            : path_cameras(moved(load_camera_path(options.path, render.width, render.height), -offset),
+                           turn.fps, render.width, render.height);
     return film;
 }
 
@@ -252,6 +263,7 @@ void add_turntable(CLI::App& app, CommandContext& context) {
     command->add_flag("--transparent", options->transparent, "Transparent background (PNG frames)");
     bind_fields(*command, options->scene.render, "Picture");
     bind_fields(*command, options->scene.turn, "Turn");
+    bind_fields(*command, options->scene.reading, "Reading");
     command->callback([options, &context] {
         write_film(options->scene.output, film_request(*options), context.job());
         print("{}\n", options->scene.output.string());

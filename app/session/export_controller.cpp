@@ -21,6 +21,7 @@
 #include "engine/pipeline/report/picture_text.h"
 #include "engine/pipeline/run/scene_tools.h"
 #include "engine/pipeline/run/views.h"
+#include "engine/scene/origin/world_offset.h"
 #include "engine/scene/row_values.h"
 #include "engine/scene/viewpoints.h"
 
@@ -64,6 +65,22 @@ bool ExportController::something_to_export() {
 GaussianSet ExportController::exported(const GaussianSet& set, const Stage& stage) const {
     if (!settings_.visible_only || !view_.hidden().any()) return set;
     return without_hidden(set, view_.hidden_rows(set, stage));
+}
+
+/// Columns of the scene's file for the rows that exported() gives.
+ExtraColumns ExportController::exported_columns(const Stage& stage) const {
+    const auto& state = workspace_.document.state();
+    ExtraColumns columns = current_columns(state);
+    if (columns.empty()) return columns;
+    if (!stage.set.shares_all_with(state.current)) {
+        auto places = stage.new_rows();
+        if (places.size() != state.current.size()) places.assign(state.current.size(), -1);
+        columns = gathered(columns, sources_of(places, stage.set.size()));
+    }
+    if (!settings_.visible_only || !view_.hidden().any()) return columns;
+    auto seen = view_.hidden_rows(stage.set, stage);
+    for (auto& row : seen) row = row == 0 ? 1 : 0;
+    return filtered(columns, seen);
 }
 
 /// Tells that an export writes the shown splats, which may differ from the document's.
@@ -196,6 +213,7 @@ void ExportController::write_scene(const std::filesystem::path& path) {
     const Stage stage = edits_.stage();
     scene->gaussians = exported(stage.set, stage);
     scene->info = workspace_.document.state().info;
+    scene->extra = exported_columns(stage);
     auto label = std::make_shared<Label>();
     if (const NamedLabel* named = workspace_.active_label(); named != nullptr && settings_.with_labels) {
         const bool all = scene->gaussians.shares_all_with(stage.set);
@@ -223,8 +241,9 @@ void ExportController::write_scene(const std::filesystem::path& path) {
 
 template <> void ExportController::on(const command::ExportViewpoints&) {
     if (!workspace_.require_scene()) return;
-    const auto& views = workspace_.document.state().views;
-    if (views.empty()) return workspace_.notices.toast("Add viewpoints first.");
+    const auto& state = workspace_.document.state();
+    if (state.views.empty()) return workspace_.notices.toast("Add viewpoints first.");
+    const auto views = moved(state.views, state.info.offset);
     const auto path = free_place(settings_.viewpoints_path);
     start("Viewpoints", path, [path, views](const JobControl&) { save_cameras(path, views); }, {});
 }
@@ -257,9 +276,10 @@ template <> void ExportController::on(const command::ExportCameraPath& one) {
         film->fps = settings_.fps;
         film->cameras = path_cameras(keys_, settings_.fps, settings_.width, settings_.height);
     }
+    const Vec3 offset = workspace_.document.state().info.offset;
     auto work = [=, keys = keys_](const JobControl& control) {
         if (as_film) write_film(path, *film, control);
-        else save_camera_path(path, keys);
+        else save_camera_path(path, moved(keys, offset));
     };
     start("Camera path", path, work, as_film ? said_of_export() : std::string(), as_film);
 }

@@ -43,6 +43,7 @@ private:
     std::filesystem::path free_place(const std::string& name) const;
     bool something_to_export();
     GaussianSet exported(const GaussianSet& set, const Stage& stage) const;
+    ExtraColumns exported_columns(const Stage& stage) const;
     std::string said_of_export() const;
     OrbitParameters orbit(const GaussianSet& shown) const;
     raster::Settings render_settings() const;

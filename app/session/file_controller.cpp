@@ -44,20 +44,23 @@ void FileController::list_recent() {
 
 // Opening
 
-template <> void FileController::on(const command::Open& one) { open(one.path); }
+template <> void FileController::on(const command::Open& one) {
+    open(one.path, {.activated = one.activated});
+}
 
 template <> void FileController::on(const command::OpenSample&) {
     open(assets_path() / "scenes/bear/scene.ply");
 }
 
-void FileController::open(const std::filesystem::path& path) {
+void FileController::open(const std::filesystem::path& path, const ReadingOptions& options) {
     if (workspace_.jobs->works()) return workspace_.notices.toast("Cancel the running job first.");
     const auto absolute = std::filesystem::absolute(path).lexically_normal();
     if (names_png(absolute)) return open_recipe(absolute);
     if (only_cameras(absolute)) return open_cameras(absolute);
     start_reading(
         fmt::format("Open {}", absolute.filename().string()),
-        [absolute](const JobControl& control) { return open_work(absolute, control); }, false);
+        [absolute, options](const JobControl& control) { return open_work(absolute, options, control); },
+        false);
 }
 
 template <> void FileController::on(const command::Recover& one) {
@@ -139,6 +142,18 @@ void FileController::take(OpenedWork opened) {
         log::info("{}", note);
         workspace_.notices.toast(note);
     }
+    if (!opened.project && state.info.looks_activated) offer_activated(opened.path);
+}
+
+/// Sizes and opacities in place of their logarithms and logits are drawn as a fog.
+void FileController::offer_activated(const std::filesystem::path& path) {
+    workspace_.notices.toast(
+        "The sizes or opacities of this scene look activated (not stored as logarithms and logits): it is "
+        "drawn as a fog.",
+        false, "Read them as they are", [this, path, revision = workspace_.document.revision()] {
+            if (workspace_.document.revision() == revision) return open(path, {.activated = true});
+            workspace_.notices.toast("The scene was changed since: open it again first.");
+        });
 }
 
 void FileController::open_recipe(const std::filesystem::path& picture) {
@@ -166,8 +181,9 @@ void FileController::open_cameras(const std::filesystem::path& path) {
         return workspace_.notices.toast("These are cameras: open their scene first, then drop them on it.",
                                         true);
     auto found = std::make_shared<SceneCameras>();
-    auto work = [found, path, set = workspace_.document.state().current, scene = workspace_.scene_path](
-                    const JobControl&) { *found = cameras_of_scene(set, scene, path.string()); };
+    const auto& state = workspace_.document.state();
+    auto work = [found, path, scene = PlacedScene{state.current, state.info.offset, workspace_.scene_path}](
+                    const JobControl&) { *found = cameras_of_scene(scene, path.string()); };
     auto done = [this, found, opened = workspace_.opened,
                  name = path.filename().string()](const Error* error) {
         if (error != nullptr) return workspace_.notices.report(*error);

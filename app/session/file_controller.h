@@ -50,7 +50,8 @@ private:
         std::function<void()> then;
     };
     template <class C> void on(const C& command);
-    void open(const std::filesystem::path& path);
+    void open(const std::filesystem::path& path, const ReadingOptions& options = {});
+    void offer_activated(const std::filesystem::path& path);
     void open_recipe(const std::filesystem::path& picture);
     void open_cameras(const std::filesystem::path& path);
     void take_cameras(const std::string& name, std::vector<View> views,

@@ -75,6 +75,7 @@ JobParameters ModelController::job_of(const std::string& path, const std::vector
 EditRecipe ModelController::recipe(const edit::EditRequest& request, const std::string& looked_from) const {
     EditRecipe recipe = defaults_;
     recipe.job.scene = workspace_.scene_path;
+    recipe.job.activated = !workspace_.document.empty() && workspace_.document.state().info.activated;
     recipe.job.model = path_;
     recipe.job.lora = loras_;
     recipe.job.segmenter = segmenter_path(ui::SegmenterRole::Clicks);

@@ -17,6 +17,7 @@
 #include "engine/base/process.h"
 #include "engine/base/process_memory.h"
 #include "engine/io/image/image_file.h"
+#include "engine/io/scene/reading_options.h"
 #include "engine/vulkan/device.h"
 #include "engine/vulkan/error.h"
 #include "engine/window/window.h"
@@ -32,6 +33,7 @@ struct OpenOptions {
     std::string preview = "auto", device;
     int width = 0, height = 0;  // 0 = as large as fits the screen
     float scale = 0;
+    ReadingOptions reading;
     bool sample = false, validate = false;
 };
 
@@ -74,7 +76,7 @@ public:
         if (const char* map = std::getenv("GSE_UI_MAP")) widget_map_ = map;
         if (app_.model().ui_scale != window_.ui_scale()) window_.set_ui_scale(app_.model().ui_scale);
         if (options.sample) app_.run(ui::command::OpenSample{});
-        else if (!options.path.empty()) app_.run(ui::command::Open{options.path});
+        else if (!options.path.empty()) app_.run(ui::command::Open{options.path, options.reading.activated});
     }
 
     /// Runs until the artist leaves.
@@ -287,6 +289,7 @@ void add_window_command(CLI::App& app, CommandContext&) {
     auto* command =
         app.add_subcommand("open", "Open the editor's window (what happens without a command, too)");
     command->add_option("file", options->path, "Scene, folder, project or a picture with a recipe in it");
+    bind_fields(*command, options->reading, "Reading");
     command->add_flag("--sample", options->sample, "Open the bundled scene");
     command->add_option("--preview", options->preview, "Who paints the viewport: auto, vulkan or native")
         ->capture_default_str();

@@ -287,11 +287,20 @@ DocumentState initial_state(const Scene& scene, std::vector<View> views) {
     DocumentState state;
     state.base = state.current = scene.gaussians;
     state.info = scene.info;
+    state.extra = scene.extra;
     state.row_ids = base_ids(state.base.size());
     for (const Label& label : scene.labels.labels) state.labels.push_back(named(label, state.base.size()));
     state.active_label = state.labels.empty() ? -1 : 0;
     state.views = std::move(views);
     return state;
+}
+
+ExtraColumns current_columns(const DocumentState& state) {
+    if (state.extra.empty() || state.current.shares_all_with(state.base)) return state.extra;
+    std::vector<std::int64_t> sources;
+    for (const RowId id : *state.row_ids)
+        sources.push_back(id < state.base.size() ? static_cast<std::int64_t>(id) : -1);
+    return gathered(state.extra, sources);
 }
 
 std::uint64_t next_edit_id(const DocumentState& state) {

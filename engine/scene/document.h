@@ -63,7 +63,8 @@ struct EditNode {
 
 /// One state of the document. A copy copies pointers.
 struct DocumentState {
-    GaussianSet base;  // as loaded
+    GaussianSet base;    // as loaded
+    ExtraColumns extra;  // [base.size()] each
     SceneInfo info;
     std::vector<EditNode> stack;                        // oldest first
     GaussianSet current;                                // base with the enabled edits applied
@@ -86,6 +87,7 @@ template <class F> void visit_arrays(const DocumentState& state, F&& visit) {
             visit(static_cast<const void*>(array.get()), array->size() * sizeof(array->front()));
     };
     visit_vector(state.row_ids);
+    for (const ExtraColumn& column : state.extra) visit_vector(column.values);
     for (const EditNode& edit : state.stack) {
         if (edit.delta != nullptr) visit(static_cast<const void*>(edit.delta.get()), edit.delta->byte_size());
         if (edit.thumbnail != nullptr)
@@ -107,6 +109,9 @@ template <class F> void visit_arrays(const DocumentState& state, F&& visit) {
 
 /// State of a freshly loaded scene. Labels that the file carried become named labels.
 DocumentState initial_state(const Scene& scene, std::vector<View> views);
+
+/// Columns of the scene's file for the rows of `current`. Rows that edits added get zeros.
+ExtraColumns current_columns(const DocumentState& state);
 
 /// Identity for an edit to be pushed on this stack.
 std::uint64_t next_edit_id(const DocumentState& state);

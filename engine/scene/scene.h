@@ -8,6 +8,7 @@
 
 #include "engine/math/camera.h"
 #include "engine/scene/gaussian_set.h"
+#include "engine/scene/origin/extra_columns.h"
 
 namespace gse {
 
@@ -40,13 +41,18 @@ struct SceneInfo {
     Vec3 up{0, -1, 0};                  // world up; 3DGS scenes follow COLMAP, -y up
     bool up_known = false;              // true when the file stated it
     bool antialiased = false;           // trained with opacity compensation
+    Vec3 offset{};                      // position in the file's world = position here + offset
+    bool activated = false;             // opened as a file of sizes and opacities, see ReadingOptions
+    bool looks_activated = false;       // holds what looks like sizes and opacities, not logs and logits
     std::vector<std::string> warnings;  // what was odd but survivable, one sentence each
+    std::vector<std::string> lists;     // columns of the file that hold lists, which no file of ours keeps
 };
 
 struct Scene {
     GaussianSet gaussians;
     SceneInfo info;
     LabelSet labels;
+    ExtraColumns extra = {};  // [gaussians.size()] each
 };
 
 /// Counts of possible defects of a scene. Printed by `info`, shown by the window.

@@ -3,6 +3,7 @@ import gzip
 import json
 import os
 import re
+import struct
 import subprocess
 import unittest
 
@@ -76,6 +77,49 @@ class Commands(ProgramTest):
         self.assertEqual(process.returncode, 0, process.stderr)
         body = lambda path: path.read_bytes().split(b"end_header\n", 1)[1]
         self.assertEqual(body(self.folder / "copy.ply"), body(source))
+
+    def test_large_coordinates_and_further_columns_stay(self):
+        kinds = ["double x", "double y", "double z", "float f_dc_0", "float f_dc_1", "float f_dc_2",
+                 "float opacity", "float scale_0", "float scale_1", "float scale_2", "float rot_0",
+                 "float rot_1", "float rot_2", "float rot_3", "int object_id"]
+        header = "ply\nformat binary_little_endian 1.0\nelement vertex 216\n"
+        header += "".join(f"property {kind}\n" for kind in kinds) + "end_header\n"
+        rows = [(x + 455123, y + 5410987, z + 321, *rest, 7000000 + number)
+                for number, (x, y, z, _, _, _, *rest) in enumerate(grid_rows())]
+        body = b"".join(struct.pack("<3d11fi", *row) for row in rows)
+        source = self.write("far.ply", header.encode() + body)
+        found = self.info(source)
+        self.assertEqual(found["columns"], ["object_id"])
+        self.assertEqual(found["offset"], [455123, 5410987, 321])
+        self.assertAlmostEqual(found["bounds"]["high"][1], 5410987.5, places=6)
+        process = run("convert", source, self.folder / "again.ply")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        text, body = (self.folder / "again.ply").read_bytes().split(b"end_header\n", 1)
+        self.assertIn(b"property int object_id", text)
+        for row, (x, y, z, *_, number) in zip(rows, struct.iter_unpack("<3d14fi", body)):
+            self.assertEqual(number, row[-1])
+            for one, other in zip(row[:3], (x, y, z)):
+                self.assertAlmostEqual(one, other, places=6)
+        process = run("convert", source, self.folder / "again.spz")
+        self.assertIn("object_id", process.stderr)
+        self.assertIn("less the offset (455123, 5410987, 321)", process.stderr)
+
+    def test_activated_values_are_noticed_and_read_as_such_on_request(self):
+        rows = [(*row[:9], 0.95, 0.05, 0.05, 0.05 + number * 1e-4, *row[13:])
+                for number, row in enumerate(grid_rows())]
+        source = self.write("fog.ply", ply_bytes(rows))
+        self.assertTrue(self.info(source)["looks_activated"])
+        process = run("info", source, "--activated", "--json")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertNotIn("looks_activated", json.loads(process.stdout))
+        self.assertAlmostEqual(json.loads(process.stdout)["mean_opacity"], 0.95, places=4)
+        process = run("convert", source, self.folder / "raw.ply", "--activated")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertNotIn("looks_activated", self.info(self.folder / "raw.ply"))
+        process = run("render", source, self.folder / "a.png", "--activated", "--width", 32, "--height", 32)
+        self.assertEqual(process.returncode, 0, process.stderr)
+        process = run("convert", self.folder / "raw.ply", self.folder / "b.ply", "--activated")
+        self.assert_one_sentence(process, "not activated")
 
     def test_adjusted_colours_are_of_all_splats_or_of_the_label(self):
         source = self.write("scene.ply", ply_bytes(grid_rows()))

@@ -35,6 +35,7 @@ namespace command {
 /// Opens a scene, a folder, a project, cameras of the open scene, or a PNG with a recipe.
 struct Open {
     std::filesystem::path path;
+    bool activated = false;  // see ReadingOptions
 };
 struct OpenSample {};
 /// Saves the project; an empty path = its last file. Calls `then` (may be empty) once it is saved.

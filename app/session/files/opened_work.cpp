@@ -1,6 +1,8 @@
 // Scenes, projects and autosaves that the file thread reads, on their way to the window.
 #include "app/session/files/opened_work.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -8,6 +10,7 @@
 #include "engine/base/error.h"
 #include "engine/io/scene/scene_file.h"
 #include "engine/pipeline/run/scene_loading.h"
+#include "engine/scene/origin/world_offset.h"
 
 namespace gse::app {
 namespace {
@@ -29,16 +32,22 @@ void read_project(OpenedWork& opened) {
     opened.notes = opened.data.warnings;
 }
 
-void read_scene(OpenedWork& opened) {
-    auto [scene, views, notes] = load_scene_with_cameras(opened.path);
+void read_scene(OpenedWork& opened, const ReadingOptions& options) {
+    auto [scene, views, notes] = load_scene_with_cameras(opened.path, {}, options);
     opened.data.source = scene_source(opened.path, scene.gaussians);
     opened.notes = std::move(notes);
+    if (has_offset(scene.info.offset))
+        opened.notes.push_back(
+            fmt::format("The coordinates are large: {} is taken off them here, and added again in PLY files "
+                        "and viewpoints.",
+                        offset_text(scene.info.offset)));
     opened.state = initial_state(scene, std::move(views));
 }
 
 }  // namespace
 
-OpenedWork open_work(const std::filesystem::path& path, const JobControl& control) {
+OpenedWork open_work(const std::filesystem::path& path, const ReadingOptions& options,
+                     const JobControl& control) {
     OpenedWork opened;
     opened.path = path;
     control.report("reading", 0, 0);
@@ -51,7 +60,7 @@ OpenedWork open_work(const std::filesystem::path& path, const JobControl& contro
         if (std::filesystem::is_directory(path)) opened.choices = files_of_folder(path);
         if (opened.choices.size() > 1) return opened;
         if (opened.choices.size() == 1) opened.path = opened.choices.front();
-        read_scene(opened);
+        read_scene(opened, options);
     }
     control.report("looking", 0, 0);
     opened.statistics = compute_statistics(opened.state.current);

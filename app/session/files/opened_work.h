@@ -10,6 +10,7 @@
 #include "engine/base/progress.h"
 #include "engine/io/project/autosave.h"
 #include "engine/io/project/project_file.h"
+#include "engine/io/scene/reading_options.h"
 #include "engine/scene/document.h"
 #include "engine/scene/scene.h"
 
@@ -29,7 +30,8 @@ struct OpenedWork {
 };
 
 /// Reads a scene, a project or the one scene of a folder. Throws Error.
-OpenedWork open_work(const std::filesystem::path& path, const JobControl& control);
+OpenedWork open_work(const std::filesystem::path& path, const ReadingOptions& options,
+                     const JobControl& control);
 /// Reads the autosave in `file`. Throws Error.
 OpenedWork recover_work(const std::filesystem::path& file, const JobControl& control);
 

@@ -38,6 +38,7 @@ Scene Workspace::scene() const {
     Scene scene;
     scene.gaussians = document.state().current;
     scene.info = document.state().info;
+    scene.extra = current_columns(document.state());
     return scene;
 }
 

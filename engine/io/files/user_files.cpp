@@ -74,7 +74,7 @@ void save_recent(std::vector<std::string> names) {
     save_user_json(recent_path(), {{"files", names}});
 }
 
-std::string absolute_name(const std::filesystem::path& path) {
+std::string recent_name(const std::filesystem::path& path) {
     std::error_code failure;
     return std::filesystem::absolute(path, failure).lexically_normal().string();
 }
@@ -121,7 +121,7 @@ std::vector<std::filesystem::path> load_recent() {
 
 void add_recent(const std::filesystem::path& path, std::size_t most) {
     std::vector<std::string> names = recent_names();
-    const std::string name = absolute_name(path);
+    const std::string name = recent_name(path);
     std::erase(names, name);
     names.insert(names.begin(), name);
     if (names.size() > most) names.resize(most);
@@ -130,7 +130,7 @@ void add_recent(const std::filesystem::path& path, std::size_t most) {
 
 void forget_recent(const std::filesystem::path& path) {
     std::vector<std::string> names = recent_names();
-    std::erase(names, absolute_name(path));
+    std::erase(names, recent_name(path));
     save_recent(names);
 }
 

@@ -84,6 +84,8 @@ struct SceneFormat {
     bool keeps_labels = false;        // has room for label columns
     bool keeps_antialiasing = false;  // says whether the scene was trained with antialiasing
     bool keeps_up = false;            // says which way is up
+    bool keeps_columns = false;       // has room for the columns of Scene::extra
+    bool keeps_offset = false;        // holds the coordinates of the world, or says what is off them
     std::vector<FormatOption> options = {};
 
     static constexpr std::size_t StartBytes = 16384;

@@ -27,8 +27,12 @@ Scene load_project_scene(const std::filesystem::path& path) {
 
 }  // namespace
 
-Scene load_scene(const std::filesystem::path& path) {
-    return is_project_file(path) ? load_project_scene(path) : load_scene_file(path);
+Scene load_scene(const std::filesystem::path& path, const ReadingOptions& options) {
+    if (!is_project_file(path)) return load_scene_file(path, options);
+    if (options.activated)
+        throw Error(ErrorCode::InvalidArgument, "a project remembers how its scene was opened",
+                    "leave out --activated", path);
+    return load_project_scene(path);
 }
 
 }  // namespace gse

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -13,6 +14,7 @@
 #include "engine/base/json.h"
 #include "engine/base/path_text.h"
 #include "engine/io/cameras/camera_checks.h"
+#include "engine/scene/origin/world_offset.h"
 #include "engine/scene/strength.h"
 
 namespace gse::io {
@@ -23,9 +25,9 @@ using Json = nlohmann::json;
 constexpr std::size_t MostEntries = 100000;  // edits, labels, views
 constexpr std::uint64_t MostEdits = std::uint64_t{1} << 32;
 constexpr std::array<const char*, 3> BaseNames{"file", "kept", "whole"};
-constexpr std::array<const char*, 13> KnownFields{"format", "version", "program",      "scene", "info",
-                                                  "stack",  "labels",  "active_label", "views", "ui",
-                                                  "jobs",   "rows",    "thumbnail"};
+constexpr std::array<const char*, 14> KnownFields{"format", "version", "program",      "scene",  "info",
+                                                  "stack",  "labels",  "active_label", "views",  "ui",
+                                                  "jobs",   "rows",    "thumbnail",    "columns"};
 
 constexpr const char* DamagedProject = "the file is damaged; open an older copy or an autosave";
 
@@ -158,11 +160,14 @@ View read_view(const Json& json, const std::string& name) {
 }
 
 Json to_json(const SceneInfo& info) {
-    return {{"format", info.format},
-            {"up", to_json(info.up)},
-            {"up_known", info.up_known},
-            {"antialiased", info.antialiased},
-            {"warnings", info.warnings}};
+    Json json{{"format", info.format},
+              {"up", to_json(info.up)},
+              {"up_known", info.up_known},
+              {"antialiased", info.antialiased},
+              {"warnings", info.warnings}};
+    if (has_offset(info.offset)) json["offset"] = to_json(info.offset);
+    if (info.activated) json["activated"] = true;
+    return json;
 }
 
 SceneInfo read_info(const Json& json) {
@@ -174,12 +179,36 @@ SceneInfo read_info(const Json& json) {
     info.up = {up[0], up[1], up[2]};
     fields.flag("up_known", info.up_known);
     fields.flag("antialiased", info.antialiased);
+    std::array<double, 3> offset{};
+    fields.numbers("offset", offset);
+    info.offset = {offset[0], offset[1], offset[2]};
+    fields.flag("activated", info.activated);
     if (const Json* warnings = fields.list("warnings"))
         for (const Json& warning : *warnings) {
             if (!warning.is_string()) throw_field("info.warnings", "holds something that is not text");
             info.warnings.push_back(warning.get<std::string>());
         }
     return info;
+}
+
+Json to_json(const ProjectDescription::ExtraEntry& entry) {
+    return {{"name", entry.name}, {"type", static_cast<int>(entry.type)}, {"member", entry.member}};
+}
+
+ProjectDescription::ExtraEntry read_extra(const Json& json, const std::string& name) {
+    const Fields fields(json, name);
+    ProjectDescription::ExtraEntry entry;
+    fields.text("name", entry.name);
+    const bool one_word =
+        !entry.name.empty() && std::none_of(entry.name.begin(), entry.name.end(), [](char c) {
+            return std::isspace(static_cast<unsigned char>(c)) != 0;
+        });
+    if (!one_word) throw_field(fields.full("name"), "is no name of a column");
+    std::uint64_t type = 0;
+    fields.whole("type", type, 0, static_cast<std::uint64_t>(ColumnType::Float64));
+    entry.type = static_cast<ColumnType>(type);
+    fields.text("member", entry.member);
+    return entry;
 }
 
 Json to_json(const ProjectDescription::Edit& edit) {
@@ -362,6 +391,7 @@ std::string write_description(const ProjectDescription& description) {
         json[key] = Json::array();
         for (const auto& entry : entries) json[key].push_back(to_json(entry));
     };
+    if (!description.extra.empty()) list("columns", description.extra);
     list("stack", description.stack);
     list("labels", description.labels);
     list("views", description.views);
@@ -385,6 +415,9 @@ ProjectDescription parse_description(std::string_view text) {
     read_scene(*scene, description);
     if (const Json* info = fields.object("info")) description.info = read_info(*info);
     fields.whole("rows", description.current_rows, 0, ~std::uint32_t{0});
+    if (const Json* columns = fields.list("columns"))
+        for (std::size_t i = 0; i < columns->size(); ++i)
+            description.extra.push_back(read_extra((*columns)[i], fmt::format("columns[{}]", i)));
     read_work(fields, description);
     fields.text("thumbnail", description.thumbnail);
     if (const Json* ui = fields.object("ui")) description.ui = *ui;

@@ -32,6 +32,12 @@ struct ProjectDescription {
     std::string base_member;  // for Kept and Whole
     std::uint64_t file_rows = 0, base_rows = 0, current_rows = 0;
     SceneInfo info;
+    struct ExtraEntry {
+        std::string name;
+        ColumnType type = ColumnType::Float32;
+        std::string member;
+    };
+    std::vector<ExtraEntry> extra;  // columns of a whole base, [base_rows] each
     // Work; arrays are null here and named beside
     struct Edit {
         EditNode node;

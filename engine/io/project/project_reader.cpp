@@ -17,6 +17,7 @@
 #include "engine/io/project/project_description.h"
 #include "engine/io/project/project_file.h"
 #include "engine/io/project/project_parts.h"
+#include "engine/scene/origin/world_offset.h"
 
 namespace gse {
 namespace {
@@ -58,21 +59,33 @@ public:
         }
     }
 
-    /// Base of the document. `file` is the content of the scene's file, empty when it is not needed.
-    GaussianSet base(const GaussianSet& file) {
+    /// Base of the document with its columns. `file` is the content of the scene's file, empty when it is not
+    /// needed.
+    Scene base(const Scene& file) {
+        Scene scene;
+        scene.info = description_.info;
+        scene.gaussians = file.gaussians;
+        scene.extra = file.extra;
+        if (description_.base == io::BaseKind::Whole) {
+            scene.gaussians = GaussianSet(
+                io::decode_set(member(description_.base_member, io::AnySize, "the scene"), "the scene"));
+            scene.extra = {};
+        } else if (description_.base == io::BaseKind::Kept) {
+            const std::size_t rows = file.gaussians.size();
+            if (rows != description_.file_rows) throw_other_scene(rows);
+            const auto bits =
+                io::decode_bits(member(description_.base_member, (rows + 7) / 8, "the list of kept splats"),
+                                rows, "the list of kept splats");
+            scene.gaussians = file.gaussians.filtered(bits);
+            scene.extra = filtered(file.extra, bits);
+        }
+        check_base(scene.gaussians);
         if (description_.base == io::BaseKind::Whole)
-            return checked_base(GaussianSet(
-                io::decode_set(member(description_.base_member, io::AnySize, "the scene"), "the scene")));
-        if (description_.base == io::BaseKind::File) return checked_base(file);
-        if (file.size() != description_.file_rows) throw_other_scene(file.size());
-        const auto bits = member(description_.base_member, (file.size() + 7) / 8, "the list of kept splats");
-        return checked_base(file.filtered(io::decode_bits(bits, file.size(), "the list of kept splats")));
+            for (const auto& entry : description_.extra) scene.extra.push_back(read_column(entry));
+        return scene;
     }
 
-    DocumentState state(const GaussianSet& base) {
-        Scene scene;
-        scene.gaussians = base;
-        scene.info = description_.info;
+    DocumentState state(const Scene& scene) {
         std::vector<EditNode> stack;
         for (const auto& edit : description_.stack) stack.push_back(read_edit(edit));
         DocumentState state = with_stack(initial_state(scene, description_.views), std::move(stack));
@@ -118,11 +131,18 @@ private:
                     "put the scene back that the project was made with, beside the project");
     }
 
-    GaussianSet checked_base(GaussianSet base) const {
-        if (base.size() == description_.base_rows) return base;
+    void check_base(const GaussianSet& base) const {
+        if (base.size() == description_.base_rows) return;
         if (description_.base == io::BaseKind::File) throw_other_scene(base.size());
         throw Error(ErrorCode::Malformed, "the scene inside the project has the wrong number of splats",
                     Damaged);
+    }
+
+    ExtraColumn read_column(const io::ProjectDescription::ExtraEntry& entry) {
+        const std::string what = fmt::format("the column \"{}\"", entry.name);
+        const std::uint64_t bytes = description_.base_rows * column_type_size(entry.type);
+        return {entry.name, entry.type,
+                std::make_shared<const std::vector<std::byte>>(member(entry.member, bytes, what))};
     }
 
     EditNode read_edit(const io::ProjectDescription::Edit& edit) {
@@ -260,12 +280,16 @@ void warn_of_differences(const io::ProjectDescription& description, const FoundS
                                   description.scene_path));
 }
 
-ProjectData finish(OpenProject& open, ProjectData project) {
+/// `file` is the scene of the project's file, empty when the project holds its scene itself.
+ProjectData finish(OpenProject& open, ProjectData project, Scene file) {
     const io::ProjectDescription& description = open.description();
-    const GaussianSet base = open.base(project.source.loaded);
+    // Its edits are of a scene with the offset that it had then.
+    file.gaussians = moved(file.gaussians, file.info.offset - description.info.offset);
+    project.source.loaded = file.gaussians;
+    const Scene base = open.base(file);
     project.state = open.state(base);
     for (const std::string& warning : open.warnings()) warn(project, warning);
-    if (project.source.loaded.empty()) project.source.loaded = base;
+    if (project.source.loaded.empty()) project.source.loaded = base.gaussians;
     project.thumbnail = open.picture(description.thumbnail);
     project.ui = description.ui;
     project.jobs = description.jobs;
@@ -295,26 +319,29 @@ ProjectData load_project(const std::filesystem::path& path) {
         OpenProject open(file.bytes());
         const io::ProjectDescription& description = open.description();
         ProjectData project;
+        Scene scene;
         if (description.base != io::BaseKind::Whole) {
             const FoundScene found = require_scene(description, path);
-            project.source = {found.path, found.fingerprint.bytes, found.fingerprint.value,
-                              load_scene(found.path).gaussians};
+            const bool is_file = !is_project_file(found.path);  // another project knows it itself
+            scene = load_scene(found.path, {.activated = description.info.activated && is_file});
+            project.source = {found.path, found.fingerprint.bytes, found.fingerprint.value, {}};
             warn_of_differences(description, found, project);
         }
-        return finish(open, std::move(project));
+        return finish(open, std::move(project), std::move(scene));
     });
 }
 
 ProjectData parse_project(std::span<const std::byte> bytes, const GaussianSet* base) {
     OpenProject open(bytes);
-    ProjectData project;
+    Scene file;
     if (open.description().base != io::BaseKind::Whole) {
         if (base == nullptr)
             throw Error(ErrorCode::NotFound, "the project refers to a scene that was not given",
                         "open it from its file");
-        project.source.loaded = *base;
+        file.gaussians = *base;
+        file.info.offset = open.description().info.offset;
     }
-    return finish(open, std::move(project));
+    return finish(open, {}, std::move(file));
 }
 
 ProjectSummary read_project_summary(const std::filesystem::path& path) {

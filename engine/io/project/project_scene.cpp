@@ -12,6 +12,7 @@ Scene scene_of_project(const ProjectData& project) {
     Scene scene;
     scene.gaussians = state.current;
     scene.info = state.info;
+    scene.extra = current_columns(state);
     const auto none = std::make_shared<const std::vector<float>>(state.current.size(), 0.0f);
     auto& labels = scene.labels.labels;
     for (const NamedLabel& label : state.labels)

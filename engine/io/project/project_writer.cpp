@@ -36,6 +36,7 @@ public:
         description_.active_label = state.active_label;
         description_.current_rows = state.current.size();
         add_scene(state.base, project.source);
+        if (description_.base == io::BaseKind::Whole) add_extra(state.extra);
         for (const EditNode& edit : state.stack) add_edit(edit);
         for (std::size_t i = 0; i < state.labels.size(); ++i) add_label(state.labels[i], i);
         if (project.thumbnail != nullptr)
@@ -141,6 +142,19 @@ private:
         description_.base = io::BaseKind::Whole;
         description_.base_member = add("base.set", key_of("whole", base), base.buffers().position,
                                        [&] { return io::pack_member(io::encode_set(base), 4); });
+    }
+
+    void add_extra(const ExtraColumns& columns) {
+        for (std::size_t i = 0; i < columns.size(); ++i) {
+            const auto& values = columns[i].values;
+            const auto element = static_cast<std::uint32_t>(column_type_size(columns[i].type) == 4 ? 4 : 1);
+            const auto pack = [&] {
+                return io::pack_member({reinterpret_cast<const char*>(values->data()), values->size()},
+                                       element);
+            };
+            description_.extra.push_back({columns[i].name, columns[i].type,
+                                          add(fmt::format("columns/{}", i), "column", values, pack)});
+        }
     }
 
     bool still_there(const SceneSource& source) const {

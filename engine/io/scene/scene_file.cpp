@@ -11,10 +11,12 @@
 #include "engine/base/file.h"
 #include "engine/base/log.h"
 #include "engine/base/pending_file.h"
+#include "engine/io/bytes/activation.h"
 #include "engine/io/formats/scene_formats.h"
 #include "engine/io/scene/format_loss.h"
 #include "engine/io/scene/scene_content.h"
 #include "engine/io/scene/wrapped_scene.h"
+#include "engine/scene/origin/world_offset.h"
 
 namespace gse {
 namespace {
@@ -141,6 +143,32 @@ void warn_of_losses(const std::string& name, const Scene& scene, const GaussianS
                      in_words(extensions_that_keep(&io::SceneFormat::keeps_up), "and"));
 }
 
+/// Scene of a file that was said to hold activated values.
+Scene raw_scene(Scene scene) {
+    const io::SceneFormat* format = find_format(scene.info.format);
+    if (format != nullptr && format->exact) return io::with_raw_values(std::move(scene));
+    throw Error(
+        ErrorCode::InvalidArgument,
+        fmt::format("a .{} file always holds activated values, and they are read as such", scene.info.format),
+        "leave out --activated");
+}
+
+/// Warns of what the scene has beside its splats and the format has no room for.
+void warn_of_omissions(const std::string& name, const Scene& scene, const io::SceneFormat& format) {
+    if (!scene.extra.empty() && !format.keeps_columns)
+        log::warning(
+            "{} has no room for the columns {} of the scene's file, which are left out; {} keep them", name,
+            in_words(names_of(scene.extra), "and"),
+            in_words(extensions_that_keep(&io::SceneFormat::keeps_columns), "and"));
+    if (!scene.info.lists.empty())
+        log::warning("{} has no room for the list columns {} of the scene's file, which are left out", name,
+                     in_words(scene.info.lists, "and"));
+    if (has_offset(scene.info.offset) && !format.keeps_offset)
+        log::warning("{} holds the positions less the offset {} of the scene; {} keep it", name,
+                     offset_text(scene.info.offset),
+                     in_words(extensions_that_keep(&io::SceneFormat::keeps_offset), "and"));
+}
+
 /// Writes an exact format, never held as a whole. Touches nothing when the scene cannot be written.
 void write_in_pieces(const std::filesystem::path& path, const io::SceneFormat& format, const Scene& scene,
                      const SaveOptions& options) {
@@ -158,10 +186,11 @@ Scene parse_scene(std::span<const std::byte> bytes, std::string_view name) {
     return io::read_content(bytes, name, {.file_bytes = bytes.size()});
 }
 
-Scene load_scene_file(const std::filesystem::path& path) {
+Scene load_scene_file(const std::filesystem::path& path, const ReadingOptions& options) {
     Scene scene = with_path(path, [&] {
         std::error_code ignored;
-        return std::filesystem::is_directory(path, ignored) ? load_folder(path) : load_file(path);
+        Scene read = std::filesystem::is_directory(path, ignored) ? load_folder(path) : load_file(path);
+        return options.activated ? raw_scene(std::move(read)) : std::move(read);
     });
     for (const std::string& warning : scene.info.warnings)
         log::warning("{}: {}", path.filename().string(), warning);
@@ -197,6 +226,7 @@ SavedRows save_scene(const std::filesystem::path& path, const Scene& scene, cons
         throw Error(ErrorCode::InvalidArgument, fmt::format("only a plain {} file has room for labels", able),
                     "save as " + able, path);
     }
+    warn_of_omissions(path.filename().string(), scene, format);
     if (format.exact) {
         with_path(path, [&] { write_in_pieces(path, format, scene, options); });
         return {scene.gaussians.size(), 0};

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/io/formats/save_options.h"
+#include "engine/io/scene/reading_options.h"
 #include "engine/scene/scene.h"
 
 namespace gse {
@@ -20,8 +21,8 @@ namespace gse {
 /// read. load_scene() reads projects too. Throws Error with one clear sentence.
 ///
 /// Infinite opacity logits that come from 8-bit 0 or 255 are clamped. Values of PLY files are kept bit for
-/// bit.
-Scene load_scene_file(const std::filesystem::path& path);
+/// bit. Coordinates of PLY files far from the origin lose SceneInfo::offset.
+Scene load_scene_file(const std::filesystem::path& path, const ReadingOptions& options = {});
 
 /// Scene files of a folder by name, to ask which one is meant; packed ones (.ply.gz) where there are no
 /// others. Empty for a folder that is a scene by itself

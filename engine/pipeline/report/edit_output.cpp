@@ -211,6 +211,7 @@ nlohmann::ordered_json locate_report(EditJob& job) {
 void write_edit(const fs::path& folder, EditJob& job) {
     Scene edited = job.scene();
     edited.gaussians = job.result().set;
+    edited.extra = gathered(edited.extra, sources_of(job.result().base_to_new, edited.gaussians.size()));
     edited.labels = {};
     save_scene(folder / "scene.ply", edited, {.format = "ply"});
     write_file(folder / "recipe.json", json_text(recipe_to_json(job.recipe()), 2) + "\n");

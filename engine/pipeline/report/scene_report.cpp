@@ -10,10 +10,12 @@
 #include "engine/base/print.h"
 #include "engine/base/safetensors_header.h"
 #include "engine/io/cameras/cameras.h"
+#include "engine/io/formats/scene_formats.h"
 #include "engine/io/image/image_file.h"
 #include "engine/io/project/load_scene.h"
 #include "engine/io/project/project_file.h"
 #include "engine/pipeline/models/model_catalogue.h"
+#include "engine/scene/origin/world_offset.h"
 
 namespace gse::pipeline {
 namespace {
@@ -48,9 +50,13 @@ Json report_of(const Scene& scene, const std::filesystem::path& path, const Came
     json["up_known"] = scene.info.up_known;
     json["antialiased"] = scene.info.antialiased;
     json["mean_opacity"] = statistics.mean_opacity;
-    json["bounds"] = {{"low", list_of(statistics.bounds_low)}, {"high", list_of(statistics.bounds_high)}};
-    json["robust_bounds"] = {{"low", list_of(statistics.robust_low)},
-                             {"high", list_of(statistics.robust_high)}};
+    const Vec3& offset = scene.info.offset;
+    const auto bounds = [&](const Vec3& low, const Vec3& high) {
+        return Json{{"low", list_of(low + offset)}, {"high", list_of(high + offset)}};
+    };
+    json["bounds"] = bounds(statistics.bounds_low, statistics.bounds_high);
+    json["robust_bounds"] = bounds(statistics.robust_low, statistics.robust_high);
+    if (has_offset(offset)) json["offset"] = list_of(offset);
     json["lint"] = {{"nan", statistics.nan_rows},
                     {"infinite", statistics.infinite_rows},
                     {"giant", statistics.giant_rows},
@@ -58,6 +64,8 @@ Json report_of(const Scene& scene, const std::filesystem::path& path, const Came
                     {"zero_quaternion", statistics.zero_quaternion_rows}};
     json["labels"] = Json::array();
     for (const auto& label : scene.labels.labels) json["labels"].push_back(label.name);
+    if (!scene.extra.empty()) json["columns"] = names_of(scene.extra);
+    if (scene.info.looks_activated) json["looks_activated"] = true;
     json["warnings"] = scene.info.warnings;
     for (const std::string& note : cameras.notes) json["warnings"].push_back(note);
     return json;
@@ -136,10 +144,10 @@ std::string model_report_text(const Json& json) {
 
 }  // namespace
 
-Json scene_report(const std::filesystem::path& path) {
+Json scene_report(const std::filesystem::path& path, const ReadingOptions& options) {
     if (is_model(path)) return model_report(path);
     if (names_png(path)) return picture_report(path);
-    const Scene scene = load_scene(path);
+    const Scene scene = load_scene(path, options);
     Json report = report_of(scene, path, cameras_of(path));
     if (is_project_file(path))
         for (const auto& edit : read_project_summary(path).stack)
@@ -164,12 +172,16 @@ std::string report_text(const Json& json) {
     line("  bounds        {} to {}\n", json["bounds"]["low"].dump(), json["bounds"]["high"].dump());
     line("  robust bounds {} to {}\n", json["robust_bounds"]["low"].dump(),
          json["robust_bounds"]["high"].dump());
+    if (json.contains("offset"))
+        line("  offset        {} taken off here, added in files\n", json["offset"].dump());
     line("  up            {}{}\n", json["up"].dump(), json["up_known"].get<bool>() ? "" : " (assumed)");
     line("  lint          {} NaN, {} infinite, {} giant, {} invisible, {} zero quaternions\n", number("nan"),
          number("infinite"), number("giant"), number("invisible"), number("zero_quaternion"));
     if (json.contains("edits"))
         for (const auto& edit : json["edits"]) line("  edit          {}\n", edit.get<std::string>());
     for (const auto& label : json["labels"]) line("  label         {}\n", label.get<std::string>());
+    if (json.contains("columns"))
+        line("  columns       {}\n", in_words(json["columns"].get<std::vector<std::string>>(), "and"));
     for (const auto& warning : json["warnings"]) line("  warning       {}\n", warning.get<std::string>());
     return text;
 }

@@ -10,6 +10,7 @@
 
 #include "engine/base/fields.h"
 #include "engine/edit/request/request.h"
+#include "engine/io/scene/reading_options.h"
 #include "engine/neural/api/attention_parameters.h"
 #include "engine/neural/api/dreambooth_parameters.h"
 #include "engine/neural/api/sds_parameters.h"
@@ -19,6 +20,7 @@ namespace gse::pipeline {
 /// Files and machine of a run. With the request and the guidance's settings this is the whole recipe.
 struct JobParameters {
     std::string scene;
+    bool activated = false;
     std::string cameras;
     std::string model;
     std::vector<std::string> lora;
@@ -39,6 +41,7 @@ struct JobParameters {
 
     template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         f("scene", self.scene, "Scene file or folder.");
+        f("activated", self.activated, ReadingOptions::ActivatedHelp);
         f("cameras", self.cameras,
           "COLMAP folder, transforms.json or cameras.json; found beside the scene when empty, \"none\" for "
           "an orbit.");

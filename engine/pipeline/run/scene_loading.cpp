@@ -9,6 +9,7 @@
 #include "engine/base/error.h"
 #include "engine/io/cameras/cameras.h"
 #include "engine/io/project/load_scene.h"
+#include "engine/scene/origin/world_offset.h"
 
 namespace gse::pipeline {
 namespace {
@@ -27,27 +28,34 @@ std::optional<Vec3> up_of_cameras(const std::vector<View>& views) {
 
 }  // namespace
 
-SceneCameras cameras_of_scene(const GaussianSet& set, const std::filesystem::path& scene_path,
-                              const std::string& named) {
+SceneCameras cameras_of_scene(const PlacedScene& scene, const std::string& named) {
     SceneCameras cameras;
     if (named == "none") return cameras;
     try {
         CameraList list;
-        if (!named.empty()) list = read_cameras(named, scene_path);
-        else if (const auto found = find_cameras(scene_path)) list = read_cameras(*found, scene_path);
+        if (!named.empty()) list = read_cameras(named, scene.path);
+        else if (const auto found = find_cameras(scene.path)) list = read_cameras(*found, scene.path);
         cameras.views = std::move(list.views);
         for (const std::string& note : list.notes) cameras.notes.push_back(fmt::format("Cameras: {}.", note));
     } catch (const Error& error) {
         if (!named.empty()) throw;
         cameras.notes.push_back(std::string("The cameras beside the scene cannot be used: ") + error.what());
     }
-    if (cameras.views.empty() || visible_share(cameras.views, set.position()) >= LeastVisibleShare)
+    cameras.views = views_of_scene(std::move(cameras.views), scene.set, scene.offset);
+    if (cameras.views.empty() || visible_share(cameras.views, scene.set.position()) >= LeastVisibleShare)
         return cameras;
     cameras.views.clear();
     cameras.notes.push_back(named.empty()
                                 ? "The cameras found beside the scene look elsewhere; they are left out."
                                 : "The cameras look elsewhere than at this scene; they are left out.");
     return cameras;
+}
+
+std::vector<View> views_of_scene(std::vector<View> views, const GaussianSet& set, const Vec3& offset) {
+    if (views.empty() || !has_offset(offset)) return views;
+    std::vector<View> nearer = moved(views, -offset);
+    const bool gains = visible_share(nearer, set.position()) >= visible_share(views, set.position());
+    return gains ? nearer : views;
 }
 
 std::string guess_up(SceneInfo& info, const std::vector<View>& views) {
@@ -57,9 +65,10 @@ std::string guess_up(SceneInfo& info, const std::vector<View>& views) {
     return fmt::format("The file does not say which way is up: guessed from {} cameras.", views.size());
 }
 
-LoadedScene load_scene_with_cameras(const std::filesystem::path& path, const std::string& cameras) {
-    LoadedScene loaded{load_scene(path), {}, {}};
-    SceneCameras found = cameras_of_scene(loaded.scene.gaussians, path, cameras);
+LoadedScene load_scene_with_cameras(const std::filesystem::path& path, const std::string& cameras,
+                                    const ReadingOptions& options) {
+    LoadedScene loaded{load_scene(path, options), {}, {}};
+    SceneCameras found = cameras_of_scene({loaded.scene.gaussians, loaded.scene.info.offset, path}, cameras);
     loaded.views = std::move(found.views);
     loaded.notes = std::move(found.notes);
     if (auto note = guess_up(loaded.scene.info, loaded.views); !note.empty())

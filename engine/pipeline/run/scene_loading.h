@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/io/scene/reading_options.h"
 #include "engine/scene/scene.h"
 
 namespace gse::pipeline {
@@ -15,10 +16,20 @@ struct SceneCameras {
     std::vector<std::string> notes;
 };
 
+/// The scene whose cameras are looked for.
+struct PlacedScene {
+    GaussianSet set;
+    Vec3 offset{};  // of its file's world, see SceneInfo
+    std::filesystem::path path;
+};
+
 /// The cameras named, or those found beside the scene; none for "none". Those that look elsewhere are left
 /// out. Throws Error where named ones cannot be read; of those found a note says so.
-SceneCameras cameras_of_scene(const GaussianSet& set, const std::filesystem::path& scene_path,
-                              const std::string& named = {});
+SceneCameras cameras_of_scene(const PlacedScene& scene, const std::string& named = {});
+
+/// Views of a file's world, less the offset of the scene. Views that see more of it as they are stay: they
+/// were made before the scene was brought to its place in the world.
+std::vector<View> views_of_scene(std::vector<View> views, const GaussianSet& set, const Vec3& offset);
 
 /// Takes up from the cameras where the file does not state it. Returns the sentence that says so; empty =
 /// nothing was guessed.
@@ -32,6 +43,7 @@ struct LoadedScene {
 };
 
 /// `cameras` as `named` above. Throws Error.
-LoadedScene load_scene_with_cameras(const std::filesystem::path& path, const std::string& cameras = {});
+LoadedScene load_scene_with_cameras(const std::filesystem::path& path, const std::string& cameras = {},
+                                    const ReadingOptions& options = {});
 
 }  // namespace gse::pipeline

@@ -13,7 +13,9 @@
 #include "engine/io/image/image_file.h"
 #include "engine/io/project/load_scene.h"
 #include "engine/io/project/project_file.h"
+#include "engine/pipeline/run/scene_loading.h"
 #include "engine/scene/framing.h"
+#include "engine/scene/origin/world_offset.h"
 
 namespace gse::pipeline {
 
@@ -108,7 +110,10 @@ OrbitParameters whole_orbit(const Scene& scene, const RenderParameters& paramete
 
 std::vector<View> scene_cameras(const std::filesystem::path& scene_path, const std::string& cameras) {
     if (!cameras.empty()) return load_cameras(cameras, scene_path);
-    if (is_project_file(scene_path)) return read_project_summary(scene_path).views;
+    if (is_project_file(scene_path)) {
+        const ProjectSummary project = read_project_summary(scene_path);
+        return moved(project.views, project.info.offset);
+    }
     const auto found = find_cameras(scene_path);
     return found ? load_cameras(*found, scene_path) : std::vector<View>{};
 }
@@ -116,7 +121,11 @@ std::vector<View> scene_cameras(const std::filesystem::path& scene_path, const s
 std::vector<View> viewpoints_of(const std::filesystem::path& path, int orbit) {
     const bool project = is_project_file(path);
     const RenderParameters usual;
-    if (orbit > 0) return orbit_views(scene_orbit(load_scene(path), usual), orbit, usual.width, usual.height);
+    if (orbit > 0) {
+        const Scene scene = load_scene(path);
+        return moved(orbit_views(scene_orbit(scene, usual), orbit, usual.width, usual.height),
+                     scene.info.offset);
+    }
     std::vector<View> views = only_cameras(path) ? load_cameras(path) : scene_cameras(path, "");
     if (views.empty())
         throw Error(ErrorCode::NotFound,
@@ -128,7 +137,8 @@ std::vector<View> viewpoints_of(const std::filesystem::path& path, int orbit) {
 Camera choose_camera(const Scene& scene, const std::filesystem::path& scene_path,
                      const RenderParameters& parameters) {
     if (parameters.view >= 0 || !parameters.cameras.empty()) {
-        const auto views = scene_cameras(scene_path, parameters.cameras);
+        const auto views =
+            views_of_scene(scene_cameras(scene_path, parameters.cameras), scene.gaussians, scene.info.offset);
         const auto index = static_cast<std::size_t>(std::max(parameters.view, 0));
         if (index >= views.size())
             throw Error(ErrorCode::InvalidArgument,

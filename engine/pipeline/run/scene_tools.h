@@ -69,12 +69,13 @@ OrbitParameters scene_orbit(const Scene& scene, const RenderParameters& paramete
 /// cut off their top or bottom from some side. Then the orbit is around the middle and far enough to see all.
 OrbitParameters whole_orbit(const Scene& scene, const RenderParameters& parameters);
 
-/// Cameras named, or those found beside the scene; none when there are none.
+/// Cameras named, or those found beside the scene, in the world of the scene's file; none when there are
+/// none.
 std::vector<View> scene_cameras(const std::filesystem::path& scene_path, const std::string& cameras);
 
 /// Viewpoints to write elsewhere: those of a project, a camera file or folder, or those beside a scene. With
-/// `orbit` > 0, so many around the scene of the project or file instead. Throws Error (NotFound) when there
-/// are none.
+/// `orbit` > 0, so many around the scene of the project or file instead. They are views of the file's world.
+/// Throws Error (NotFound) when there are none.
 std::vector<View> viewpoints_of(const std::filesystem::path& path, int orbit = 0);
 
 /// Camera of `render`: the one named, or one of whole_orbit().

@@ -2,6 +2,8 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
+#include <algorithm>
+
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/json.h"
@@ -11,6 +13,8 @@
 #include "engine/laboratory/synth/synth.h"
 #include "engine/pipeline/report/scene_report.h"
 #include "engine/pipeline/run/scene_loading.h"
+#include "engine/pipeline/run/scene_tools.h"
+#include "engine/scene/origin/world_offset.h"
 #include "tests/test_paths.h"
 
 namespace scene_loading_test {
@@ -105,6 +109,39 @@ DOCTEST_TEST_CASE("cameras that look elsewhere are left out, with a word, and sa
     DOCTEST_REQUIRE(loaded.notes.size() == 1);
     DOCTEST_CHECK(loaded.notes[0].find("elsewhere") != std::string::npos);
     DOCTEST_CHECK(loaded.scene.info.up.y < -0.99);
+}
+
+DOCTEST_TEST_CASE("cameras of a world far from the origin follow its scene, those made near it stay") {
+    const ScratchFolder scratch;
+    const Vec3 utm{455123, 5410987, 321};
+    constexpr double rounding = 1e-6;  // of doubles of that size, and of numbers in the file
+    Scene scene = synth::generate({}).scene;
+    scene.info.offset = utm;
+    const auto path = scratch.path() / "scene.ply";
+    save_scene(path, scene);
+    const auto near = around(path, {0, -1, 0});
+    const auto far_off = [&](const std::vector<View>& views) {
+        double worst = 0;
+        for (std::size_t i = 0; i < views.size(); ++i)
+            worst = std::max(worst, length(views[i].camera.centre() - near[i].camera.centre()));
+        return worst;
+    };
+    for (const bool in_world : {true, false}) {
+        save_cameras_json(scratch.path() / "cameras.json", in_world ? moved(near, utm) : near);
+        const auto loaded = pipeline::load_scene_with_cameras(path);
+        DOCTEST_REQUIRE(loaded.views.size() == near.size());
+        DOCTEST_CHECK(loaded.scene.info.offset == utm);
+        DOCTEST_CHECK(far_off(loaded.views) < rounding);
+    }
+    save_cameras_json(scratch.path() / "cameras.json", moved(near, utm));
+    pipeline::RenderParameters picture;
+    picture.view = 2;
+    const Camera chosen = pipeline::choose_camera(load_scene(path), path, picture);
+    DOCTEST_CHECK(length(chosen.centre() - near[2].camera.centre()) < rounding);
+    const auto orbit = pipeline::viewpoints_of(path, 6);  // to be written: of the world
+    DOCTEST_CHECK(length(orbit[0].camera.centre() - utm) < 100);
+    DOCTEST_CHECK(length(pipeline::viewpoints_of(path)[1].camera.centre() - near[1].camera.centre() - utm) <
+                  rounding);
 }
 
 }  // namespace scene_loading_test

@@ -227,6 +227,7 @@ Scene parse_compressed_ply(Bytes bytes) {
     Scene scene;
     scene.info.format = "compressed.ply";
     read_comments(header, scene.info);
+    scene.info.offset = read_offset(header, LessOffsetComment).value_or(Vec3{});
     scene.gaussians = GaussianSet(std::move(data));
     show_as_srgb(scene, header, bytes);
     return scene;
@@ -250,7 +251,8 @@ SceneFormat compressed_ply_format() {
             .read = parse_compressed_ply,
             .write = write_in_new_order,
             .keeps_antialiasing = true,
-            .keeps_up = true};
+            .keeps_up = true,
+            .keeps_offset = true};
 }
 
 }  // namespace gse::io

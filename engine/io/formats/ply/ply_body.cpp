@@ -3,11 +3,15 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <charconv>
 #include <cstdlib>
+#include <cstring>
 #include <string>
+#include <type_traits>
+#include <utility>
 
 #include "engine/base/check.h"
 #include "engine/base/error.h"
@@ -28,14 +32,17 @@ template <class U> U load_ordered(const std::byte* source, bool big_endian) {
 
 bool is_space(char letter) { return letter == ' ' || (letter >= '\t' && letter <= '\r'); }
 
-/// Float of a decimal text. Values beyond its range become infinite or zero as in C.
-float parse_float(std::string_view token) {
+/// Float or double of a decimal text. Values beyond its range become infinite or zero as in C.
+template <class T> T parse_number(std::string_view token) {
     std::string_view digits = token;
     if (digits.size() > 1 && digits.front() == '+') digits.remove_prefix(1);
-    float value = 0;
+    T value = 0;
     const auto [end, failure] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (failure == std::errc::result_out_of_range && end == digits.data() + digits.size())
-        return std::strtof(std::string(digits).c_str(), nullptr);
+    if (failure == std::errc::result_out_of_range && end == digits.data() + digits.size()) {
+        const std::string text(digits);
+        if constexpr (std::is_same_v<T, float>) return std::strtof(text.c_str(), nullptr);
+        else return std::strtod(text.c_str(), nullptr);
+    }
     if (failure != std::errc{} || end != digits.data() + digits.size())
         throw Error(ErrorCode::Malformed, fmt::format("the PLY body holds \"{}\" where a number belongs",
                                                       std::string(token.substr(0, 24))));
@@ -44,23 +51,48 @@ float parse_float(std::string_view token) {
 
 }  // namespace
 
-float load_ply_scalar(const std::byte* source, PlyType type, bool big_endian) {
+namespace {
+
+/// The scalar as `To`. Whole numbers are converted from their own type.
+template <class To> To load_as(const std::byte* source, PlyType type, bool big) {
     switch (type) {
-        case PlyType::Int8: return static_cast<float>(load_scalar<std::int8_t>(source));
-        case PlyType::Uint8: return static_cast<float>(load_scalar<std::uint8_t>(source));
+        case PlyType::Int8: return static_cast<To>(load_scalar<std::int8_t>(source));
+        case PlyType::Uint8: return static_cast<To>(load_scalar<std::uint8_t>(source));
         case PlyType::Int16:
-            return static_cast<float>(
-                static_cast<std::int16_t>(load_ordered<std::uint16_t>(source, big_endian)));
-        case PlyType::Uint16: return static_cast<float>(load_ordered<std::uint16_t>(source, big_endian));
+            return static_cast<To>(static_cast<std::int16_t>(load_ordered<std::uint16_t>(source, big)));
+        case PlyType::Uint16: return static_cast<To>(load_ordered<std::uint16_t>(source, big));
         case PlyType::Int32:
-            return static_cast<float>(
-                static_cast<std::int32_t>(load_ordered<std::uint32_t>(source, big_endian)));
-        case PlyType::Uint32: return static_cast<float>(load_ordered<std::uint32_t>(source, big_endian));
-        case PlyType::Float32: return std::bit_cast<float>(load_ordered<std::uint32_t>(source, big_endian));
+            return static_cast<To>(static_cast<std::int32_t>(load_ordered<std::uint32_t>(source, big)));
+        case PlyType::Uint32: return static_cast<To>(load_ordered<std::uint32_t>(source, big));
+        case PlyType::Float32:
+            return static_cast<To>(std::bit_cast<float>(load_ordered<std::uint32_t>(source, big)));
         case PlyType::Float64:
-            return static_cast<float>(std::bit_cast<double>(load_ordered<std::uint64_t>(source, big_endian)));
+            return static_cast<To>(std::bit_cast<double>(load_ordered<std::uint64_t>(source, big)));
     }
     return 0;
+}
+
+}  // namespace
+
+float load_ply_scalar(const std::byte* source, PlyType type, bool big_endian) {
+    return load_as<float>(source, type, big_endian);
+}
+
+double load_ply_double(const std::byte* source, PlyType type, bool big_endian) {
+    return load_as<double>(source, type, big_endian);
+}
+
+PlyRowShape row_shape(const PlyHeader& header, const PlyElement& element) {
+    PlyRowShape shape;
+    const bool ascii = header.encoding == PlyEncoding::Ascii;
+    for (const PlyProperty& property : element.properties) {
+        const bool wide = ascii && property.type != PlyType::Float32;
+        shape.types.push_back(wide ? PlyType::Float64 : property.type);
+        shape.offsets.push_back(shape.stride);
+        if (!property.is_list) shape.stride += ply_type_size(shape.types.back());
+    }
+    shape.big_endian = header.encoding == PlyEncoding::BigEndian && !element.has_list();
+    return shape;
 }
 
 PlyBody::PlyBody(std::span<const std::byte> bytes, const PlyHeader& header)
@@ -74,6 +106,7 @@ void PlyBody::seek(const PlyElement& element) {
         skip(elements[next_element_++]);
     }
     ++next_element_;
+    element_offset_ = offset_;
     // A text value takes at least one digit and, but for the last, one blank.
     const bool ascii = header_->encoding == PlyEncoding::Ascii;
     const std::uint64_t least = ascii ? 2 * element.properties.size() : element.least_row_bytes();
@@ -93,26 +126,43 @@ void PlyBody::skip(const PlyElement& element) {
         offset_ += static_cast<std::size_t>(element.count) * element.row_bytes();
         return;
     }
-    for (std::uint64_t row = 0; row < element.count; ++row) read_row(element, {});
+    for (std::uint64_t row = 0; row < element.count; ++row) skip_row(element);
 }
 
-void PlyBody::read_row(const PlyElement& element, std::span<float> values) {
+void PlyBody::skip_list(const PlyProperty& property) {
+    const std::uint64_t size = read_list_size(property.count_type);
+    if (header_->encoding == PlyEncoding::Ascii) {
+        for (std::uint64_t item = 0; item < size; ++item) next_token();
+        return;
+    }
+    const std::uint64_t bytes = saturating_product(size, ply_type_size(property.type));
+    if (bytes > remaining()) throw_truncated();
+    offset_ += static_cast<std::size_t>(bytes);
+}
+
+void PlyBody::skip_row(const PlyElement& element) {
+    for (const PlyProperty& property : element.properties)
+        if (property.is_list) skip_list(property);
+        else read_scalar(property.type);
+}
+
+void PlyBody::read_row(const PlyElement& element, const PlyRowShape& shape, std::byte* row) {
     for (std::size_t i = 0; i < element.properties.size(); ++i) {
         const PlyProperty& property = element.properties[i];
-        float value = 0;
-        if (!property.is_list) {
-            value = read_scalar(property.type);
+        std::byte* target = row + shape.offsets[i];
+        if (property.is_list) {
+            skip_list(property);
+        } else if (header_->encoding == PlyEncoding::Ascii) {
+            const std::string_view token = next_token();
+            const auto put = [&](auto value) { std::memcpy(target, &value, sizeof value); };
+            if (property.type == PlyType::Float32) put(parse_number<float>(token));
+            else put(parse_number<double>(token));
         } else {
-            const std::uint64_t size = read_list_size(property.count_type);
-            if (header_->encoding == PlyEncoding::Ascii) {
-                for (std::uint64_t item = 0; item < size; ++item) next_token();
-            } else {
-                const std::uint64_t bytes = saturating_product(size, ply_type_size(property.type));
-                if (bytes > remaining()) throw_truncated();
-                offset_ += static_cast<std::size_t>(bytes);
-            }
+            const auto scalar = take_scalar(property.type);
+            if (header_->encoding == PlyEncoding::BigEndian)
+                std::reverse_copy(scalar.begin(), scalar.end(), target);
+            else std::copy(scalar.begin(), scalar.end(), target);
         }
-        if (!values.empty()) values[i] = value;
     }
 }
 
@@ -132,19 +182,44 @@ bool PlyBody::has_rest() const {
     return false;
 }
 
-float PlyBody::read_scalar(PlyType type) {
-    if (header_->encoding == PlyEncoding::Ascii) return parse_float(next_token());
+std::size_t PlyBody::words_left() const {
+    std::size_t words = 0;
+    bool inside = false;
+    for (std::size_t i = offset_; i < bytes_.size(); ++i) {
+        const bool blank = is_space(static_cast<char>(bytes_[i]));
+        words += !blank && !inside ? 1 : 0;
+        inside = !blank;
+    }
+    return words;
+}
+
+std::size_t PlyBody::lines_of_element() const {
+    std::size_t lines = 0;
+    bool filled = false;
+    for (std::size_t i = element_offset_; i < bytes_.size(); ++i) {
+        const char letter = static_cast<char>(bytes_[i]);
+        if (letter == '\n' || letter == '\r') filled = false;
+        else if (!is_space(letter) && !std::exchange(filled, true)) ++lines;
+    }
+    return lines;
+}
+
+std::span<const std::byte> PlyBody::take_scalar(PlyType type) {
     const std::size_t size = ply_type_size(type);
     if (size > remaining()) throw_truncated();
-    const std::byte* source = bytes_.data() + offset_;
+    const auto scalar = bytes_.subspan(offset_, size);
     offset_ += size;
-    return load_ply_scalar(source, type, header_->encoding == PlyEncoding::BigEndian);
+    return scalar;
+}
+
+double PlyBody::read_scalar(PlyType type) {
+    if (header_->encoding == PlyEncoding::Ascii) return parse_number<double>(next_token());
+    return load_ply_double(take_scalar(type).data(), type, header_->encoding == PlyEncoding::BigEndian);
 }
 
 std::uint64_t PlyBody::read_list_size(PlyType type) {
-    // Exact up to 2^24; longer lists are rounded and fail the size check.
-    const float size = read_scalar(type);
-    if (!(size >= 0) || size > 4294967295.0f * 2)
+    const double size = read_scalar(type);
+    if (!(size >= 0) || size > 4294967295.0 * 2)
         throw Error(ErrorCode::Malformed, "the PLY body holds a list with a negative or absurd length");
     return static_cast<std::uint64_t>(size);
 }

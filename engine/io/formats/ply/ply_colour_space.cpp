@@ -67,9 +67,12 @@ std::optional<Stated> space_of_element(const PlyHeader& header, Bytes file) {
     try {
         PlyBody body(file, header);
         body.seek(*element);
-        std::vector<float> values(element->properties.size());
-        body.read_row(*element, values);
-        return Stated{values[column] == 0 ? ColourSpace::Srgb : ColourSpace::Linear, {}};
+        const PlyRowShape shape = row_shape(header, *element);
+        std::vector<std::byte> row(shape.stride);
+        body.read_row(*element, shape, row.data());
+        const double value =
+            load_ply_double(row.data() + shape.offsets[column], shape.types[column], shape.big_endian);
+        return Stated{value == 0 ? ColourSpace::Srgb : ColourSpace::Linear, {}};
     } catch (const Error&) {  // the splats lie in front of it and are whole
         return std::nullopt;
     }

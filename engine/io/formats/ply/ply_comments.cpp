@@ -9,6 +9,8 @@
 #include <optional>
 #include <string_view>
 
+#include "engine/scene/origin/world_offset.h"
+
 namespace gse::io {
 namespace {
 
@@ -20,10 +22,22 @@ std::string lower(std::string_view text) {
 
 /// Text after `key`, without blanks around it, when the comment begins with `key` in any case.
 std::optional<std::string> comment_value(const std::string& comment, std::string_view key) {
-    if (lower(comment).substr(0, key.size()) != key) return std::nullopt;
+    if (lower(comment).substr(0, key.size()) != lower(key)) return std::nullopt;
     std::string value = comment.substr(key.size());
     value.erase(0, value.find_first_not_of(" \t:"));
     return value;
+}
+
+std::optional<Vec3> three_numbers(const std::string& text) {
+    Vec3 numbers;
+    const char* cursor = text.c_str();
+    for (int i = 0; i < 3; ++i) {
+        char* end = nullptr;
+        numbers[i] = std::strtod(cursor, &end);
+        if (end == cursor || !std::isfinite(numbers[i])) return std::nullopt;
+        cursor = end;
+    }
+    return numbers;
 }
 
 /// Up axis of a comment. Brush writes "Vertical axis" and means the negative axis by a bare letter.
@@ -36,16 +50,9 @@ std::optional<Vec3> vertical_axis(const std::string& comment) {
     if (axis == "x") return Vec3{sign, 0, 0};
     if (axis == "y") return Vec3{0, sign, 0};
     if (axis == "z") return Vec3{0, 0, sign};
-    Vec3 up;
-    const char* cursor = axis.c_str();
-    for (int i = 0; i < 3; ++i) {
-        char* end = nullptr;
-        up[i] = std::strtod(cursor, &end);
-        if (end == cursor || !std::isfinite(up[i])) return std::nullopt;
-        cursor = end;
-    }
-    if (length(up) == 0) return std::nullopt;
-    return normalized(up);
+    const auto up = three_numbers(axis);
+    if (!up || length(*up) == 0) return std::nullopt;
+    return normalized(*up);
 }
 
 }  // namespace
@@ -74,6 +81,19 @@ std::string comment_lines(const SceneInfo& info) {
     if (info.up_known)
         text += fmt::format("comment Vertical axis: {} {} {}\n", info.up.x, info.up.y, info.up.z);
     return text;
+}
+
+std::optional<Vec3> read_offset(const PlyHeader& header, std::string_view beginning) {
+    std::optional<Vec3> offset;
+    for (const std::string& comment : header.comments)
+        if (const auto value = comment_value(comment, beginning))
+            if (const auto numbers = three_numbers(*value)) offset = numbers;
+    return offset;
+}
+
+std::string offset_line(std::string_view beginning, const Vec3& offset) {
+    if (!has_offset(offset)) return {};
+    return fmt::format("comment {}: {} {} {}\n", beginning, offset.x, offset.y, offset.z);
 }
 
 }  // namespace gse::io

@@ -37,6 +37,8 @@ constexpr std::array<TypeName, 16> TypeNames = {{{"char", PlyType::Int8},
                                                  {"float32", PlyType::Float32},
                                                  {"float64", PlyType::Float64}}};
 
+constexpr std::string_view ByteOrderMark = "\xEF\xBB\xBF";
+
 bool is_blank(char letter) { return letter == ' ' || letter == '\t' || letter == '\r'; }
 
 std::string printable(std::string_view text) {
@@ -48,7 +50,8 @@ std::string printable(std::string_view text) {
 
 class HeaderParser {
 public:
-    explicit HeaderParser(std::string_view text) : text_(text) {}
+    explicit HeaderParser(std::string_view text)
+        : text_(text), offset_(text.size() - without_mark(text).size()) {}
 
     PlyHeader parse() {
         detect_line_end();
@@ -168,9 +171,10 @@ private:
 
 }  // namespace
 
-std::size_t ply_type_size(PlyType type) {
-    constexpr std::array<std::size_t, 8> sizes = {1, 1, 2, 2, 4, 4, 4, 8};
-    return sizes[static_cast<std::size_t>(type)];
+const char* ply_type_name(PlyType type) { return TypeNames[static_cast<std::size_t>(type)].name.data(); }
+
+std::string_view without_mark(std::string_view text) {
+    return text.starts_with(ByteOrderMark) ? text.substr(ByteOrderMark.size()) : text;
 }
 
 bool PlyElement::has_list() const {
@@ -203,7 +207,7 @@ const PlyElement* PlyHeader::find(std::string_view element) const {
 }
 
 bool is_ply(std::span<const std::byte> bytes) {
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const std::string_view text = without_mark({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     return text.size() > 3 && text.substr(0, 3) == "ply" && (is_blank(text[3]) || text[3] == '\n');
 }
 

@@ -8,11 +8,15 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/scene/origin/extra_columns.h"
+
 namespace gse::io {
 
-enum class PlyType : std::uint8_t { Int8, Uint8, Int16, Uint16, Int32, Uint32, Float32, Float64 };
+using PlyType = ColumnType;
 
-std::size_t ply_type_size(PlyType type);
+inline std::size_t ply_type_size(PlyType type) { return column_type_size(type); }
+/// Name in headers: "uchar".
+const char* ply_type_name(PlyType type);
 
 struct PlyProperty {
     std::string name;
@@ -46,11 +50,14 @@ struct PlyHeader {
     const PlyElement* find(std::string_view element) const;
 };
 
+/// Text without the byte order mark of UTF-8 at its start, which editors put there.
+std::string_view without_mark(std::string_view text);
+
 /// True when the bytes begin like a PLY file.
 bool is_ply(std::span<const std::byte> bytes);
 
-/// Parses a header. Accepts LF, CRLF and lone CR line ends, padded lines, and both spellings of the types.
-/// Throws Error (Malformed).
+/// Parses a header. Accepts a byte order mark, LF, CRLF and lone CR line ends, padded lines, and both
+/// spellings of the types. Throws Error (Malformed).
 PlyHeader parse_ply_header(std::span<const std::byte> bytes);
 
 }  // namespace gse::io

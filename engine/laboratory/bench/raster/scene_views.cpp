@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "engine/pipeline/run/scene_loading.h"
 #include "engine/pipeline/run/scene_tools.h"
 
 namespace gse::bench {
@@ -10,7 +11,9 @@ namespace gse::bench {
 std::vector<Camera> spread_cameras(const Scene& scene, const std::filesystem::path& scene_file,
                                    const std::string& cameras, int count, int width, int height) {
     std::vector<View> views;
-    if (cameras != "none") views = pipeline::scene_cameras(scene_file, cameras);
+    if (cameras != "none")
+        views = pipeline::views_of_scene(pipeline::scene_cameras(scene_file, cameras), scene.gaussians,
+                                         scene.info.offset);
     if (views.empty()) views = orbit_views(pipeline::scene_orbit(scene, {}), count, width, height);
     std::vector<Camera> chosen;
     const auto kept = std::min(views.size(), static_cast<std::size_t>(count));
