@@ -18,6 +18,7 @@
 #include "engine/io/scene/scene_file.h"
 #include "engine/pipeline/report/film.h"
 #include "engine/pipeline/report/scene_report.h"
+#include "engine/pipeline/run/scene_loading.h"
 #include "engine/pipeline/run/scene_tools.h"
 #include "engine/scene/colour_adjustment.h"
 
@@ -198,7 +199,7 @@ void add_render(CLI::App& app, CommandContext&) {
                       "Transparent where the scene does not cover the picture");
     bind_fields(*command, options->render, "Picture");
     command->callback([options, transparent] {
-        const Scene scene = load_scene(options->input);
+        const Scene scene = load_standing_scene(options->input, options->render.up);
         Painter painter;
         const Camera camera = choose_camera(scene, options->input, options->render);
         auto settings = raster_settings(options->render, scene.info);
@@ -220,7 +221,7 @@ struct FilmOptions {
 FilmRequest film_request(const FilmOptions& options) {
     const auto& render = options.scene.render;
     const auto& turn = options.scene.turn;
-    const Scene scene = load_scene(options.scene.input);
+    const Scene scene = load_standing_scene(options.scene.input, render.up);
     FilmRequest film;
     film.first = scene.gaussians;
     if (!options.before.empty()) {

@@ -30,7 +30,8 @@ void read_project(OpenedWork& opened) {
 }
 
 void read_scene(OpenedWork& opened) {
-    auto [scene, views, notes] = load_scene_with_cameras(opened.path);
+    auto [scene, views, notes, up] = load_scene_with_cameras(opened.path);
+    if (!up.empty() && !scene.info.up_unsure) notes.push_back(up);  // else a bar over the picture asks
     opened.data.source = scene_source(opened.path, scene.gaussians);
     opened.notes = std::move(notes);
     opened.state = initial_state(scene, std::move(views));
@@ -55,6 +56,8 @@ OpenedWork open_work(const std::filesystem::path& path, const JobControl& contro
     }
     control.report("looking", 0, 0);
     opened.statistics = compute_statistics(opened.state.current);
+    if (auto note = surroundings_note(opened.statistics); !note.empty() && !opened.project)
+        opened.notes.push_back(std::move(note));
     return opened;
 }
 

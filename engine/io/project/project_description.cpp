@@ -158,11 +158,8 @@ View read_view(const Json& json, const std::string& name) {
 }
 
 Json to_json(const SceneInfo& info) {
-    return {{"format", info.format},
-            {"up", to_json(info.up)},
-            {"up_known", info.up_known},
-            {"antialiased", info.antialiased},
-            {"warnings", info.warnings}};
+    return {{"format", info.format},       {"up", to_json(info.up)},          {"up_known", info.up_known},
+            {"up_unsure", info.up_unsure}, {"antialiased", info.antialiased}, {"warnings", info.warnings}};
 }
 
 SceneInfo read_info(const Json& json) {
@@ -173,6 +170,7 @@ SceneInfo read_info(const Json& json) {
     fields.numbers("up", up);
     info.up = {up[0], up[1], up[2]};
     fields.flag("up_known", info.up_known);
+    fields.flag("up_unsure", info.up_unsure);
     fields.flag("antialiased", info.antialiased);
     if (const Json* warnings = fields.list("warnings"))
         for (const Json& warning : *warnings) {

@@ -11,6 +11,7 @@
 #include "engine/io/image/image_file.h"
 #include "engine/io/project/load_scene.h"
 #include "engine/io/project/project_file.h"
+#include "engine/pipeline/run/scene_loading.h"
 #include "engine/pipeline/run/scene_tools.h"
 
 namespace gse::pipeline {
@@ -19,6 +20,14 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json list_of(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
+
+/// Likelihood of each axis as up, where neither the file nor cameras say it.
+Json guess_report(const UpGuess& guess) {
+    Json json{
+        {"sure", guess.sure()}, {"axis", direction_name(guess.best)}, {"confidence", guess.confidence()}};
+    for (std::size_t i = 0; i < Directions; ++i) json["likelihood"][direction_name(i)] = guess.likelihood[i];
+    return json;
+}
 
 Json report_of(const Scene& scene, const std::filesystem::path& path, std::size_t cameras) {
     const SceneStatistics statistics = compute_statistics(scene.gaussians);
@@ -40,6 +49,8 @@ Json report_of(const Scene& scene, const std::filesystem::path& path, std::size_
                     {"infinite", statistics.infinite_rows},
                     {"giant", statistics.giant_rows},
                     {"invisible", statistics.invisible_rows},
+                    {"haze", statistics.haze_rows},
+                    {"sky", statistics.sky_rows},
                     {"zero_quaternion", statistics.zero_quaternion_rows}};
     json["labels"] = Json::array();
     for (const auto& label : scene.labels.labels) json["labels"].push_back(label.name);
@@ -84,13 +95,28 @@ std::string picture_report_text(const Json& json) {
     return text;
 }
 
+/// Remark behind the up direction.
+std::string up_remark(const Json& json) {
+    if (json["up_known"].get<bool>()) return {};
+    if (!json.contains("up_guess")) return " (assumed)";
+    const Json& guess = json["up_guess"];
+    const double percent = 100 * guess["confidence"].get<double>();
+    return guess["sure"].get<bool>() ? fmt::format(" (guessed from the splats, {:.0f} %)", percent)
+                                     : fmt::format(" (unsure: {} is likeliest, {:.0f} %; --up decides)",
+                                                   guess["axis"].get<std::string>(), percent);
+}
+
 }  // namespace
 
 Json scene_report(const std::filesystem::path& path) {
     if (path.extension() == ".png") return picture_report(path);
-    const Scene scene = load_scene(path);
-    Json report = report_of(scene, path, scene_cameras(path, "").size());
-    if (is_project_file(path))
+    Scene scene = load_scene(path);
+    const std::size_t cameras = scene_cameras(path, "").size();
+    const bool project = is_project_file(path);
+    const auto guess = project || cameras > 0 ? std::nullopt : guess_up(scene.info, scene.gaussians);
+    Json report = report_of(scene, path, cameras);
+    if (guess) report["up_guess"] = guess_report(*guess);
+    if (project)
         for (const auto& edit : read_project_summary(path).stack)
             report["edits"].push_back(edit.name + (edit.enabled ? "" : " (off)"));
     return report;
@@ -112,9 +138,12 @@ std::string report_text(const Json& json) {
     line("  bounds        {} to {}\n", json["bounds"]["low"].dump(), json["bounds"]["high"].dump());
     line("  robust bounds {} to {}\n", json["robust_bounds"]["low"].dump(),
          json["robust_bounds"]["high"].dump());
-    line("  up            {}{}\n", json["up"].dump(), json["up_known"].get<bool>() ? "" : " (assumed)");
+    line("  up            {}{}\n", json["up"].dump(), up_remark(json));
     line("  lint          {} NaN, {} infinite, {} giant, {} invisible, {} zero quaternions\n", number("nan"),
          number("infinite"), number("giant"), number("invisible"), number("zero_quaternion"));
+    if (number("haze") + number("sky") > 0)
+        line("  around        {} splats of haze, {} of sky: framed without them\n", number("haze"),
+             number("sky"));
     if (json.contains("edits"))
         for (const auto& edit : json["edits"]) line("  edit          {}\n", edit.get<std::string>());
     for (const auto& label : json["labels"]) line("  label         {}\n", label.get<std::string>());

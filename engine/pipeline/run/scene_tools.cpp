@@ -13,6 +13,7 @@
 #include "engine/io/image/image_file.h"
 #include "engine/io/project/load_scene.h"
 #include "engine/io/project/project_file.h"
+#include "engine/pipeline/run/scene_loading.h"
 #include "engine/scene/framing.h"
 
 namespace gse::pipeline {
@@ -116,7 +117,8 @@ std::vector<View> scene_cameras(const std::filesystem::path& scene_path, const s
 std::vector<View> viewpoints_of(const std::filesystem::path& path, int orbit) {
     const bool project = is_project_file(path);
     const RenderParameters usual;
-    if (orbit > 0) return orbit_views(scene_orbit(load_scene(path), usual), orbit, usual.width, usual.height);
+    if (orbit > 0)
+        return orbit_views(scene_orbit(load_standing_scene(path), usual), orbit, usual.width, usual.height);
     std::vector<View> views = only_cameras(path) ? load_cameras(path) : scene_cameras(path, "");
     if (views.empty())
         throw Error(ErrorCode::NotFound,
