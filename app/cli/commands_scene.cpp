@@ -18,6 +18,7 @@
 #include "engine/io/scene/scene_file.h"
 #include "engine/pipeline/report/film.h"
 #include "engine/pipeline/report/scene_report.h"
+#include "engine/pipeline/run/scene_loading.h"
 #include "engine/pipeline/run/scene_tools.h"
 #include "engine/scene/colour_adjustment.h"
 #include "engine/scene/origin/world_offset.h"
@@ -209,7 +210,7 @@ void add_render(CLI::App& app, CommandContext&) {
     bind_fields(*command, options->render, "Picture");
     bind_fields(*command, options->reading, "Reading");
     command->callback([options, transparent] {
-        const Scene scene = load_scene(options->input, options->reading);
+        const Scene scene = load_standing_scene(options->input, options->render.up, options->reading);
         Painter painter;
         const Camera camera = choose_camera(scene, options->input, options->render);
         auto settings = raster_settings(options->render, scene.info);
@@ -231,7 +232,7 @@ struct FilmOptions {
 FilmRequest film_request(const FilmOptions& options) {
     const auto& render = options.scene.render;
     const auto& turn = options.scene.turn;
-    const Scene scene = load_scene(options.scene.input, options.scene.reading);
+    const Scene scene = load_standing_scene(options.scene.input, render.up, options.scene.reading);
     const Vec3& offset = scene.info.offset;
     FilmRequest film;
     film.first = scene.gaussians;

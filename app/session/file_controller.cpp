@@ -351,6 +351,7 @@ template <> void FileController::on(const command::SetUpAxis& one) {
     if (!workspace_.require_scene()) return;
     DocumentState state = workspace_.document.state();
     state.info.up = parse_up(one.up, state.info);
+    state.info.up_unsure = false;
     state.info.up_known = true;  // the artist says so: no guess any more, and written with the scene
     workspace_.document.apply("Up axis", std::move(state));
     parts_.view.stand_up();

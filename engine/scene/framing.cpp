@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/scene/layout/surroundings.h"
 #include "engine/scene/scene.h"
 
 namespace gse {
@@ -33,6 +34,7 @@ double middle_size(std::vector<float>& log_scales) {
 
 Bounds framing_bounds(const GaussianSet& gaussians, std::span<const std::uint8_t> bits) {
     const auto usable = usable_rows(gaussians);
+    const auto around = bits.empty() ? surrounding_rows(gaussians) : std::vector<std::uint8_t>{};
     const auto position = gaussians.position(), log_scale = gaussians.log_scale(),
                opacity = gaussians.opacity_logit();
     const auto least_logit = static_cast<float>(std::log(LeastOpacity / (1 - LeastOpacity)));
@@ -40,7 +42,9 @@ Bounds framing_bounds(const GaussianSet& gaussians, std::span<const std::uint8_t
     std::vector<float> values;
     for (std::size_t row = 0;
          row < (bits.empty() ? gaussians.size() : std::min(gaussians.size(), bits.size())); ++row) {
-        if (usable[row] == 0 || opacity[row] < least_logit || (!bits.empty() && bits[row] == 0)) continue;
+        if (usable[row] == 0 || opacity[row] < least_logit || (!bits.empty() && bits[row] == 0) ||
+            (!around.empty() && around[row] != 0))
+            continue;
         rows.push_back(static_cast<std::uint32_t>(row));
         values.push_back(std::max({log_scale[row * 3], log_scale[row * 3 + 1], log_scale[row * 3 + 2]}));
     }

@@ -40,6 +40,7 @@ struct SceneInfo {
     std::string format;                 // name of a scene format ("spz"), or "synthetic"
     Vec3 up{0, -1, 0};                  // world up; 3DGS scenes follow COLMAP, -y up
     bool up_known = false;              // true when the file stated it
+    bool up_unsure = false;             // true when neither cameras nor splats tell it: ask
     bool antialiased = false;           // trained with opacity compensation
     Vec3 offset{};                      // position in the file's world = position here + offset
     bool activated = false;             // opened as a file of sizes and opacities, see ReadingOptions
@@ -65,9 +66,12 @@ struct SceneStatistics {
     std::size_t giant_rows = 0;            // largest standard deviation above the robust scene radius
     std::size_t invisible_rows = 0;        // opacity below 1/255
     std::size_t visible_rows = 0;          // that can be drawn, with an opacity of 1/255 or more
+    std::size_t haze_rows = 0;             // visible ones far around the scene, faint or scattered
+    std::size_t sky_rows = 0;              // visible ones on a shell far around the scene
     std::size_t zero_quaternion_rows = 0;  // |q| < 1e-8
     Vec3 bounds_low{}, bounds_high{};      // over finite positions
-    Vec3 robust_low{}, robust_high{};      // 2nd to 98th percentile of visible finite rows
+    // 2nd to 98th percentile of visible finite rows that are neither haze nor sky
+    Vec3 robust_low{}, robust_high{};
     double mean_opacity = 0;
 };
 

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "engine/scene/framing.h"
+#include "engine/scene/layout/surroundings.h"
 #include "engine/scene/scene.h"
 
 namespace gse {
@@ -68,7 +69,8 @@ Quantiles quantiles(std::vector<float>& values) {
     return {low, at(HighQuantile)};
 }
 
-/// Fills both bounds. `visible` are the positions [M,3] of visible rows, `finite` those of all finite rows.
+/// Fills both bounds. `visible` are the positions [M,3] of visible rows of the scene itself, `finite` those
+/// of all finite rows.
 void set_bounds(SceneStatistics& statistics, const std::vector<float>& finite,
                 const std::vector<float>& visible) {
     if (finite.empty()) return;
@@ -107,11 +109,10 @@ SceneStatistics compute_statistics(const GaussianSet& gaussians) {
     const std::size_t sh_stride = sh_stride_of(set);
     SceneStatistics statistics;
     statistics.count = set.size;
-    std::vector<float> finite, visible;  // positions [M,3]
-    std::vector<float> log_scales;       // of the visible ones' largest axes
+    std::vector<float> finite;  // positions [M,3]
+    VisibleRows visible;
     finite.reserve(set.size * 3);
-    visible.reserve(set.size * 3);
-    log_scales.reserve(set.size);
+    visible.reserve(set.size);
     double opacity_sum = 0;
     std::size_t opacity_count = 0;
     for (std::size_t row = 0; row < set.size; ++row) {
@@ -131,15 +132,17 @@ SceneStatistics compute_statistics(const GaussianSet& gaussians) {
         if (oddity(position) != Oddity::None) continue;
         finite.insert(finite.end(), position.begin(), position.end());
         if (odd != Oddity::None || opacity < InvisibleOpacity) continue;
-        visible.insert(visible.end(), position.begin(), position.end());
-        const auto scale = set.log_scale.subspan(row * 3, 3);
-        log_scales.push_back(std::max({scale[0], scale[1], scale[2]}));
+        visible.add(set, row);
     }
-    statistics.visible_rows = visible.size() / 3;
+    statistics.visible_rows = visible.size();
+    const Surroundings around = find_surroundings(visible);
+    statistics.haze_rows = around.haze;
+    statistics.sky_rows = around.sky;
+    visible.drop(around.rows);
     if (opacity_count > 0) statistics.mean_opacity = opacity_sum / static_cast<double>(opacity_count);
-    set_bounds(statistics, finite, visible);
+    set_bounds(statistics, finite, visible.position);
     // Where the splats are larger than what their centres span, they are what is seen.
-    const double splat_size = middle_size(log_scales);
+    const double splat_size = middle_size(visible.log_size);
     if (0.5 * length(statistics.robust_high - statistics.robust_low) < splat_size) {
         const Vec3 reach = Vec3{1, 1, 1} * (SplatReach * splat_size / std::sqrt(3.0));
         statistics.robust_low = statistics.robust_low - reach;

@@ -43,6 +43,10 @@ void draw_findings(Context& context) {
                    "splats have no rotation; they are drawn unrotated");
     any |= finding(palette::Warning, statistics.giant_rows, "splats are larger than the scene");
     any |= finding(palette::TextDim, statistics.invisible_rows, "splats are too faint to be seen");
+    any |= finding(palette::TextDim, statistics.haze_rows,
+                   "splats are haze far around the scene; pictures frame it without them");
+    any |= finding(palette::TextDim, statistics.sky_rows,
+                   "splats are sky around the scene; pictures frame it without them");
     for (const auto& warning : context.document().info.warnings) {
         bullet_dot(palette::Warning);
         wrapped_text(warning);
@@ -64,7 +68,9 @@ void draw_up(Context& context) {
     property(context, "Up is", up_text(info.up));
     if (!info.up_known)
         coloured_text(palette::Warning,
-                      "The file does not say; this is a guess. If the scene lies on its side, choose:");
+                      info.up_unsure
+                          ? "Neither the file nor the scene says it surely. Choose:"
+                          : "The file does not say; this is a guess. If the scene lies on its side, choose:");
     const auto at = std::find(UpNames.begin(), UpNames.end(), up_text(info.up));
     int chosen = info.up_known && at != UpNames.end() ? static_cast<int>(at - UpNames.begin())
                                                       : -1;  // a guess can be confirmed

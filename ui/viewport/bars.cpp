@@ -2,6 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
 
 #include "ui/commands/guarded.h"
 #include "ui/state.h"
@@ -200,6 +203,57 @@ void draw_evidence_bar(Context& context, ImVec2 at, const AttentionView& view) {
     end_floating(context);
 }
 
+/// Arrow of a world direction as the picture shows it; a dot where it points along the view.
+void draw_arrow(Context& context, const Vec3& direction) {
+    constexpr float LeastLength = 0.2f;  // of the arrow, where the direction is seen from the side
+    constexpr float HeadEm = 0.28f;
+    const float side = ImGui::GetFrameHeight();
+    const ImVec2 low = ImGui::GetCursorScreenPos(), middle(low.x + side * 0.5f, low.y + side * 0.5f);
+    ImGui::Dummy({side, side});
+    const Vec3 seen = context.model.camera.rotation * direction;
+    const float x = static_cast<float>(seen.x), y = static_cast<float>(seen.y), flat = std::hypot(x, y);
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const float thick = std::max(1.5f, context.em * 0.12f);
+    if (flat < LeastLength) return list->AddCircleFilled(middle, thick * 1.5f, palette::TextDim);
+    const float reach = side * 0.4f, head = context.em * HeadEm;
+    const ImVec2 tip(middle.x + x * reach, middle.y + y * reach);
+    const ImVec2 along(x / flat * head, y / flat * head);
+    list->AddLine({middle.x - x * reach, middle.y - y * reach}, tip, palette::Text, thick);
+    for (const float turn : {-1.0f, 1.0f})
+        list->AddLine(tip, {tip.x - along.x + turn * along.y, tip.y - along.y - turn * along.x},
+                      palette::Text, thick);
+}
+
+/// Question which way is up, with an answer per axis.
+void draw_up_bar(Context& context, ImVec2 at) {
+    constexpr std::array<std::pair<const char*, Vec3>, 6> Axes{{{"y", {0, 1, 0}},
+                                                                {"-y", {0, -1, 0}},
+                                                                {"z", {0, 0, 1}},
+                                                                {"-z", {0, 0, -1}},
+                                                                {"x", {1, 0, 0}},
+                                                                {"-x", {-1, 0, 0}}}};
+    begin_floating("up bar", at);
+    ImGui::AlignTextToFramePadding();
+    bullet_dot(palette::Warning);
+    ImGui::TextUnformatted("Which way is up is not sure. Up is:");
+    note(context, "up.note");
+    tooltip(
+        "Neither the file nor what stands in the scene says it surely. The arrows show where each axis "
+        "points "
+        "in the picture. The choice can be undone.");
+    for (const auto& [name, direction] : Axes) {
+        flow(ImGui::GetFrameHeight() + button_width("-y") + context.em);
+        draw_arrow(context, direction);
+        ImGui::SameLine(0, 0);
+        const bool taken = context.document().info.up == direction;
+        if (button(context, {.name = fmt::format("up.{}", name),
+                             .text = name,
+                             .tooltip = taken ? "Keep it as it is" : "Turn the scene so that this is up"}))
+            context.emit(command::SetUpAxis{name});
+    }
+    end_floating(context);
+}
+
 void draw_thumbnail(Context& context, const Image& picture, TextureId texture) {
     const float width = context.em * PictureEm;
     const float height = std::min(
@@ -249,6 +303,7 @@ void draw_bars(Context& context) {
     if (!context.scene_open()) return;
     if (context.model.result_waiting) draw_result_bar(context);
     if (context.model.hidden > 0) draw_hidden_bar(context, {middle, std::max(top, state.bars_bottom)});
+    if (context.document().info.up_unsure) draw_up_bar(context, {middle, std::max(top, state.bars_bottom)});
     if (const auto* view = view_looked_through(context))
         draw_evidence_bar(context, {middle, std::max(top, state.bars_bottom)}, *view);
     const auto& found = context.model.recoverable;

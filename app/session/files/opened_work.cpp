@@ -33,7 +33,8 @@ void read_project(OpenedWork& opened) {
 }
 
 void read_scene(OpenedWork& opened, const ReadingOptions& options) {
-    auto [scene, views, notes] = load_scene_with_cameras(opened.path, {}, options);
+    auto [scene, views, notes, up] = load_scene_with_cameras(opened.path, {}, options);
+    if (!up.empty() && !scene.info.up_unsure) notes.push_back(up);  // else a bar over the picture asks
     opened.data.source = scene_source(opened.path, scene.gaussians);
     opened.notes = std::move(notes);
     if (has_offset(scene.info.offset))
@@ -64,6 +65,8 @@ OpenedWork open_work(const std::filesystem::path& path, const ReadingOptions& op
     }
     control.report("looking", 0, 0);
     opened.statistics = compute_statistics(opened.state.current);
+    if (auto note = surroundings_note(opened.statistics); !note.empty() && !opened.project)
+        opened.notes.push_back(std::move(note));
     return opened;
 }
 

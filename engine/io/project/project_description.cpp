@@ -160,11 +160,8 @@ View read_view(const Json& json, const std::string& name) {
 }
 
 Json to_json(const SceneInfo& info) {
-    Json json{{"format", info.format},
-              {"up", to_json(info.up)},
-              {"up_known", info.up_known},
-              {"antialiased", info.antialiased},
-              {"warnings", info.warnings}};
+    Json json{{"format", info.format},       {"up", to_json(info.up)},          {"up_known", info.up_known},
+              {"up_unsure", info.up_unsure}, {"antialiased", info.antialiased}, {"warnings", info.warnings}};
     if (has_offset(info.offset)) json["offset"] = to_json(info.offset);
     if (info.activated) json["activated"] = true;
     return json;
@@ -178,6 +175,7 @@ SceneInfo read_info(const Json& json) {
     fields.numbers("up", up);
     info.up = {up[0], up[1], up[2]};
     fields.flag("up_known", info.up_known);
+    fields.flag("up_unsure", info.up_unsure);
     fields.flag("antialiased", info.antialiased);
     std::array<double, 3> offset{};
     fields.numbers("offset", offset);

@@ -140,7 +140,8 @@ Json run_real_edit(const RealEdit& edit, pipeline::EditRecipe recipe,
     recipe.request.target = edit.target;
     recipe.request.mode = "auto";
     try {
-        auto [scene, cameras, notes] = pipeline::load_scene_with_cameras(edit.path, recipe.job.cameras);
+        auto [scene, cameras, notes, up] = pipeline::load_scene_with_cameras(edit.path, recipe.job.cameras);
+        if (!up.empty()) notes.push_back(up);
         for (const auto& note : notes) log::warning("{}: {}", edit.path, note);
         pipeline::EditJobInput input{std::move(scene), std::move(cameras), model};
         pipeline::EditJob job(recipe, std::move(input), job_control);

@@ -15,6 +15,7 @@
 #include "engine/io/project/load_scene.h"
 #include "engine/io/project/project_file.h"
 #include "engine/pipeline/models/model_catalogue.h"
+#include "engine/pipeline/run/scene_loading.h"
 #include "engine/scene/origin/world_offset.h"
 
 namespace gse::pipeline {
@@ -35,6 +36,14 @@ CameraList cameras_of(const std::filesystem::path& path) {
         cameras.notes.push_back(fmt::format("the cameras beside the scene cannot be used: {}", error.what()));
     }
     return cameras;
+}
+
+/// Likelihood of each axis as up, where neither the file nor cameras say it.
+Json guess_report(const UpGuess& guess) {
+    Json json{
+        {"sure", guess.sure()}, {"axis", direction_name(guess.best)}, {"confidence", guess.confidence()}};
+    for (std::size_t i = 0; i < Directions; ++i) json["likelihood"][direction_name(i)] = guess.likelihood[i];
+    return json;
 }
 
 Json report_of(const Scene& scene, const std::filesystem::path& path, const CameraList& cameras) {
@@ -61,6 +70,8 @@ Json report_of(const Scene& scene, const std::filesystem::path& path, const Came
                     {"infinite", statistics.infinite_rows},
                     {"giant", statistics.giant_rows},
                     {"invisible", statistics.invisible_rows},
+                    {"haze", statistics.haze_rows},
+                    {"sky", statistics.sky_rows},
                     {"zero_quaternion", statistics.zero_quaternion_rows}};
     json["labels"] = Json::array();
     for (const auto& label : scene.labels.labels) json["labels"].push_back(label.name);
@@ -142,14 +153,30 @@ std::string model_report_text(const Json& json) {
     return text + fmt::format("  {:<13} {:.1f} MB\n", "size", json["mb"].get<double>());
 }
 
+/// Remark behind the up direction.
+std::string up_remark(const Json& json) {
+    if (json["up_known"].get<bool>()) return {};
+    if (!json.contains("up_guess")) return " (assumed)";
+    const Json& guess = json["up_guess"];
+    const double percent = 100 * guess["confidence"].get<double>();
+    return guess["sure"].get<bool>() ? fmt::format(" (guessed from the splats, {:.0f} %)", percent)
+                                     : fmt::format(" (unsure: {} is likeliest, {:.0f} %; --up decides)",
+                                                   guess["axis"].get<std::string>(), percent);
+}
+
 }  // namespace
 
 Json scene_report(const std::filesystem::path& path, const ReadingOptions& options) {
     if (is_model(path)) return model_report(path);
     if (names_png(path)) return picture_report(path);
-    const Scene scene = load_scene(path, options);
-    Json report = report_of(scene, path, cameras_of(path));
-    if (is_project_file(path))
+    Scene scene = load_scene(path, options);
+    const CameraList cameras = cameras_of(path);
+    const bool project = is_project_file(path);
+    const auto guess =
+        project || !cameras.views.empty() ? std::nullopt : guess_up(scene.info, scene.gaussians);
+    Json report = report_of(scene, path, cameras);
+    if (guess) report["up_guess"] = guess_report(*guess);
+    if (project)
         for (const auto& edit : read_project_summary(path).stack)
             report["edits"].push_back(edit.name + (edit.enabled ? "" : " (off)"));
     return report;
@@ -174,9 +201,12 @@ std::string report_text(const Json& json) {
          json["robust_bounds"]["high"].dump());
     if (json.contains("offset"))
         line("  offset        {} taken off here, added in files\n", json["offset"].dump());
-    line("  up            {}{}\n", json["up"].dump(), json["up_known"].get<bool>() ? "" : " (assumed)");
+    line("  up            {}{}\n", json["up"].dump(), up_remark(json));
     line("  lint          {} NaN, {} infinite, {} giant, {} invisible, {} zero quaternions\n", number("nan"),
          number("infinite"), number("giant"), number("invisible"), number("zero_quaternion"));
+    if (number("haze") + number("sky") > 0)
+        line("  around        {} splats of haze, {} of sky: framed without them\n", number("haze"),
+             number("sky"));
     if (json.contains("edits"))
         for (const auto& edit : json["edits"]) line("  edit          {}\n", edit.get<std::string>());
     for (const auto& label : json["labels"]) line("  label         {}\n", label.get<std::string>());

@@ -107,8 +107,9 @@ EditJob::EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCach
     recipe_.job.lora = absolute_loras(recipe_.job);
     for (auto* weights : {&recipe_.job.segmenter, &recipe_.job.text_segmenter})
         if (!weights->empty()) *weights = std::filesystem::absolute(*weights).lexically_normal().string();
-    auto [scene, cameras, notes] =
+    auto [scene, cameras, notes, up] =
         load_scene_with_cameras(recipe_.job.scene, recipe_.job.cameras, {.activated = recipe_.job.activated});
+    if (recipe_.job.up == "auto" && !up.empty()) notes.push_back(up);
     for (const auto& note : notes) log::warning("{}", note);
     if (recipe_.job.use_label) hints_.label = label_of(scene, recipe_.job.scene);
     times_.end();

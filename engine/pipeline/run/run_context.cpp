@@ -14,6 +14,7 @@
 #include "engine/edit/search/grabcut_segmenter.h"
 #include "engine/language/words.h"
 #include "engine/pipeline/models/neural_loader.h"
+#include "engine/pipeline/run/scene_loading.h"
 
 namespace gse::pipeline {
 namespace {
@@ -58,6 +59,7 @@ RunContext::RunContext(Scene scene, std::shared_ptr<neural::TextToImage> model, 
             "they are "
             "and count nowhere",
             unusable_, statistics.count, statistics.nan_rows, statistics.infinite_rows);
+    if (const auto note = surroundings_note(statistics); !note.empty()) log::info("{}", note);
     scene_.info.up = parse_up(job.up, scene_.info);
 }
 

@@ -7,8 +7,11 @@
 #include <optional>
 
 #include "engine/base/error.h"
+#include "engine/base/log.h"
 #include "engine/io/cameras/cameras.h"
 #include "engine/io/project/load_scene.h"
+#include "engine/io/project/project_file.h"
+#include "engine/scene/layout/surroundings.h"
 #include "engine/scene/origin/world_offset.h"
 
 namespace gse::pipeline {
@@ -62,17 +65,60 @@ std::string guess_up(SceneInfo& info, const std::vector<View>& views) {
     const auto up = info.up_known ? std::nullopt : up_of_cameras(views);
     if (!up) return {};
     info.up = *up;
+    info.up_unsure = false;
     return fmt::format("The file does not say which way is up: guessed from {} cameras.", views.size());
+}
+
+std::optional<UpGuess> guess_up(SceneInfo& info, const GaussianSet& set) {
+    if (info.up_known) return std::nullopt;
+    const UpGuess guess = guess_up_axis(set, surrounding_rows(set));
+    info.up_unsure = !guess.sure();
+    if (guess.sure()) info.up = guess.up();
+    return guess;
+}
+
+std::string up_note(const SceneInfo& info, const std::optional<UpGuess>& guess) {
+    if (!guess || (guess->sure() && guess->up() == SceneInfo().up)) return {};
+    if (guess->sure())
+        return fmt::format("The file does not say which way is up: {}, as its splats stand.",
+                           direction_name(guess->best));
+    std::size_t taken = 0;
+    while (taken + 1 < Directions && direction(taken) != info.up) ++taken;
+    return fmt::format("Which way is up is not sure: {} is taken. If that is wrong, choose another ({}).",
+                       direction_name(taken), "--up, or the panel Scene");
+}
+
+std::string surroundings_note(const SceneStatistics& statistics) {
+    const std::size_t haze = statistics.haze_rows, sky = statistics.sky_rows;
+    if (haze + sky == 0) return {};
+    return fmt::format("{} splats far around the scene are {}: pictures frame the scene without them.",
+                       haze + sky,
+                       sky == 0    ? "haze"
+                       : haze == 0 ? "sky"
+                                   : "haze and sky");
+}
+
+Scene load_standing_scene(const std::filesystem::path& path, const std::string& up,
+                          const ReadingOptions& options) {
+    Scene scene = load_scene(path, options);
+    if (is_project_file(path) || find_cameras(path)) return scene;
+    const auto guess = guess_up(scene.info, scene.gaussians);
+    if (up == "auto" && scene.info.up_unsure) log::warning("{}", up_note(scene.info, guess));
+    return scene;
 }
 
 LoadedScene load_scene_with_cameras(const std::filesystem::path& path, const std::string& cameras,
                                     const ReadingOptions& options) {
-    LoadedScene loaded{load_scene(path, options), {}, {}};
+    LoadedScene loaded{load_scene(path, options), {}, {}, {}};
     SceneCameras found = cameras_of_scene({loaded.scene.gaussians, loaded.scene.info.offset, path}, cameras);
     loaded.views = std::move(found.views);
     loaded.notes = std::move(found.notes);
     if (auto note = guess_up(loaded.scene.info, loaded.views); !note.empty())
         loaded.notes.push_back(std::move(note));
+    else if (loaded.views.empty() && !is_project_file(path)) {
+        const auto guess = guess_up(loaded.scene.info, loaded.scene.gaussians);
+        loaded.up_note = up_note(loaded.scene.info, guess);
+    }
     return loaded;
 }
 

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/io/scene/reading_options.h"
+#include "engine/scene/layout/up_axis.h"
 #include "engine/scene/scene.h"
 
 namespace gse::pipeline {
@@ -35,11 +37,27 @@ std::vector<View> views_of_scene(std::vector<View> views, const GaussianSet& set
 /// nothing was guessed.
 std::string guess_up(SceneInfo& info, const std::vector<View>& views);
 
+/// Takes up from the splats where the file does not state it and the splats are sure; else notes that it is
+/// not sure. Nothing for files that state it.
+std::optional<UpGuess> guess_up(SceneInfo& info, const GaussianSet& set);
+
+/// Sentence on a guess; empty = what was assumed anyway.
+std::string up_note(const SceneInfo& info, const std::optional<UpGuess>& guess);
+
+/// Sentence on haze and sky far around the scene; empty = there is neither.
+std::string surroundings_note(const SceneStatistics& statistics);
+
+/// A scene for pictures from around it. Up is guessed where neither its file nor cameras beside it say it.
+/// Logs a warning where the guess is not sure and `up` is "auto". Throws Error.
+Scene load_standing_scene(const std::filesystem::path& path, const std::string& up = "auto",
+                          const ReadingOptions& options = {});
+
 /// A scene, its cameras, and which way is up where the file does not say and the cameras do.
 struct LoadedScene {
     Scene scene;
     std::vector<View> views;
     std::vector<std::string> notes;  // one sentence each
+    std::string up_note;             // on a guess of up from the splats
 };
 
 /// `cameras` as `named` above. Throws Error.

@@ -122,7 +122,7 @@ std::vector<View> viewpoints_of(const std::filesystem::path& path, int orbit) {
     const bool project = is_project_file(path);
     const RenderParameters usual;
     if (orbit > 0) {
-        const Scene scene = load_scene(path);
+        const Scene scene = load_standing_scene(path);
         return moved(orbit_views(scene_orbit(scene, usual), orbit, usual.width, usual.height),
                      scene.info.offset);
     }

@@ -289,6 +289,13 @@ DOCTEST_TEST_CASE("views, export, scene, models, settings") {
     harness.frame(3);
     DOCTEST_CHECK(!harness.asks("scene.up.z", "set_up_axis"));  // it is chosen, and shown to be
     DOCTEST_CHECK(harness.asks("scene.up.-z", "set_up_axis -z"));
+    DOCTEST_CHECK(harness.find("up.note") == nullptr);
+    upright.info.up_known = false, upright.info.up_unsure = true;
+    document.apply("Up axis", upright);
+    harness.frame(3);
+    DOCTEST_CHECK(harness.find("up.note") != nullptr);
+    DOCTEST_CHECK(harness.asks("up.-x", "set_up_axis -x"));
+    DOCTEST_CHECK(harness.asks("up.z", "set_up_axis z"));  // what is taken can be confirmed
     harness.shell.show(ui::PanelId::Models);
     harness.frame(3);
     DOCTEST_CHECK(harness.asks("models.use.1", "choose_model /home/mira/ComfyUI"));
