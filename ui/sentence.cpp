@@ -68,7 +68,7 @@ std::string problem_of(const edit::EditRequest& request, const SentenceGround& g
             return "Click the word of the sentence that is new";
         return first_letter_up(error.message());
     }
-    const auto& words = valid->words();
+    const auto& words = valid->sentence();
     facts.guessed_target = request.target.empty() ? words.target() : std::string();
     if (!facts.source_known && !ground.labelled_by_hand)  // the words to use stand beside the source already
         return unknown_source(words.source(), ground);

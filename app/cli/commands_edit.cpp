@@ -274,7 +274,7 @@ void run_locate_command(EditOptions& options, const CommandContext& context) {
     auto report = locate_report(job);
     report["nonfinite_before"] = job.unusable();
     add_optional_parts(report, folder.path(), job, std::nullopt);
-    write_file(folder.path() / "recipe.json", json_text(recipe_to_json(job.recipe()), 2) + "\n");
+    write_file(folder.path() / "recipe.json", json_text(recipe_to_json(job.recipe().plain()), 2) + "\n");
     report["files"] = folder.listing();
     write_file(folder.path() / "report.json", json_text(report, 2) + "\n");
     folder.commit();

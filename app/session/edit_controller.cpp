@@ -9,8 +9,8 @@
 
 #include "engine/base/clock.h"
 #include "engine/base/error.h"
-#include "engine/edit/request/checked_request.h"
 #include "engine/edit/request/edit_method.h"
+#include "engine/edit/request/unchecked_request.h"
 #include "engine/pipeline/models/neural_loader.h"
 #include "engine/scene/stack_edits.h"
 
@@ -38,10 +38,11 @@ template <> void EditController::on(const command::Edit&) {
 void EditController::start(std::optional<edit::EditSnapshot> from) {
     search_.begin_edit();
     view_.compare_as_usual();
-    EditRecipe recipe = search_.recipe();
+    std::optional<CheckedRecipe> checked;
     try {
-        recipe.request = edit::check(recipe.request).plain();
+        checked = check(search_.recipe());
     } catch (const Error& error) { return workspace_.notices.report(error); }
+    const EditRecipe recipe = checked->plain();
     const auto run = search_.begin_run();
     run->job = search_.fitting_job();
     take_known_parts(run->measured, costs_.profile(search_.request()));
@@ -58,8 +59,9 @@ void EditController::start(std::optional<edit::EditSnapshot> from) {
     live_ = std::move(live);
     snapshots_.begin(workspace_.document.state().current);
     auto pending = std::make_shared<PendingResult>();
-    auto work = [run, recipe, start, pending, roads = live_.roads, open = search_.open_recipe(recipe),
-                 ground = search_.ground(recipe), cache = models_.cache()](const JobControl& control) {
+    auto work = [run, recipe = *checked, start, pending, roads = live_.roads,
+                 open = search_.open_recipe(recipe), ground = search_.ground(recipe),
+                 cache = models_.cache()](const JobControl& control) {
         const auto before = network_use();
         load_model(*run, recipe.job, cache, control);
         const PeakMemory peak;

@@ -13,6 +13,7 @@
 #include "engine/base/error.h"
 #include "engine/base/random.h"
 #include "engine/edit/request/checked_request.h"
+#include "engine/edit/request/decide_mode.h"
 #include "engine/edit/request/edit_method.h"
 #include "engine/edit/request/excluded_views.h"
 #include "engine/language/news.h"
@@ -353,7 +354,7 @@ void SearchController::refresh_estimate() {
     work.traits = models_.traits();
     work.words = language::promptable_vocabulary(models_.list().known_words(), models_.list().drawn_words());
     try {
-        work.mode = edit::planned_mode(edit::check(request_));
+        work.mode = edit::decide_mode(edit::check(request_), std::nullopt).first;
     } catch (const Error&) {  // not a sentence yet
     }
     costs_.estimate(request_, work);

@@ -148,6 +148,18 @@ EditSentence::EditSentence(Sentence sentence, std::string source, std::string ta
     relation_ = relation_of(terms, source_, target_);
 }
 
+std::vector<std::string> EditSentence::things_before(const std::vector<std::string>& phrases) const {
+    return Sentence(before_).things(phrases);
+}
+
+EditSentence EditSentence::with_target(std::string target) const {
+    return {sentence_, source_, std::move(target)};
+}
+
+EditSentence EditSentence::reworded(std::string_view prompt, std::string target) const {
+    return {Sentence(prompt), source_, std::move(target)};
+}
+
 std::pair<EditMode, std::string> decide_mode(const EditSentence& words, std::optional<EditMode> asked,
                                              std::optional<double> target_found_share) {
     constexpr double present_share = 0.3;  // METHOD.md, The sentence
@@ -170,6 +182,10 @@ std::pair<EditMode, std::string> decide_mode(const EditSentence& words, std::opt
                                                !any_between(terms, first, last, WordClass::Turning));
     if (joined) return {EditMode::Add, "the sentence puts \"" + target + "\" beside \"" + source + "\""};
     return {EditMode::Modify, "\"" + target + "\" describes \"" + source + "\""};
+}
+
+const std::string& new_thing(const EditSentence& words, EditMode mode) {
+    return mode == EditMode::Replace && !words.replacement().empty() ? words.replacement() : words.target();
 }
 
 std::string instance_prompt(const EditSentence& words) {

@@ -58,16 +58,25 @@ public:
     EditSentence(Sentence sentence, std::string source, std::string target);
 
     const Sentence& sentence() const { return sentence_; }
+    /// The prompt as models are told it.
+    const std::string& prompt() const { return sentence_.prompt(); }
     const std::string& source() const { return source_; }
     const std::string& target() const { return target_; }
     /// Sentence before the edit: without the target, or without the phrase that brings it ("wearing a red
     /// hat"). If the target stands in the source's place ("into a panda"), it has the source instead.
     const std::string& before() const { return before_; }
+    /// Things that the sentence before the edit names (Sentence::things()).
+    std::vector<std::string> things_before(const std::vector<std::string>& phrases) const;
     /// Object that replaces the source ("cat" of "a red cat on the grass" for a bear). Empty if the sentence
     /// keeps the source, or changes the ground.
     const std::string& replacement() const { return replacement_; }
     /// Direction of the target, seen from the source.
     Relation relation() const { return relation_; }
+
+    /// The sentence with another new phrase.
+    EditSentence with_target(std::string target) const;
+    /// Another prompt for the edit of that source, with its own name for what is new.
+    EditSentence reworded(std::string_view prompt, std::string target) const;
 
 private:
     Sentence sentence_;
@@ -79,6 +88,9 @@ private:
 /// `target_found_share`: of the views in which a text segmenter sees the target; nothing without one.
 std::pair<EditMode, std::string> decide_mode(const EditSentence& words, std::optional<EditMode> asked,
                                              std::optional<double> target_found_share = std::nullopt);
+
+/// Thing with a shape of its own after an edit of that mode: the replacement of the source, or the target.
+const std::string& new_thing(const EditSentence& words, EditMode mode);
 
 /// Caption of pictures of the scene while a model learns it: "a photo of a bear", with the identifier where
 /// the sentence has one ("a photo of a * bear").

@@ -130,6 +130,20 @@ LOCK_OWNERS = {
     "engine/vulkan/device": "messages of the validation layers, from threads of the driver",
     "engine/vulkan/instance": "the same",
 }
+# A request's text becomes a sentence once, in check(). Functions of engine/language make the other ones.
+PARSE = re.compile(r"\b(Edit)?Sentence(\s+\w+)?\s*[({]|"
+                   r"\b(words_of|normalised_prompt|without_identifier|has_phrase|position_of)\("
+                   r"\s*[\w.:>()-]*\bprompt\b")
+PARSE_OWNERS = {
+    "engine/edit/request/checked_request": "check(), and requests that follow from one that it made",
+    "engine/edit/request/unchecked_request": "words that are being typed, or were written by another version",
+    "engine/edit/search/word_search": "the sentence of one word, to which those are added that compete with it",
+    "app/session/edit/last_search": "whether words that are being typed are those of the search",
+    "app/session/search_controller": "words that are being typed",
+    "ui/panels/prompt": "words that are being typed",
+    "ui/sentence": "words that are being typed",
+}
+UNCHECKED = "engine/edit/request/unchecked_request.h"   # for the window's hints and estimates alone
 SOURCE_LIMIT = 600     # lines of a file
 FUNCTION_LIMIT = 60    # lines of a function body
 SUFFIXES = {".h", ".cpp", ".inl", ".cu", ".comp"}
@@ -165,6 +179,8 @@ def check_include(relative, line_number, target, is_header):
     if target.startswith("opencv2/") and is_header and room != "tests":
         yield f"{relative}:{line_number}: OpenCV must not appear in a header"
     if room == "engine":
+        if target == UNCHECKED and str(relative.with_suffix(".h")) != UNCHECKED:
+            yield f"{relative}:{line_number}: stages of a run take a CheckedRequest"
         if target.startswith(("app/", "ui/")):
             yield f"{relative}:{line_number}: the engine must not include {target}"
         if target.startswith("engine/"):
@@ -218,12 +234,19 @@ def check_units(root):
             yield f"{folder}: {len(stems)} units: take it off the list of crowded folders"
 
 
-def check_lock_owners(root):
+def check_owners(root, owners, pattern, name, what):
     """An exception that is none any more goes."""
-    for owner in LOCK_OWNERS:
+    for owner in owners:
         files = [path for path in (root / f"{owner}.h", root / f"{owner}.cpp") if path.is_file()]
-        if not any(LOCK.search(path.read_text(encoding="utf-8")) for path in files) and files:
-            yield f"{owner}: has no lock; take it off LOCK_OWNERS"
+        if not any(pattern.search(path.read_text(encoding="utf-8")) for path in files) and files:
+            yield f"{files[0].relative_to(root)}: has no {what}; take it off {name}"
+
+
+def parses(relative, line):
+    """Tells whether the line of a source makes a sentence of text, where that is nobody's business."""
+    outside = relative.parts[0] in {"engine", "app", "ui"} and relative.parts[1] != "language"
+    code = strip_strings(line).split("//")[0]
+    return outside and PARSE.search(code) and str(relative.with_suffix("")) not in PARSE_OWNERS
 
 
 def circles(table):
@@ -305,6 +328,8 @@ def check_file(root, path):
             yield f"{relative}:{number}: threads meet in a queue or a mailbox (engine/base), not under a lock"
         if relative.parts[0] == "engine" and relative.parts[1] in MODEL_FREE and MODEL_NAME.search(line):
             yield f"{relative}:{number}: what suits one model only is data of its bundle (ModelTraits)"
+        if parses(relative, line):
+            yield f"{relative}:{number}: a request's text is parsed in check(); take its sentence()"
         if JSON_PARSE.search(line) and relative.parts[0] != "tests" and str(relative) != JSON_PARSER:
             yield f"{relative}:{number}: JSON is parsed with parse_json() or try_parse_json()"
     if relative.parts[0] in {"app", "ui"}:
@@ -330,7 +355,8 @@ def check_tree(root):
             if path.suffix in SUFFIXES and path.is_file():
                 violations.extend(check_file(root, path))
     violations.extend(check_units(root))
-    violations.extend(check_lock_owners(root))
+    violations.extend(check_owners(root, LOCK_OWNERS, LOCK, "LOCK_OWNERS", "lock"))
+    violations.extend(check_owners(root, PARSE_OWNERS, PARSE, "PARSE_OWNERS", "sentence made of text"))
     for room, table in SUB_ROOMS.items():
         violations.extend(f"engine/{room}/{name}: its arrows lead back to it" for name in circles(table))
     allowed = {"CMakeLists.txt", "CMakePresets.json", "LICENSE", "README.md", "app", "engine", "shaders",
@@ -358,6 +384,15 @@ def self_test():
         "app/j.cpp": ("// x\nauto a = nlohmann::json::parse(text);\n", "parsed with parse_json()"),
         "ui/k.cpp": ("// x\n#include <glm/vec3.hpp>\n", "glm is included by"),
         "engine/edit/p.cpp": ("// x\nint views = 8;  // suits the starter\n", "data of its bundle"),
+        "engine/pipeline/s.cpp": ("// x\nvoid f() { language::Sentence words(request.prompt); }\n",
+                                  "parsed in check()"),
+        "engine/pipeline/t.cpp": ("// x\nauto words = language::EditSentence{one, two, three};\n",
+                                  "parsed in check()"),
+        "engine/edit/masks/u.cpp": ("// x\nbool b = language::has_phrase(request_.prompt(), word);\n",
+                                    "parsed in check()"),
+        "engine/pipeline/u.cpp": ("// x\n#include \"engine/edit/request/unchecked_request.h\"\n",
+                                  "take a CheckedRequest"),
+        "ui/sentence.cpp": ("// x\n", "take it off PARSE_OWNERS"),
         "engine/raster/h.cpp": ("// x\n#include \"app/main.h\"\n", "must not include app"),
         "engine/io/bytes/m.cpp": ("// x\n#include \"engine/io/image/png.h\"\n",
                                   "engine/io/bytes must not include engine/io/image"),

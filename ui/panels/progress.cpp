@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "engine/edit/request/edit_method.h"
+#include "engine/edit/request/unchecked_request.h"
 #include "ui/commands/guarded.h"
 #include "ui/panels/panels.h"
 #include "ui/state.h"

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "engine/edit/request/edit_method.h"
+#include "engine/edit/request/unchecked_request.h"
 #include "engine/language/vocabulary.h"
 #include "engine/language/words.h"
 #include "engine/scene/strength.h"

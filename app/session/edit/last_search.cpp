@@ -15,13 +15,14 @@ namespace gse::app {
 void LastSearch::remember(std::shared_ptr<EditJob> job, const EditRecipe& recipe) {
     job_ = std::move(job);
     splats_ = job_->scene().gaussians;
-    words_ = job_->recipe().request;
+    const EditRecipe found = job_->recipe().plain();
+    words_ = found.request;
     target_read_ = job_->target_read();
-    tuning_key_ = pipeline::tuning_key(job_->recipe());
+    tuning_key_ = pipeline::tuning_key(found);
     tuned_ = job_->tuned();
     EditRecipe searched = recipe;
     searched.request.target = words_.target;
-    key_ = search_key(searched);
+    key_ = valid_search_key(searched);
 }
 
 void LastSearch::forget() {

@@ -10,7 +10,7 @@
 #include "engine/base/clock.h"
 #include "engine/base/json.h"
 #include "engine/base/log.h"
-#include "engine/edit/request/edit_method.h"
+#include "engine/edit/request/unchecked_request.h"
 #include "engine/pipeline/models/neural_loader.h"
 #include "engine/pipeline/run/preview_check.h"
 #include "engine/pipeline/run/recipe.h"

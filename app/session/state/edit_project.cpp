@@ -38,7 +38,7 @@ ProjectData project_of(EditJob& job, const nlohmann::ordered_json& report) {
         make_delta(before.current, *before.row_ids, result.set, *result.base_to_new, node.id));
     project.state = with_result(before, std::move(node), result);
     project.thumbnail = result.thumbnail;
-    project.ui["request"] = fields_to_json(job.recipe().request);
+    project.ui["request"] = fields_to_json(job.recipe().request.plain());
     return project;
 }
 

@@ -7,6 +7,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/json.h"
+#include "engine/edit/request/unchecked_request.h"
 #include "engine/language/sentence.h"
 #include "engine/language/vocabulary.h"
 #include "engine/language/words.h"
@@ -50,7 +51,8 @@ std::vector<language::EditSentence> applied_sentences(const std::vector<EditNode
     for (const auto& node : stack) {
         if (!node.enabled) continue;
         try {
-            if (const auto request = recorded_request(node)) applied.push_back(edit::edit_sentence(*request));
+            if (const auto request = recorded_request(node))
+                applied.push_back(edit::unchecked_sentence(*request));
         } catch (const Error&) {  // of another version: what it said is not known
         }
     }

@@ -3,15 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/base/error.h"
 #include "engine/edit/request/colour_word.h"
 #include "engine/edit/request/decide_mode.h"
 #include "engine/edit/request/edit_method.h"
+#include "engine/edit/request/unchecked_request.h"
 #include "engine/edit/search/place_drawing.h"
 #include "engine/edit/target_views/view_round.h"
 #include "engine/language/description.h"
-#include "engine/language/words.h"
 #include "engine/pipeline/run/preview_check.h"
 
 namespace gse::app {
@@ -29,7 +30,8 @@ double words_of_search(edit::EditMode mode, bool drawn) {
 /// Work of the model in a whole edit by the job's method.
 edit::MethodWork whole_work(const EditJob& job) {
     const auto& request = job.recipe().request;
-    return edit::method_of(request).work(request, job.located().mode, 0, job.place_cost().views > 0);
+    return edit::method_of(request).work(request, request.sentence(), job.located().mode, 0,
+                                         job.place_cost().views > 0);
 }
 
 double tflop_of(const neural::NetworkUse& use) { return use.flop * 1e-12; }
@@ -69,8 +71,8 @@ double scene_work_mb(const PlannedMemory& memory) {
 }
 
 /// The pictures that show where something added goes; until they were drawn once, as views of the loop.
-void add_place(Sum& sum, const CostProfile& measured, const edit::EditRequest& request) {
-    const double views = request.place_views, steps = views * edit::guided_steps_of_place(request);
+void add_place(Sum& sum, const CostProfile& measured, const edit::SearchSettings& search) {
+    const double views = search.place_views, steps = views * edit::guided_steps_of_place(search);
     if (measured.place_step >= 0) return sum.add(steps, measured.place_step, measured.place_step_tflop);
     sum.add(views, std::max(0.0, measured.redraw_view), std::max(0.0, measured.redraw_view_tflop));
     sum.add(steps, measured.redraw, measured.redraw_tflop);
@@ -93,30 +95,32 @@ void add_method(Sum& sum, const CostProfile& measured, const edit::MethodWork& l
 
 Cost estimated_cost(const CostProfile& measured, const edit::EditRequest& asked, const PlannedWork& work) {
     const auto& method = edit::method_of(asked);
-    auto request = measured.supports_appearance_editing > 0 && method.draws_views()
-                       ? edit::restyling(asked, work.mode)
-                       : asked;
+    edit::EditSettings settings = asked;
+    if (measured.supports_appearance_editing > 0 && method.draws_views())
+        settings = edit::restyling(std::move(settings), work.mode);
+    auto sentence = edit::unchecked_sentence(asked);
     if (method.draws_views() && work.mode != edit::EditMode::Modify)
-        request.prompt =
-            language::with_usual_colour(language::normalised_prompt(request.prompt),
-                                        new_thing(request, work.mode), work.words, work.traits.usual_colours);
+        sentence =
+            sentence.reworded(language::with_usual_colour(sentence.prompt(), new_thing(sentence, work.mode),
+                                                          work.words, work.traits.usual_colours),
+                              sentence.target());
     Sum sum;
     sum.add(work.loaded ? 0 : 1, measured.load);
     sum.add(work.tune_steps, measured.tune_step, measured.tune_step_tflop);
     const double rounds = measured.rounds > 0 ? measured.rounds : 1;
-    const bool drawn = measured.draws_place > 0 && edit::draws_place(request, work.mode);
-    const double search = rounds * request.views * words_of_search(work.mode, drawn);
+    const bool drawn = measured.draws_place > 0 && edit::draws_place(settings, sentence, work.mode);
+    const double search = rounds * settings.views * words_of_search(work.mode, drawn);
     sum.add(work.located ? 0 : search, measured.question, measured.question_tflop);
-    if (drawn && !work.located) add_place(sum, measured, request);
+    if (drawn && !work.located) add_place(sum, measured, settings);
     if (work.shows_idea) add_idea(sum, measured);
-    const int steps = std::max(0, method.steps(request, work.mode) - work.first_iteration);
+    const int steps = std::max(0, method.steps(settings, work.mode) - work.first_iteration);
     const double size = static_cast<double>(work.rows) / measured.rows;
     sum.add(size, std::max(0.0, measured.begin));
-    add_method(sum, measured, method.work(request, work.mode, work.first_iteration, drawn));
+    add_method(sum, measured, method.work(settings, sentence, work.mode, work.first_iteration, drawn));
     sum.add(steps * size, measured.raster);
     // Before it was seen: every view drawn before and after, which is about a step of the loop.
     sum.add(1,
-            measured.finish >= 0 ? measured.finish : request.views * size * std::max(0.0, measured.raster));
+            measured.finish >= 0 ? measured.finish : settings.views * size * std::max(0.0, measured.raster));
     return sum.cost();
 }
 
@@ -214,9 +218,10 @@ void measure_pulling(CostProfile& measured, const EditJob& job, const Edited& ed
     const double masks = looks * std::max(0.0, measured.question_tflop);
     if (looks <= 0 || measured.question_tflop >= 0)
         measured.guidance_tflop = std::max(0.0, tflop_of(edited.use) - masks) / steps;
-    const double could = edit::method_of(request)
-                             .work(request, job.located().mode, request.iterations - steps, false)
-                             .refreshed_masks;
+    const double could =
+        edit::method_of(request)
+            .work(request, request.sentence(), job.located().mode, request.iterations - steps, false)
+            .refreshed_masks;
     if (refreshed <= 0 || could <= 0 || result.stopped) return;
     measured.follow = refreshed / could;
     measured.refresh = stage_seconds(result, "dynamic_mask") / (refreshed + searched);

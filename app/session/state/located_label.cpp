@@ -38,7 +38,7 @@ DocumentState with_located_label(DocumentState state, const EditJob& job, bool f
     const bool looked = located.found.field.probability.size() == rows;
     std::vector<float> weight =
         looked ? weights_of(source, request.label_threshold) : std::vector<float>(rows, 0.0f);
-    const std::string name = adds ? request.source : located.word;
+    const std::string name = adds ? request.source() : located.word;
     auto found = std::find_if(state.labels.begin(), state.labels.end(),
                               [&](const auto& label) { return is_label_of(label, name); });
     if (found == state.labels.end())

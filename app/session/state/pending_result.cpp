@@ -8,7 +8,6 @@
 #include "engine/base/json.h"
 #include "engine/base/log.h"
 #include "engine/edit/request/edit_method.h"
-#include "engine/language/words.h"
 #include "engine/pipeline/report/edit_output.h"
 #include "engine/pipeline/run/loop.h"
 #include "engine/scene/row_values.h"
@@ -18,9 +17,8 @@ namespace gse::app {
 
 Renamed renamed_by(const EditJob& job) {
     if (job.located().mode != edit::EditMode::Replace) return {};
-    const auto& request = job.recipe().request;
-    return {language::normalised_prompt(request.source),
-            language::normalised_prompt(new_thing(request, edit::EditMode::Replace))};
+    const auto& sentence = job.recipe().request.sentence();
+    return {sentence.source(), new_thing(sentence, edit::EditMode::Replace)};
 }
 
 namespace {
@@ -43,16 +41,17 @@ void fill_pending(EditJob& job, const nlohmann::ordered_json& report, PendingRes
     pending.before = job.scene().gaussians;
     pending.set = result.set;
     pending.base_to_new = std::make_shared<const std::vector<std::int64_t>>(result.base_to_new);
-    pending.name = job.recipe().request.prompt;
-    pending.target = job.recipe().request.target;
-    pending.seed = job.recipe().request.seed;
+    const auto& request = job.recipe().request;
+    pending.name = request.prompt();
+    pending.target = request.target();
+    pending.seed = request.seed;
     pending.adds = job.located().mode == edit::EditMode::Add;
     pending.renamed = renamed_by(job);
-    pending.recipe = json_text(recipe_to_json(job.recipe()), -1);
+    pending.recipe = json_text(recipe_to_json(job.recipe().plain()), -1);
     for (const auto& [stage, seconds] : result.seconds) pending.seconds += seconds;
     pending.psnr_outside_db = report["psnr_outside_db"].get<double>();
     pending.changed_outside_label = result.changed_outside_label;
-    pending.steps = edit::planned_steps(job.recipe().request);
+    pending.steps = edit::loop_steps(job.recipe().request, job.located().mode);
     if (result.stopped) pending.stopped_at = result.iterations;
     constexpr int thumbnail_px = 96;
     const Camera camera = orbit_camera(job.film_orbit(), job.film_front() + 0.35, thumbnail_px, thumbnail_px);

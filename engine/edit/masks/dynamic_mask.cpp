@@ -9,7 +9,6 @@
 #include "engine/base/random.h"
 #include "engine/edit/masks/word_mask.h"
 #include "engine/edit/request/scales.h"
-#include "engine/language/words.h"
 #include "engine/localize/clusters.h"
 
 namespace gse::edit {
@@ -22,18 +21,18 @@ constexpr float TurnsOn = 0.6f, TurnsOff = 0.4f;  // hysteresis
 constexpr double LargestGrowth = 3;               // times the static area; beyond, the mask has run away
 
 /// Word to look for once the edit shows it: the replacement ("on the snow" that was "on the grass").
-std::string word_after(const EditRequest& request, std::string word) {
-    if (language::has_phrase(request.prompt, word)) return word;
-    return language::has_phrase(request.prompt, request.target) ? request.target : std::string();
+std::string word_after(const language::EditSentence& said, std::string word) {
+    if (said.sentence().contains(word)) return word;
+    return said.sentence().contains(said.target()) ? said.target() : std::string();
 }
 
 }  // namespace
 
-DynamicMasks::DynamicMasks(const EditPlan& plan, const EditRequest& request, std::string word,
+DynamicMasks::DynamicMasks(const EditPlan& plan, const CheckedRequest& request, std::string word,
                            AttentionSource* attention, Segmenter* segmenter)
-    : plan_(plan), request_(request), word_(word_after(request, std::move(word))), attention_(attention),
-      segmenter_(segmenter), masks_(plan.masks.size()), static_area_(plan.masks.size()),
-      soft_(plan.masks.size()), last_refresh_(plan.masks.size(), -1) {
+    : plan_(plan), request_(request), word_(word_after(request.sentence(), std::move(word))),
+      attention_(attention), segmenter_(segmenter), masks_(plan.masks.size()),
+      static_area_(plan.masks.size()), soft_(plan.masks.size()), last_refresh_(plan.masks.size(), -1) {
     for (std::size_t v = 0; v < masks_.size(); ++v) set_static(v, plan.masks[v]);
 }
 
@@ -54,7 +53,7 @@ bool DynamicMasks::due(std::size_t view, int iteration) const {
 Mask DynamicMasks::found_in(const Image& shown, std::size_t view, int iteration) const {
     const AttentionQuery query{
         shown,
-        language::normalised_prompt(request_.prompt),
+        request_.sentence().prompt(),
         {word_},
         plan_.view_words.empty() ? std::string() : plan_.view_words[view],
         false,

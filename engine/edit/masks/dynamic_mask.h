@@ -7,7 +7,7 @@
 
 #include "engine/edit/interfaces/edit_plan.h"
 #include "engine/edit/interfaces/interfaces.h"
-#include "engine/edit/request/request.h"
+#include "engine/edit/request/checked_request.h"
 
 namespace gse::edit {
 
@@ -18,7 +18,7 @@ class DynamicMasks {
 public:
     /// `word`, or the target where the prompt replaces it, is looked for in the current renders; `attention`
     /// null = the masks stay as they are.
-    DynamicMasks(const EditPlan& plan, const EditRequest& request, std::string word,
+    DynamicMasks(const EditPlan& plan, const CheckedRequest& request, std::string word,
                  AttentionSource* attention, Segmenter* segmenter);
 
     /// True when the view's mask is to be refreshed at this iteration.
@@ -37,7 +37,7 @@ public:
 
 private:
     const EditPlan& plan_;
-    const EditRequest& request_;
+    const CheckedRequest& request_;
     std::string word_;
     AttentionSource* attention_;
     Segmenter* segmenter_;

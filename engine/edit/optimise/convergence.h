@@ -10,7 +10,7 @@ namespace gse::edit {
 
 /// Tells when an edit has converged. The measure is the mean absolute change inside the mask between two
 /// visits of a view, as an exponential mean (0.98 a step, corrected for its start). It must have been below
-/// `EditRequest::early_stop_change` for every view.
+/// `LoopSettings::early_stop_change` for every view.
 class ConvergenceDetector {
 public:
     ConvergenceDetector(std::size_t views, double least_change)

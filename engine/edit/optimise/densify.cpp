@@ -22,29 +22,29 @@ float WorkingSet::largest_scale(std::size_t index) const {
     return std::max({scale[0], scale[1], scale[2]});
 }
 
-bool WorkingSet::prunable(std::size_t index, const EditRequest& request) const {
+bool WorkingSet::prunable(std::size_t index, const LoopSettings& settings) const {
     const double opacity =
         1 / (1 + std::exp(-static_cast<double>(table_.rows.opacity_logit[first_row() + index])));
-    if (opacity < request.min_opacity) return true;
+    if (opacity < settings.min_opacity) return true;
     const float scale = largest_scale(index);
-    if (std::exp(scale) <= request.prune_scale * extent_) return false;
+    if (std::exp(scale) <= settings.prune_scale * extent_) return false;
     return scale > table_.birth_scale[index] + std::log(GrownFactor);
 }
 
-std::vector<std::size_t> WorkingSet::densify_candidates(const EditRequest& request) const {
+std::vector<std::size_t> WorkingSet::densify_candidates(const LoopSettings& settings) const {
     std::vector<std::pair<double, std::size_t>> ranked;
     for (std::size_t i = 0; i < labelled(); ++i) {
         const double gradient = table_.gradient_sum[i] / std::max(1u, table_.gradient_count[i]);
         if (gradient > 0) ranked.emplace_back(-gradient, i);
     }
     auto count =
-        static_cast<std::size_t>(std::ceil(request.densify_percent * static_cast<double>(ranked.size())));
-    const auto limit = static_cast<std::size_t>(request.max_growth * static_cast<double>(start_count_));
+        static_cast<std::size_t>(std::ceil(settings.densify_percent * static_cast<double>(ranked.size())));
+    const auto limit = static_cast<std::size_t>(settings.max_growth * static_cast<double>(start_count_));
     count = std::min({count, ranked.size(), limit > labelled() ? limit - labelled() : 0});
     std::nth_element(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(count), ranked.end());
     std::vector<std::size_t> chosen;
     for (std::size_t i = 0; i < count; ++i)
-        if (-ranked[i].first >= request.densify_min_gradient) chosen.push_back(ranked[i].second);
+        if (-ranked[i].first >= settings.densify_min_gradient) chosen.push_back(ranked[i].second);
     std::sort(chosen.begin(), chosen.end());
     return chosen;
 }
@@ -90,15 +90,15 @@ std::size_t WorkingSet::keep_added(std::span<const float> weight, std::span<cons
     return dropped;
 }
 
-DensifyCount WorkingSet::densify(const EditRequest& request, Random& random, bool may_grow) {
+DensifyCount WorkingSet::densify(const LoopSettings& settings, Random& random, bool may_grow) {
     DensifyCount count;
     std::vector<std::size_t> chosen;
-    if (may_grow) chosen = densify_candidates(request);
+    if (may_grow) chosen = densify_candidates(settings);
     table_.reserve(SplitChildren * chosen.size());  // the densification either happens or changes nothing
     const int generation = schedule_.advance();
     std::vector<std::uint8_t> keep(labelled(), 1);
     for (const std::size_t index : chosen) {
-        if (std::exp(largest_scale(index)) > request.percent_dense * extent_) {
+        if (std::exp(largest_scale(index)) > settings.percent_dense * extent_) {
             split(index, generation, random);
             keep[index] = 0;
             ++count.split;
@@ -112,7 +112,7 @@ DensifyCount WorkingSet::densify(const EditRequest& request, Random& random, boo
     }
     keep.resize(labelled(), 1);
     for (std::size_t i = 0; i < labelled(); ++i)
-        if (keep[i] != 0 && prunable(i, request)) {
+        if (keep[i] != 0 && prunable(i, settings)) {
             keep[i] = 0;
             ++count.pruned;
         }

@@ -67,16 +67,22 @@ std::vector<std::uint8_t> labelled(const EditBase& base, const EditPlan& plan) {
     return label;
 }
 
+/// The request with the settings of its loop; `views` may be null.
+CheckedRequest for_loop(CheckedRequest request, EditMode mode, const MultiViewEditor* views) {
+    static_cast<EditSettings&>(request) = loop_settings(
+        request, mode, views != nullptr, views != nullptr && views->supports_appearance_editing());
+    return request;
+}
+
 }  // namespace
 
 /// Everything one run keeps between iterations.
 class Optimiser::Run {
 public:
-    Run(const GaussianSet& base, const EditPlan& plan, const EditRequest& request, const EditTools& tools)
+    Run(const GaussianSet& base, const EditPlan& plan, const CheckedRequest& request, const EditTools& tools)
         : base_(base), plan_(plan), label_(labelled(base_, plan)),
-          request_(loop_request(request, plan.mode, tools.views != nullptr,
-                                tools.views != nullptr && tools.views->supports_appearance_editing())),
-          tools_(tools), set_(base_.drawn, label_, plan.seeds, request_, camera_extent(plan.views)),
+          request_(for_loop(request, plan.mode, tools.views)), tools_(tools),
+          set_(base_.drawn, label_, plan.seeds, request_, camera_extent(plan.views)),
           preservation_({request.l1, request.ssim, request.preserve}), fit_(FitWeights),
           gradient_of_guidance_(tools.guidance, request_),
           masks_(plan, request_, tools.word, tools.attention, tools.segmenter), cycle_(request.seed),
@@ -533,7 +539,7 @@ private:
     const EditBase base_;
     const EditPlan& plan_;
     std::vector<std::uint8_t> label_;  // what may change now
-    const EditRequest request_;
+    const CheckedRequest request_;
     const EditTools tools_;
     WorkingSet set_;
     PreservationLoss preservation_, fit_;  // of steps by a gradient, and of those to redrawn views
@@ -570,7 +576,7 @@ double camera_extent(const std::vector<View>& views) {
     return largest > 0 ? 1.1 * largest : 1;
 }
 
-Optimiser::Optimiser(const GaussianSet& base, const EditPlan& plan, const EditRequest& request,
+Optimiser::Optimiser(const GaussianSet& base, const EditPlan& plan, const CheckedRequest& request,
                      const EditTools& tools)
     : run_(std::make_unique<Run>(base, plan, request, tools)) {}
 
@@ -580,7 +586,7 @@ std::optional<ViewTargets> Optimiser::draw_views() { return run_->draw_views(); 
 
 EditResult Optimiser::fit() { return run_->fit(); }
 
-EditResult run_edit(const GaussianSet& base, const EditPlan& plan, const EditRequest& request,
+EditResult run_edit(const GaussianSet& base, const EditPlan& plan, const CheckedRequest& request,
                     const EditTools& tools) {
     return Optimiser(base, plan, request, tools).fit();
 }

@@ -12,7 +12,7 @@
 #include "engine/base/memory.h"
 #include "engine/edit/interfaces/edit_plan.h"
 #include "engine/edit/interfaces/edit_tools.h"
-#include "engine/edit/request/request.h"
+#include "engine/edit/request/checked_request.h"
 
 namespace gse::edit {
 
@@ -57,7 +57,7 @@ class Optimiser {
 public:
     /// Refers to base and plan, and to what the tools refer to. Throws Error (InvalidArgument) where nothing
     /// is labelled.
-    Optimiser(const GaussianSet& base, const EditPlan& plan, const EditRequest& request,
+    Optimiser(const GaussianSet& base, const EditPlan& plan, const CheckedRequest& request,
               const EditTools& tools);
     ~Optimiser();
     /// Has the views of the first round redrawn, or takes them from EditTools::start. Returns them before
@@ -74,7 +74,7 @@ private:
 };
 
 /// Runs a whole edit: Optimiser::fit().
-EditResult run_edit(const GaussianSet& base, const EditPlan& plan, const EditRequest& request,
+EditResult run_edit(const GaussianSet& base, const EditPlan& plan, const CheckedRequest& request,
                     const EditTools& tools);
 
 /// Extent of the views as 3DGS has it: 1.1 times the largest distance of a camera centre from their mean.

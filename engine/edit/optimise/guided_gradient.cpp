@@ -42,7 +42,7 @@ bool GuidedGradient::add(const GuidanceInput& input, const Image& rendered, cons
 /// Takes away what would act outside the mask, and what would push a colour further beyond [0,1].
 void GuidedGradient::gate(const Image& rendered, const Mask& mask, Image& gradient) const {
     for (std::size_t i = 0; i < gradient.data.size(); ++i) {
-        const bool outside = request_.gate_guidance && mask.data[i / 3] == 0;
+        const bool outside = settings_.gate_guidance && mask.data[i / 3] == 0;
         const bool beyond =
             (rendered.data[i] > 1 && gradient.data[i] < 0) || (rendered.data[i] < 0 && gradient.data[i] > 0);
         if (outside || beyond) gradient.data[i] = 0;
@@ -57,10 +57,10 @@ double GuidedGradient::calibrated_weight(double norm, std::size_t values) {
         std::vector<double> sorted = norms_;
         std::sort(sorted.begin(), sorted.end());
         // Without preservation the default one is the measure: the anchors keep their relative strength.
-        const double weight = request_.preserve * request_.l1;
-        const double full = (weight > 0 ? weight : EditRequest{}.preserve * EditRequest{}.l1) /
+        const double weight = settings_.preserve * settings_.l1;
+        const double full = (weight > 0 ? weight : LoopSettings{}.preserve * LoopSettings{}.l1) /
                             std::sqrt(static_cast<double>(values));
-        scale_ = request_.guidance_weight * std::max(full, 1e-6) / sorted[sorted.size() / 2];
+        scale_ = settings_.guidance_weight * std::max(full, 1e-6) / sorted[sorted.size() / 2];
     }
     return scale_;
 }

@@ -14,7 +14,8 @@ double norm(const Image& image);
 class GuidedGradient {
 public:
     /// `guidance` may be null where nothing is ever added.
-    GuidedGradient(Guidance* guidance, const EditRequest& request) : guidance_(guidance), request_(request) {}
+    GuidedGradient(Guidance* guidance, const LoopSettings& settings)
+        : guidance_(guidance), settings_(settings) {}
 
     /// Adds the gradient to `gradient` [H,W,3] and notes in `record` what the guidance tells. Adds nothing
     /// and returns false where it is not finite. `rendered` [H,W,3]: the picture before it was clamped;
@@ -29,7 +30,7 @@ private:
     double calibrated_weight(double norm, std::size_t values);
 
     Guidance* guidance_;
-    const EditRequest& request_;
+    const LoopSettings& settings_;
     std::vector<double> norms_;  // of the first gradients
     double scale_ = 0;
 };

@@ -40,9 +40,9 @@ float largest(const std::vector<float>& values, std::size_t row) {
 
 }  // namespace
 
-GenerationSchedule::GenerationSchedule(const EditRequest& request)
-    : start_(request.anchor_start), growth_(request.anchor_growth),
-      cap_(request.anchor_cap), weights_{request.anchor_first} {}
+GenerationSchedule::GenerationSchedule(const LoopSettings& settings)
+    : start_(settings.anchor_start), growth_(settings.anchor_growth),
+      cap_(settings.anchor_cap), weights_{settings.anchor_first} {}
 
 int GenerationSchedule::advance() {
     const int born = static_cast<int>(weights_.size());
@@ -52,12 +52,12 @@ int GenerationSchedule::advance() {
     return born;
 }
 
-WorkingSet::WorkingSet(const GaussianSet& base, const EditRequest& request, double extent)
-    : extent_(extent), base_size_(base.size()), table_(base.sh_degree()), schedule_(request) {}
+WorkingSet::WorkingSet(const GaussianSet& base, const LoopSettings& settings, double extent)
+    : extent_(extent), base_size_(base.size()), table_(base.sh_degree()), schedule_(settings) {}
 
 WorkingSet::WorkingSet(const GaussianSet& base, std::span<const std::uint8_t> label,
-                       const GaussianData& seeds, const EditRequest& request, double extent)
-    : WorkingSet(base, request, extent) {
+                       const GaussianData& seeds, const LoopSettings& settings, double extent)
+    : WorkingSet(base, settings, extent) {
     const GaussianData data = base.to_data();
     const auto editable = take_unlabelled(data, label);
     table_.reserve(static_cast<std::size_t>(std::count(editable.begin(), editable.end(), std::uint8_t{1})) +
@@ -174,26 +174,26 @@ double WorkingSet::add_anchor(std::span<const float> now, std::span<const float>
     return loss;
 }
 
-double WorkingSet::step(const raster::Gradients& gradients, int iteration, const EditRequest& request) {
+double WorkingSet::step(const raster::Gradients& gradients, int iteration, const LoopSettings& settings) {
     if (labelled() == 0) return 0;
     ++steps_;
     anchor_loss_ = 0;
     find_bad_rows(gradients);
-    step_geometry(gradients, iteration, request);
-    step_colour(gradients, request);
-    guard(request);
+    step_geometry(gradients, iteration, settings);
+    step_colour(gradients, settings);
+    guard(settings);
     return anchor_loss_;
 }
 
 void WorkingSet::step_geometry(const raster::Gradients& gradients, int iteration,
-                               const EditRequest& request) {
+                               const LoopSettings& settings) {
     for (std::size_t i = 0; i < labelled(); ++i)
         table_.row_factor[i] =
-            !adding_ && table_.origin[i] >= 0 ? static_cast<float>(request.geometry_share) : 1.0f;
+            !adding_ && table_.origin[i] >= 0 ? static_cast<float>(settings.geometry_share) : 1.0f;
     const double progress =
-        request.iterations > 1 ? static_cast<double>(iteration) / (request.iterations - 1) : 0;
-    const double from = std::max(request.rate_position, 1e-12),
-                 to = std::max(request.rate_position_end, 1e-12);
+        settings.iterations > 1 ? static_cast<double>(iteration) / (settings.iterations - 1) : 0;
+    const double from = std::max(settings.rate_position, 1e-12),
+                 to = std::max(settings.rate_position_end, 1e-12);
     const double position_rate =
         extent_ * std::exp(std::log(from) * (1 - progress) + std::log(to) * progress);
     const auto update = [&](std::vector<float>& all, std::span<const float> gradient, std::size_t stride,
@@ -205,34 +205,35 @@ void WorkingSet::step_geometry(const raster::Gradients& gradients, int iteration
         const std::array<double, 4> rates{rate, rate, rate, rate};
         adam_step(now, gradient_, moments, {std::span(rates).first(stride), table_.row_factor, steps_});
     };
-    update(table_.rows.position, gradients.position, 3, table_.anchor.position, request.anchor_position,
+    update(table_.rows.position, gradients.position, 3, table_.anchor.position, settings.anchor_position,
            table_.position, position_rate);
-    update(table_.rows.log_scale, gradients.log_scale, 3, table_.anchor.log_scale, request.anchor_scale,
-           table_.log_scale, request.rate_scale);
-    update(table_.rows.rotation, gradients.rotation, 4, table_.anchor.rotation, request.anchor_rotation,
-           table_.rotation, request.rate_rotation);
+    update(table_.rows.log_scale, gradients.log_scale, 3, table_.anchor.log_scale, settings.anchor_scale,
+           table_.log_scale, settings.rate_scale);
+    update(table_.rows.rotation, gradients.rotation, 4, table_.anchor.rotation, settings.anchor_rotation,
+           table_.rotation, settings.rate_rotation);
     update(table_.rows.opacity_logit, gradients.opacity_logit, 1, table_.anchor.opacity_logit,
-           request.anchor_opacity, table_.opacity, request.rate_opacity);
+           settings.anchor_opacity, table_.opacity, settings.rate_opacity);
 }
 
-void WorkingSet::step_colour(const raster::Gradients& gradients, const EditRequest& request) {
+void WorkingSet::step_colour(const raster::Gradients& gradients, const LoopSettings& settings) {
     const std::size_t stride = table_.rows.sh_stride();
     load_gradient(gradients.sh, stride);
     const auto now = tail(table_.rows.sh, stride);
-    anchor_loss_ += add_anchor(now, table_.anchor.sh, request.anchor_colour);
-    if (request.colour_coupling > 0)
+    anchor_loss_ += add_anchor(now, table_.anchor.sh, settings.anchor_colour);
+    if (settings.colour_coupling > 0)
         common_.step(gradient_, table_.birth_sh, now,
-                     CommonRate * request.rate_colour * request.colour_coupling);
-    const double own = 1 - request.colour_coupling;
+                     CommonRate * settings.rate_colour * settings.colour_coupling);
+    const double own = 1 - settings.colour_coupling;
     std::array<double, 48> rates{};
-    for (std::size_t i = 0; i < stride; ++i) rates[i] = own * (i < 3 ? request.rate_colour : request.rate_sh);
+    for (std::size_t i = 0; i < stride; ++i)
+        rates[i] = own * (i < 3 ? settings.rate_colour : settings.rate_sh);
     adam_step(now, gradient_, table_.sh, {std::span(rates).first(stride), {}, steps_});
 }
 
-void WorkingSet::guard(const EditRequest& request) {
+void WorkingSet::guard(const LoopSettings& settings) {
     const auto low = static_cast<float>(std::log(SmallestScale * extent_));
     const auto high = static_cast<float>(std::log(LargestScale * extent_));
-    const auto aspect = static_cast<float>(std::log(request.max_aspect));
+    const auto aspect = static_cast<float>(std::log(settings.max_aspect));
     const auto scales = tail(table_.rows.log_scale, 3);
     const auto logits = tail(table_.rows.opacity_logit, 1);
     const std::size_t stride = table_.rows.sh_stride();
@@ -295,14 +296,14 @@ void WorkingSet::plant(const GaussianData& seeds, const GaussianData& hidden, do
 }
 
 void WorkingSet::relabel(const GaussianSet& base, std::span<const std::uint8_t> label,
-                         const EditRequest& request) {
+                         const LoopSettings& settings) {
     constexpr std::int64_t Unlabelled = -2, Removed = -1;
     std::vector<std::int64_t> index_now(base_size_, Removed);
     for (const auto row : unlabelled_) index_now[row] = Unlabelled;
     for (std::size_t i = 0; i < labelled(); ++i)
         if (table_.origin[i] >= 0)
             index_now[static_cast<std::size_t>(table_.origin[i])] = static_cast<std::int64_t>(i);
-    WorkingSet fresh(base, request, extent_);
+    WorkingSet fresh(base, settings, extent_);
     const GaussianData data = base.to_data();
     const auto editable = fresh.take_unlabelled(data, label);
     const std::size_t sh = rows().sh_stride();

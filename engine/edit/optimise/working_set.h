@@ -20,7 +20,7 @@ namespace gse::edit {
 /// Anchor weights per generation (GSEditPro eq. 6; GaussianEditor's schedule; METHOD.md, Anchors).
 class GenerationSchedule {
 public:
-    explicit GenerationSchedule(const EditRequest& request);
+    explicit GenerationSchedule(const LoopSettings& settings);
     /// Called once per densification; returns the generation number of the rows born in it.
     int advance();
     double weight(int generation) const { return weights_[static_cast<std::size_t>(generation)]; }
@@ -42,7 +42,7 @@ public:
     /// of generation 1 with origin -1. Like rows born in a densification, they are free of anchors until the
     /// next.
     WorkingSet(const GaussianSet& base, std::span<const std::uint8_t> label, const GaussianData& seeds,
-               const EditRequest& request, double extent);
+               const LoopSettings& settings, double extent);
 
     const RowTable& table() const { return table_; }
     const GaussianData& rows() const { return table_.rows; }
@@ -53,11 +53,11 @@ public:
 
     /// Anchors, Adam on every attribute, clamps. Returns the anchor loss. Rows with a non-finite gradient get
     /// none in this step, like rows that no pixel shows, and are counted.
-    double step(const raster::Gradients& gradients, int iteration, const EditRequest& request);
+    double step(const raster::Gradients& gradients, int iteration, const LoopSettings& settings);
     /// Adds the screen-space gradients of one iteration to the densification statistics.
     void collect(const raster::Gradients& gradients);
     /// Clone, split and prune (METHOD.md, Densification). Resets statistics and anchors.
-    DensifyCount densify(const EditRequest& request, Random& random, bool may_grow);
+    DensifyCount densify(const LoopSettings& settings, Random& random, bool may_grow);
 
     /// Drops rows that grew from seeds and whose `weight` [rows] is below `least_weight`, where `evidence`
     /// [rows] says that they were seen at all. Drops nothing when less than `least_left` of them would be
@@ -74,7 +74,7 @@ public:
     /// Rows that join it start as in the base, with the change of colour that the label shares. Rows that
     /// stay keep their values. Rows born in the run stay when the row they descend from does. Momentum and
     /// anchors begin anew.
-    void relabel(const GaussianSet& base, std::span<const std::uint8_t> label, const EditRequest& request);
+    void relabel(const GaussianSet& base, std::span<const std::uint8_t> label, const LoopSettings& settings);
 
     /// Takes up a state that an earlier run over the same base has reached, for the rows of this set's label.
     /// Momentum and anchors begin there.
@@ -91,7 +91,7 @@ public:
 
 private:
     /// Without any row.
-    WorkingSet(const GaussianSet& base, const EditRequest& request, double extent);
+    WorkingSet(const GaussianSet& base, const LoopSettings& settings, double extent);
     /// Appends the rows of `base` that may not change: those without a label, and those that cannot be drawn.
     /// Returns 1 for each of the others.
     std::vector<std::uint8_t> take_unlabelled(const GaussianData& base, std::span<const std::uint8_t> label);
@@ -111,15 +111,15 @@ private:
     std::span<float> tail(std::vector<float>& all, std::size_t stride) {
         return std::span<float>(all).subspan(table_.first_row * stride);
     }
-    void step_geometry(const raster::Gradients& gradients, int iteration, const EditRequest& request);
-    void step_colour(const raster::Gradients& gradients, const EditRequest& request);
+    void step_geometry(const raster::Gradients& gradients, int iteration, const LoopSettings& settings);
+    void step_colour(const raster::Gradients& gradients, const LoopSettings& settings);
     void load_gradient(std::span<const float> gradient, std::size_t stride);
-    void guard(const EditRequest& request);
+    void guard(const LoopSettings& settings);
     /// Size of the labelled row, as a logarithm.
     float largest_scale(std::size_t index) const;
-    bool prunable(std::size_t index, const EditRequest& request) const;
+    bool prunable(std::size_t index, const LoopSettings& settings) const;
     void find_bad_rows(const raster::Gradients& gradients);
-    std::vector<std::size_t> densify_candidates(const EditRequest& request) const;
+    std::vector<std::size_t> densify_candidates(const LoopSettings& settings) const;
     void split(std::size_t index, int generation, Random& random);
 
     double extent_;

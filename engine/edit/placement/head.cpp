@@ -63,14 +63,14 @@ HeadRegion bust_of(const GaussianSet& set, std::span<const std::uint8_t> bits, c
     return bust;
 }
 
-AttachmentTarget wearer_of(const EditRequest& request, const GaussianSet& set,
+AttachmentTarget wearer_of(const CheckedRequest& request, const GaussianSet& set,
                            std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front, bool drawn,
                            const ModelTraits& traits) {
-    const bool at_head =
-        language::has_usual_place(request.target) && language::usual_place(request.target) != "around";
+    const auto& target = request.target();
+    const bool at_head = language::has_usual_place(target) && language::usual_place(target) != "around";
     if (drawn && at_head && draws_place(request, EditMode::Add)) {
-        auto bust = bust_of(set, bits, up, front,
-                            language::usual_place(request.target) == "neck" ? traits.head_and_neck : 1);
+        auto bust =
+            bust_of(set, bits, up, front, language::usual_place(target) == "neck" ? traits.head_and_neck : 1);
         if (bust.head < traits.small_head) {
             const auto standing = standing_alone(set, bust.bits, up, front);
             return {std::move(bust.bits), standing, bust.head};
@@ -79,14 +79,14 @@ AttachmentTarget wearer_of(const EditRequest& request, const GaussianSet& set,
     return {{bits.begin(), bits.end()}, standing_of(set, bits, up, front)};
 }
 
-bool replaces_accessory(const EditRequest& request, EditMode mode) {
-    return mode == EditMode::Replace && language::has_usual_place(request.source) &&
-           language::has_usual_place(request.target);
+bool replaces_accessory(const language::EditSentence& sentence, EditMode mode) {
+    return mode == EditMode::Replace && language::has_usual_place(sentence.source()) &&
+           language::has_usual_place(sentence.target());
 }
 
-bool moves_worn_place(const EditRequest& request, EditMode mode) {
-    return replaces_accessory(request, mode) &&
-           language::usual_place(request.source) != language::usual_place(request.target);
+bool moves_worn_place(const language::EditSentence& sentence, EditMode mode) {
+    return replaces_accessory(sentence, mode) &&
+           language::usual_place(sentence.source()) != language::usual_place(sentence.target());
 }
 
 }  // namespace gse::edit

@@ -7,7 +7,7 @@
 
 #include "engine/edit/interfaces/model_traits.h"
 #include "engine/edit/placement/upright_bounds.h"
-#include "engine/edit/request/request.h"
+#include "engine/edit/request/checked_request.h"
 #include "engine/math/vec.h"
 #include "engine/scene/gaussian_set.h"
 
@@ -35,13 +35,13 @@ struct AttachmentTarget {
 /// Head of the rows that `bits` [N] label, if it is small for the model (ModelTraits::small_head). The target
 /// must have its place there (language::usual_place()) and be `drawn` into the views. All rows otherwise. A
 /// model draws what suits the figure that it is shown.
-AttachmentTarget wearer_of(const EditRequest& request, const GaussianSet& set,
+AttachmentTarget wearer_of(const CheckedRequest& request, const GaussianSet& set,
                            std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front, bool drawn,
                            const ModelTraits& traits);
 
 /// Tells whether a worn object replaces another worn one ("crown" for "hat"). The wearer stays and is shown.
-bool replaces_accessory(const EditRequest& request, EditMode mode);
+bool replaces_accessory(const language::EditSentence& sentence, EditMode mode);
 /// Tells whether it is worn elsewhere than that ("sunglasses" of "hat").
-bool moves_worn_place(const EditRequest& request, EditMode mode);
+bool moves_worn_place(const language::EditSentence& sentence, EditMode mode);
 
 }  // namespace gse::edit

@@ -13,6 +13,8 @@
 namespace gse::edit {
 namespace {
 
+constexpr const char* OpenMode = "auto";  // of EditWords: the sentence tells it
+
 /// Lower-case words with one space between them; throws when there are none.
 std::string phrase_of(const std::string& text, const char* what) {
     auto phrase = language::normalised_prompt(text);
@@ -24,7 +26,7 @@ std::string phrase_of(const std::string& text, const char* what) {
 }
 
 void check_names(const EditRequest& request) {
-    if (request.mode != "auto" && !mode_named(request.mode))
+    if (request.mode != OpenMode && !mode_named(request.mode))
         throw Error(ErrorCode::InvalidArgument, "\"" + request.mode + "\" is not an edit mode",
                     "use auto, modify, replace or add");
     if (std::find(Qualities.begin(), Qualities.end(), request.quality) == Qualities.end())
@@ -41,9 +43,36 @@ std::string guess(const language::Sentence& sentence, const std::string& source,
 
 }  // namespace
 
-CheckedRequest::CheckedRequest(EditRequest request, language::Sentence sentence, bool target_open)
-    : EditRequest(std::move(request)), words_(std::move(sentence), source, target),
-      target_open_(target_open) {}
+CheckedRequest::CheckedRequest(const EditRequest& request, language::Sentence sentence, bool target_open)
+    : EditSettings(request), mode(mode_named(request.mode)), prompt_(request.prompt),
+      sentence_(std::move(sentence), request.source, request.target), target_open_(target_open) {}
+
+EditWords CheckedRequest::words() const {
+    return {source(), prompt_, target(), mode ? mode_name(*mode) : OpenMode};
+}
+
+EditRequest CheckedRequest::plain() const { return {words(), *this}; }
+
+CheckedRequest CheckedRequest::with_target(std::string target) const {
+    CheckedRequest other = *this;
+    other.sentence_ = sentence_.with_target(std::move(target));
+    return other;
+}
+
+CheckedRequest CheckedRequest::reworded(std::string prompt, std::string target) const {
+    CheckedRequest other = *this;
+    other.sentence_ = sentence_.reworded(prompt, std::move(target));
+    other.prompt_ = std::move(prompt);
+    return other;
+}
+
+CheckedRequest CheckedRequest::search_for(std::string thing) const {
+    CheckedRequest other = *this;
+    other.prompt_ = sentence_.before();
+    other.sentence_ = {language::Sentence(other.prompt_), std::move(thing), source()};
+    other.mode = EditMode::Modify;
+    return other;
+}
 
 EditRequest with_target(EditRequest request, const News& news) {
     const auto source = language::normalised_prompt(request.source);
@@ -72,7 +101,7 @@ CheckedRequest check(EditRequest request, const News& news) {
                         request.target + "\"",
                     "use it in the sentence, or choose another target");
     if (request.source.empty()) request.source = request.target;
-    return {std::move(request), std::move(sentence), open};
+    return {request, std::move(sentence), open};
 }
 
 EditRequest source_alone(EditRequest request) {
@@ -80,6 +109,12 @@ EditRequest source_alone(EditRequest request) {
     request.prompt = "a " + request.target;
     request.mode = "modify";
     return request;
+}
+
+std::string instruction_of(const CheckedRequest& request) {
+    return request.instruction.empty()
+               ? language::instruction_for(request.sentence().sentence(), request.source())
+               : request.instruction;
 }
 
 }  // namespace gse::edit

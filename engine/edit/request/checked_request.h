@@ -1,6 +1,7 @@
-// A request whose words are complete and whose values are in range.
+// A request whose words are complete and whose values are in range: the form in which stages of a run get it.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,24 +16,40 @@ struct News {
     std::string read_target = {};  // word that a search of this sentence saw to be new; empty = none has
 };
 
-/// Only check() makes one. Its settings may still be changed; its words are read through words(), which
-/// parsed them once.
-class CheckedRequest : public EditRequest {
+/// A request that check() made, or one of this class from another. Settings may be changed; the words are one
+/// parsed sentence. It is no EditRequest, so that nothing can parse its text again.
+class CheckedRequest : public EditSettings {
 public:
-    /// The request with source and target completed and normalised; the prompt is as it was typed.
-    const EditRequest& plain() const { return *this; }
-    const language::EditSentence& words() const { return words_; }
+    /// Mode that was asked for; nothing = the sentence tells it.
+    std::optional<EditMode> mode;
+
+    const language::EditSentence& sentence() const { return sentence_; }
+    const std::string& source() const { return sentence_.source(); }
+    const std::string& target() const { return sentence_.target(); }
+    /// The prompt as it was typed. Models are told sentence().prompt().
+    const std::string& prompt() const { return prompt_; }
     /// Nobody has chosen the target: it was guessed, and pictures may know better.
     bool target_open() const { return target_open_; }
 
+    /// The text with source and target completed and normalised; the prompt is as it was typed.
+    EditWords words() const;
+    /// The request as it is written.
+    EditRequest plain() const;
+
+    /// The request with another new phrase of its sentence.
+    CheckedRequest with_target(std::string target) const;
+    /// The request in other words: what a model is told in place of what was typed.
+    CheckedRequest reworded(std::string prompt, std::string target) const;
+    /// Search for another `thing` of the sentence, in a scene that shows nothing of the target yet: by the
+    /// sentence before the edit, in mode modify.
+    CheckedRequest search_for(std::string thing) const;
+
 private:
     friend CheckedRequest check(EditRequest request, const News& news);
-    CheckedRequest(EditRequest request, language::Sentence sentence, bool target_open);
+    CheckedRequest(const EditRequest& request, language::Sentence sentence, bool target_open);
 
-    using EditWords::prompt;
-    using EditWords::source;
-    using EditWords::target;
-    language::EditSentence words_;
+    std::string prompt_;
+    language::EditSentence sentence_;
     bool target_open_ = false;
 };
 
@@ -46,5 +63,9 @@ CheckedRequest check(EditRequest request, const News& news = {});
 
 /// The search for the source alone, for a sentence that cannot be edited by: "a bear".
 EditRequest source_alone(EditRequest request);
+
+/// The order for a model that edits pictures by instructions (InstructPix2Pix): the request's instruction;
+/// without one language::instruction_for().
+std::string instruction_of(const CheckedRequest& request);
 
 }  // namespace gse::edit

@@ -5,7 +5,6 @@
 #include <array>
 
 #include "engine/language/grammar.h"
-#include "engine/language/sentence.h"
 
 namespace gse::edit {
 namespace {
@@ -26,16 +25,18 @@ std::optional<EditMode> mode_named(const std::string& name) {
     return std::nullopt;
 }
 
-std::pair<EditMode, std::string> decide_mode(const EditRequest& request,
+std::pair<EditMode, std::string> decide_mode(const CheckedRequest& request,
                                              std::optional<double> target_found_share) {
-    return language::decide_mode(edit_sentence(request), mode_named(request.mode), target_found_share);
+    return language::decide_mode(request.sentence(), request.mode, target_found_share);
 }
 
-bool draws_place(const EditRequest& request, EditMode mode) {
-    return mode == EditMode::Add && request.place_views > 0 && request.source != request.target &&
-           language::place_name(edit_sentence(request).relation()).empty();
+bool draws_place(const SearchSettings& settings, const language::EditSentence& sentence, EditMode mode) {
+    return mode == EditMode::Add && settings.place_views > 0 && sentence.source() != sentence.target() &&
+           language::place_name(sentence.relation()).empty();
 }
 
-EditMode planned_mode(const EditRequest& request) { return decide_mode(request, std::nullopt).first; }
+bool draws_place(const CheckedRequest& request, EditMode mode) {
+    return draws_place(request, request.sentence(), mode);
+}
 
 }  // namespace gse::edit

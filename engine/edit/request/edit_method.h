@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
+#include "engine/edit/request/checked_request.h"
 #include "engine/edit/request/field_use.h"
-#include "engine/edit/request/request.h"
 
 namespace gse::edit {
 
@@ -26,9 +26,9 @@ class MethodRun {
 public:
     virtual ~MethodRun() = default;
     /// Has the model redraw views and fits the rows to them.
-    virtual void fit_redrawn_views(const EditRequest& request) = 0;
+    virtual void fit_redrawn_views(const CheckedRequest& request) = 0;
     /// Follows the model's gradient at every step.
-    virtual void follow_gradient(const EditRequest& request) = 0;
+    virtual void follow_gradient(const CheckedRequest& request) = 0;
 };
 
 /// One way to lead an edit.
@@ -55,9 +55,9 @@ public:
     /// Explains the number of steps to the artist.
     virtual std::string steps_help(const LoopSettings& settings, EditMode mode) const = 0;
     /// Work from an iteration on. `drawn`: the search has drawn the new thing, which tells its colour.
-    virtual MethodWork work(const EditRequest& request, EditMode mode, int first_iteration,
-                            bool drawn) const = 0;
-    virtual void run(MethodRun& run, const EditRequest& request) const = 0;
+    virtual MethodWork work(const EditSettings& settings, const language::EditSentence& sentence,
+                            EditMode mode, int first_iteration, bool drawn) const = 0;
+    virtual void run(MethodRun& run, const CheckedRequest& request) const = 0;
 
     /// Tells whether a setting with these FieldUse bits changes anything.
     bool counts(unsigned field_uses) const { return field_uses == 0 || (field_uses & uses()) != 0; }
@@ -82,7 +82,5 @@ std::string why_unused(const EditMethod& method, unsigned field_uses);
 
 /// Optimisation steps of an edit by the method of its settings.
 int loop_steps(const LoopSettings& settings, EditMode mode);
-/// Steps as the words and the mode of the request say, before anything was looked for.
-int planned_steps(const EditRequest& request);
 
 }  // namespace gse::edit

@@ -97,6 +97,4 @@ int loop_steps(const LoopSettings& settings, EditMode mode) {
     return method_of(settings).steps(settings, mode);
 }
 
-int planned_steps(const EditRequest& request) { return loop_steps(request, planned_mode(request)); }
-
 }  // namespace gse::edit

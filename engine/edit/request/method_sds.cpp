@@ -10,12 +10,12 @@ namespace {
 constexpr double SearchesOfAdded = 2;  // over all views, when something is added
 
 /// Masks that could follow the edit while the loop runs.
-double refreshed_masks(const EditRequest& request, int first_iteration) {
-    if (!request.dynamic_mask || request.iterations <= 0) return 0;
-    const double span = std::max(0.0, 1 - request.dynamic_from) * request.iterations;
-    const double visits = std::min(span, static_cast<double>(request.iterations - first_iteration));
-    const double every = std::max(1.0, request.dynamic_every * request.iterations);
-    return std::min(visits, request.views * std::ceil(span / every));
+double refreshed_masks(const EditSettings& settings, int first_iteration) {
+    if (!settings.dynamic_mask || settings.iterations <= 0) return 0;
+    const double span = std::max(0.0, 1 - settings.dynamic_from) * settings.iterations;
+    const double visits = std::min(span, static_cast<double>(settings.iterations - first_iteration));
+    const double every = std::max(1.0, settings.dynamic_every * settings.iterations);
+    return std::min(visits, settings.views * std::ceil(span / every));
 }
 
 class ScoreDistillation final : public EditMethod {
@@ -35,15 +35,16 @@ public:
         return "Optimisation steps. More = closer to the sentence, and longer.";
     }
 
-    MethodWork work(const EditRequest& request, EditMode mode, int first_iteration, bool) const override {
+    MethodWork work(const EditSettings& settings, const language::EditSentence&, EditMode mode,
+                    int first_iteration, bool) const override {
         MethodWork left;
-        left.pulls = std::max(0, request.iterations - first_iteration);
-        left.refreshed_masks = refreshed_masks(request, first_iteration);
-        if (mode == EditMode::Add && request.prune_added)
-            left.searched_views = SearchesOfAdded * request.views;
+        left.pulls = std::max(0, settings.iterations - first_iteration);
+        left.refreshed_masks = refreshed_masks(settings, first_iteration);
+        if (mode == EditMode::Add && settings.prune_added)
+            left.searched_views = SearchesOfAdded * settings.views;
         return left;
     }
-    void run(MethodRun& run, const EditRequest& request) const override { run.follow_gradient(request); }
+    void run(MethodRun& run, const CheckedRequest& request) const override { run.follow_gradient(request); }
 };
 
 }  // namespace

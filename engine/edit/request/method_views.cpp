@@ -6,17 +6,17 @@
 #include "engine/edit/request/colour_word.h"
 #include "engine/edit/request/edit_method.h"
 #include "engine/language/description.h"
-#include "engine/language/words.h"
 
 namespace gse::edit {
 namespace {
 
 /// Tells whether one view is drawn before all others, for the colour of a new thing that the sentence leaves
 /// open.
-bool draws_key_view(const EditRequest& request, EditMode mode, bool drawn) {
-    if (drawn || !round_plan(request, mode).anew) return false;
-    const auto thing = new_thing(request, mode);
-    return !thing.empty() && !language::is_described(language::normalised_prompt(request.prompt), thing);
+bool draws_key_view(const RoundPlan& plan, const language::EditSentence& sentence, EditMode mode,
+                    bool drawn) {
+    if (drawn || !plan.anew) return false;
+    const auto& thing = new_thing(sentence, mode);
+    return !thing.empty() && !language::is_described(sentence.prompt(), thing);
 }
 
 class RedrawnViews final : public EditMethod {
@@ -46,21 +46,21 @@ public:
     }
 
     /// A round that was begun is not begun again.
-    MethodWork work(const EditRequest& request, EditMode mode, int first_iteration,
-                    bool drawn) const override {
-        const auto plan = round_plan(request, mode);
+    MethodWork work(const EditSettings& settings, const language::EditSentence& sentence, EditMode mode,
+                    int first_iteration, bool drawn) const override {
+        const auto plan = round_plan(settings, mode);
         MethodWork left;
         const auto draw = [&](int round, double views) {
             (round + 1 < plan.rounds ? left.early_views : left.views) += views;
             left.denoising_steps += views * plan.guided_steps_of(round);
         };
-        if (first_iteration == 0 && draws_key_view(request, mode, drawn)) draw(0, 1);
+        if (first_iteration == 0 && draws_key_view(plan, sentence, mode, drawn)) draw(0, 1);
         for (int round = (first_iteration + plan.fit_steps - 1) / plan.fit_steps; round < plan.rounds;
              ++round)
             draw(round, plan.views);
         return left;
     }
-    void run(MethodRun& run, const EditRequest& request) const override { run.fit_redrawn_views(request); }
+    void run(MethodRun& run, const CheckedRequest& request) const override { run.fit_redrawn_views(request); }
 };
 
 }  // namespace

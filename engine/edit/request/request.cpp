@@ -1,25 +1,13 @@
-// Words of a request, and what follows from its settings.
+// Reading of settings, and the rounds and masks that follow from them.
 #include "engine/edit/request/request.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "engine/edit/request/edit_method.h"
 #include "engine/edit/request/scales.h"
-#include "engine/language/sentence.h"
 #include "engine/localize/clusters.h"
 
 namespace gse::edit {
-
-language::EditSentence edit_sentence(const EditRequest& request) {
-    return {language::Sentence(request.prompt), request.source, request.target};
-}
-
-std::string instruction_of(const EditRequest& request) {
-    return request.instruction.empty()
-               ? language::instruction_for(language::Sentence(request.prompt), request.source)
-               : request.instruction;
-}
 
 namespace {
 
@@ -38,11 +26,6 @@ void read_request(EditRequest& request, const nlohmann::ordered_json& json) {
         if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, Overridable>)
             if (value.is_standard()) value.unset();
     });
-}
-
-std::string new_thing(const EditRequest& request, EditMode mode) {
-    const auto thing = mode == EditMode::Replace ? edit_sentence(request).replacement() : std::string();
-    return thing.empty() ? request.target : thing;
 }
 
 int RoundPlan::steps_of(int round) const {

@@ -389,9 +389,18 @@ private:
     }
 };
 
-/// Request of an artist. Defaults suit the bundled model on two processor cores. All values of the full-size
-/// method can be set. A stage depends on the structs it is given.
-struct EditRequest : EditWords, SearchSettings, LabelThresholds, LoopSettings {
+/// Everything of an edit beside its words. Defaults suit the bundled model on two processor cores. All values
+/// of the full-size method can be set. A stage depends on the structs it is given.
+struct EditSettings : SearchSettings, LabelThresholds, LoopSettings {
+    template <class Self, class F> static void visit_fields(Self& self, F&& f) {
+        SearchSettings::visit_fields(self, f);
+        LabelThresholds::visit_fields(self, f);
+        LoopSettings::visit_fields(self, f);
+    }
+};
+
+/// Request of an artist, as it is typed and written. Stages of a run take a CheckedRequest.
+struct EditRequest : EditWords, EditSettings {
     /// Names of before, which recipes, projects and command lines may still use.
     static constexpr std::array<RenamedField, 10> Renamed{{{"rivals", "competing_words"},
                                                            {"second_look", "retry_passes"},
@@ -406,9 +415,7 @@ struct EditRequest : EditWords, SearchSettings, LabelThresholds, LoopSettings {
 
     template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         EditWords::visit_fields(self, f);
-        SearchSettings::visit_fields(self, f);
-        LabelThresholds::visit_fields(self, f);
-        LoopSettings::visit_fields(self, f);
+        EditSettings::visit_fields(self, f);
     }
 };
 
@@ -422,10 +429,6 @@ using language::EditMode;
 const char* mode_name(EditMode mode);
 /// The mode of that name; nothing for others, "auto" among them.
 std::optional<EditMode> mode_named(const std::string& name);
-
-/// Target with a shape of its own after an edit of that mode: the replacement of the source, or the addition.
-/// `request` is completed.
-std::string new_thing(const EditRequest& request, EditMode mode);
 
 /// The values of LoopSettings::quality, from quick to thorough.
 inline constexpr std::array<const char*, 3> Qualities{"draft", "normal", "fine"};
@@ -454,14 +457,5 @@ RoundPlan round_plan(const LoopSettings& settings, EditMode mode);
 
 /// How far a mask is grown, in its own pixels: what is new needs room.
 double mask_growth(const LoopSettings& settings, EditMode mode, const Mask& mask);
-/// Mode as the words of the request say, before anything was looked for.
-EditMode planned_mode(const EditRequest& request);
-
-/// The words of a request that was completed, parsed.
-language::EditSentence edit_sentence(const EditRequest& request);
-
-/// The order for a model that edits pictures by instructions (InstructPix2Pix): the request's instruction;
-/// without one language::instruction_for().
-std::string instruction_of(const EditRequest& request);
 
 }  // namespace gse::edit

@@ -30,8 +30,8 @@ std::string words_to_make(const std::string& word, const std::vector<std::string
 void require_known_words(const CheckedRequest& request, const std::vector<std::string>& known,
                          const std::vector<std::string>& drawn, bool labelled_by_hand) {
     const auto say = language::promptable_vocabulary(known, drawn);
-    const auto source = language::unknown_word(known, request.words().source()),
-               target = language::unknown_word(say, request.words().target());
+    const auto source = language::unknown_word(known, request.source()),
+               target = language::unknown_word(say, request.target());
     if (!labelled_by_hand && !source.empty())
         throw Error(
             ErrorCode::InvalidArgument,

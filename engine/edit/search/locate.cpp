@@ -22,7 +22,6 @@
 #include "engine/edit/search/word_search.h"
 #include "engine/edit/target_views/strategies/studio_background.h"
 #include "engine/language/grammar.h"
-#include "engine/language/sentence.h"
 #include "engine/language/vocabulary.h"
 #include "engine/language/words.h"
 #include "engine/localize/clusters.h"
@@ -49,7 +48,7 @@ public:
                   result.mode == EditMode::Add       ? "adding"
                   : result.mode == EditMode::Replace ? "replacing"
                                                      : "changing",
-                  result.mode == EditMode::Add ? input_.request.target : input_.request.source,
+                  result.mode == EditMode::Add ? input_.request.target() : input_.request.source(),
                   result.reason);
         if (result.mode == EditMode::Add) add(result);
         else modify(result);
@@ -63,7 +62,7 @@ public:
     }
 
 private:
-    const EditRequest& request() const { return input_.request; }
+    const CheckedRequest& request() const { return input_.request; }
 
     void check_stop() const {
         if (tools_.job.stop_requested()) throw Error(ErrorCode::Cancelled, "the search was stopped");
@@ -81,13 +80,13 @@ private:
 
     /// Share of the views in which the text segmenter sees the target word; nothing without one.
     std::optional<double> found_share() {
-        if (tools_.text_segmenter == nullptr || request().mode != "auto" || request().target.empty() ||
+        if (tools_.text_segmenter == nullptr || request().mode || request().target().empty() ||
             seen_.renders.empty())
             return std::nullopt;
         int found = 0;
         for (const auto& render : seen_.renders) {
             check_stop();
-            const auto [mask, score] = tools_.text_segmenter->segment(render, request().target);
+            const auto [mask, score] = tools_.text_segmenter->segment(render, request().target());
             found += score >= LeastTextScore && mask.count() > 0 ? 1 : 0;
         }
         return static_cast<double>(found) / static_cast<double>(seen_.renders.size());
@@ -102,7 +101,7 @@ private:
     }
 
     void modify(LocateResult& result) {
-        SoughtWord word = words_.sought(request().source, false);
+        SoughtWord word = words_.sought(request().source(), false);
         word.whole = true;
         word.alone = result.mode == EditMode::Replace &&
                      std::all_of(word.competing.begin(), word.competing.end(), language::names_ground);
@@ -124,7 +123,7 @@ private:
         GSE_CHECK_EQ(input_.label->size(), rows);
         field.probability.assign(rows, 0.0f);
         field.coverage.assign(rows, 0.0);
-        Label label = make_label(request().source, std::vector<float>(rows, 0.0f), 0.5f);
+        Label label = make_label(request().source(), std::vector<float>(rows, 0.0f), 0.5f);
         label.bits = std::make_shared<const std::vector<std::uint8_t>>(*input_.label);
         return label;
     }
@@ -155,15 +154,15 @@ private:
     void find_source(LocateResult& result) {
         if (input_.label != nullptr) {
             result.source_label = label_by_hand(result.found.field);
-        } else if (request().source != request().target) {
-            const SoughtWord word = words_.sought(request().source, false);
+        } else if (request().source() != request().target()) {
+            const SoughtWord word = words_.sought(request().source(), false);
             result.word = word.name;
             FoundWord found = words_.find(word, result.views);
             result.source_label = found.label;
             take(found, result);
         } else {
             result.source_label =
-                make_label(request().source, std::vector<float>(input_.gaussians.size(), 1.0f), 0.5f);
+                make_label(request().source(), std::vector<float>(input_.gaussians.size(), 1.0f), 0.5f);
         }
     }
 
@@ -239,7 +238,7 @@ private:
     DrawnViews drawn_into(const PlaceDrawing& drawing, const std::vector<std::uint8_t>& source_bits) const {
         std::optional<GroundUnder> ground;
         if (tools_.plain_ground)
-            ground = ground_under(request().prompt, input_.gaussians, source_bits, input_.up, input_.front,
+            ground = ground_under(request().prompt(), input_.gaussians, source_bits, input_.up, input_.front,
                                   tools_.rasterizer, input_.traits);
         if (!ground || !ground->in_nothing) return draw_thing(drawing, *tools_.drawing, tools_.job);
         OnPlainGround on_ground(*tools_.drawing, ground->plain, BeforePlain::Scene);
@@ -247,13 +246,14 @@ private:
     }
 
     void add(LocateResult& result) {
-        result.label = make_label(request().target, std::vector<float>(input_.gaussians.size(), 0.0f), 0.5f);
+        result.label =
+            make_label(request().target(), std::vector<float>(input_.gaussians.size(), 0.0f), 0.5f);
         find_source(result);
         if (result.problem != SearchProblem::None) return;
-        const SoughtWord word = words_.sought(request().target, true);
+        const SoughtWord word = words_.sought(request().target(), true);
         result.word = word.name;
-        const bool of_source = request().source != request().target;
-        const auto relation = of_source ? edit_sentence(request()).relation() : language::Relation::None;
+        const bool of_source = request().source() != request().target();
+        const auto relation = of_source ? request().sentence().relation() : language::Relation::None;
         const auto wearer = wearer_of(request(), input_.gaussians, *result.source_label.bits, input_.up,
                                       input_.front, tools_.drawing != nullptr, input_.traits);
         if (wearer.head < 1)

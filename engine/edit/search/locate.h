@@ -14,7 +14,7 @@
 #include "engine/edit/interfaces/voxels.h"
 #include "engine/edit/masks/search_outcome.h"
 #include "engine/edit/masks/view_evidence.h"
-#include "engine/edit/request/request.h"
+#include "engine/edit/request/checked_request.h"
 #include "engine/edit/search/confidence.h"
 #include "engine/edit/search/place_drawing.h"
 #include "engine/edit/search/view_renders.h"
@@ -26,12 +26,12 @@
 
 namespace gse::edit {
 
-/// Views of a scene, and the completed request about them.
+/// Views of a scene, and the request about them.
 struct LocateInput {
     const GaussianSet& gaussians;
     const std::vector<View>& views;              // cameras at the size of the pictures
     const std::vector<std::string>& view_words;  // per view, or empty
-    const EditRequest& request;
+    const CheckedRequest& request;
     raster::Settings settings;
     Vec3 up{0, -1, 0};     // world up; where the top of a thing is
     Vec3 front{0, 0, -1};  // where it looks; for things that go before a face

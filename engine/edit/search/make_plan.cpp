@@ -8,7 +8,6 @@
 #include "engine/edit/placement/placement_volume.h"
 #include "engine/edit/request/colour_word.h"
 #include "engine/language/description.h"
-#include "engine/language/words.h"
 #include "engine/localize/clusters.h"
 
 namespace gse::edit {
@@ -44,7 +43,7 @@ EditPlan make_plan(const LocateInput& input, const LocateResult& located, raster
     plan.settings = input.settings;
     plan.mode = located.mode;
     if (located.mode == EditMode::Add &&
-        !language::is_described(language::normalised_prompt(input.request.prompt), input.request.target))
+        !language::is_described(input.request.sentence().prompt(), input.request.target()))
         plan.drawn_colour = colour_of_drawn(located, input.known);
     const std::vector<float> values(plan.label.begin(), plan.label.end());
     const bool any = std::find(plan.label.begin(), plan.label.end(), std::uint8_t{1}) != plan.label.end();

@@ -16,7 +16,6 @@
 #include "engine/edit/masks/view_choice.h"
 #include "engine/edit/masks/word_mask.h"
 #include "engine/edit/placement/voxel_region.h"
-#include "engine/language/words.h"
 
 namespace gse::edit {
 namespace {
@@ -25,9 +24,9 @@ constexpr std::uint64_t QuestionStream = 1;  // of the seed, + the view
 
 }  // namespace
 
-double guided_steps_of_place(const EditRequest& request) {
+double guided_steps_of_place(const SearchSettings& settings) {
     RoundPlan plan;
-    plan.view_steps = request.place_steps;
+    plan.view_steps = settings.place_steps;
     plan.strength = 1;
     plan.guided_until = UsualGuidedUntil;
     return plan.guided_steps_of(0);
@@ -37,7 +36,7 @@ ContentKey drawing_key(const PlaceDrawing& drawing, const std::vector<std::uint8
                        bool plain_ground) {
     const auto& request = drawing.request;
     ContentHash hash;
-    hash.text(request.prompt);
+    hash.text(request.prompt());
     hash.numbers(drawing.seed, request.add_room, request.add_noise, request.place_views, request.place_steps,
                  plain_ground);
     hash.bytes(source_bits.data(), source_bits.size());
@@ -100,7 +99,7 @@ std::vector<DrawnPlace> find_drawn(const PlaceDrawing& drawing, const DrawnViews
     for (std::size_t i = 0; i < drawn.views.size(); ++i) {
         const auto v = drawn.views[i];
         queries.push_back({drawn.pictures[i],
-                           language::normalised_prompt(drawing.request.prompt),
+                           drawing.request.sentence().prompt(),
                            {drawing.word},
                            drawing.view_words.empty() ? std::string() : drawing.view_words[v],
                            false,

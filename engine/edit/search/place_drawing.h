@@ -11,7 +11,7 @@
 #include "engine/base/content_hash.h"
 #include "engine/edit/interfaces/interfaces.h"
 #include "engine/edit/interfaces/voxels.h"
-#include "engine/edit/request/request.h"
+#include "engine/edit/request/checked_request.h"
 
 namespace gse::edit {
 
@@ -24,13 +24,13 @@ struct PlaceDrawing {
     const std::vector<Image>& renders;           // [H,W,3] in [0,1]
     const std::vector<Image>& depths;            // [H,W,1], 0 = nothing there
     const VoxelRegion& room;                     // where the thing may be
-    const EditRequest& request;
+    const CheckedRequest& request;
     std::string word;  // of the sentence: what is new
     std::uint64_t seed = 0;
 };
 
 /// Denoising steps of one drawn view; one that is not guided counts half.
-double guided_steps_of_place(const EditRequest& request);
+double guided_steps_of_place(const SearchSettings& settings);
 
 /// Key of all inputs of the drawn pictures, but for the scene and the views.
 ContentKey drawing_key(const PlaceDrawing& drawing, const std::vector<std::uint8_t>& source_bits,

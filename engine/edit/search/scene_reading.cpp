@@ -33,17 +33,14 @@ double best_of(const std::vector<double>& fits) { return *std::max_element(fits.
 
 }  // namespace
 
-SceneReading read_scene(VocabularyRanker& recognition, const EditRequest& request,
+SceneReading read_scene(VocabularyRanker& recognition, const CheckedRequest& request,
                         const std::vector<std::string>& targets,
                         const std::vector<std::vector<Image>>& pictures,
                         const std::vector<std::string>& known) {
     GSE_CHECK(!targets.empty() && !pictures.empty());
     std::vector<std::vector<double>> fits;
-    for (const auto& target : targets) {
-        EditRequest with = request;
-        with.target = target;
-        fits.push_back(fits_of(recognition, edit_sentence(with).before(), pictures));
-    }
+    for (const auto& target : targets)
+        fits.push_back(fits_of(recognition, request.sentence().with_target(target).before(), pictures));
     std::size_t chosen = 0;
     const auto worth = [&](std::size_t i) {
         return best_of(fits[i]) + (language::vocabulary_contains(known, targets[i]) ? 0 : Doubt);
@@ -51,7 +48,7 @@ SceneReading read_scene(VocabularyRanker& recognition, const EditRequest& reques
     for (std::size_t i = 1; i < targets.size(); ++i)
         if (worth(i) > worth(chosen)) chosen = i;
     // The scene shows the whole sentence: nothing is new, and the sentence alone says what it is about.
-    if (targets.size() > 1 && best_of(fits_of(recognition, request.prompt, pictures)) > worth(chosen))
+    if (targets.size() > 1 && best_of(fits_of(recognition, request.prompt(), pictures)) > worth(chosen))
         chosen = 0;
     SceneReading reading{targets[chosen], best_of(fits[chosen]), {}};
     for (std::size_t i = 0; i < pictures.size(); ++i)

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/edit/request/request.h"
+#include "engine/edit/request/checked_request.h"
 #include "engine/edit/search/vocabulary_ranker.h"
 
 namespace gse::edit {
@@ -21,10 +21,10 @@ struct SceneReading {
 /// target whose absence fits best is new, or the first if the sentence with all of them fits better still.
 ///
 /// `recognition` compares(). `pictures` has some of each distance, [H,W,3] in [0,1]; both lists have an
-/// entry. The request is completed. `known` is for targets with words that the encoder is not told: none of
+/// entry. `known` is for targets with words that the encoder is not told: none of
 /// them is shown or missed. They are new unless the pictures clearly miss another. Empty = the encoder is
 /// told all.
-SceneReading read_scene(VocabularyRanker& recognition, const EditRequest& request,
+SceneReading read_scene(VocabularyRanker& recognition, const CheckedRequest& request,
                         const std::vector<std::string>& targets,
                         const std::vector<std::vector<Image>>& pictures,
                         const std::vector<std::string>& known = {});

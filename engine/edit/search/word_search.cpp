@@ -16,7 +16,6 @@
 #include "engine/edit/request/excluded_views.h"
 #include "engine/edit/search/decide_label.h"
 #include "engine/language/grammar.h"
-#include "engine/language/sentence.h"
 #include "engine/language/vocabulary.h"
 #include "engine/language/words.h"
 #include "engine/localize/clusters.h"
@@ -68,15 +67,14 @@ void WordSearch::check_stop() const {
 void WordSearch::exclude(std::vector<ViewEvidence>& views) const { exclude_views(views, excluded_); }
 
 SoughtWord WordSearch::sought(const std::string& name, bool absent) const {
-    std::string sentence = language::normalised_prompt(request().prompt);
-    if (!language::has_phrase(sentence, name))
-        sentence = edit_sentence(request()).before();  // "on the snow" was "on the grass"
+    const auto& said = request().sentence();
+    std::string sentence = said.prompt();
+    if (!language::has_phrase(sentence, name)) sentence = said.before();  // "on the snow" was "on the grass"
     if (!language::has_phrase(sentence, name)) sentence = "a " + name;
     SoughtWord word{name, std::move(sentence), {}, request().competing_words != "auto", absent};
     if (absent || request().competing_words == "none") return word;
-    for (const auto& other : word.competing_given
-                                 ? language::phrases_of(request().competing_words)
-                                 : language::Sentence(edit_sentence(request()).before()).things({name})) {
+    for (const auto& other : word.competing_given ? language::phrases_of(request().competing_words)
+                                                  : said.things_before({name})) {
         if (other == name || (!word.competing_given && !language::vocabulary_contains(input_.known, other)))
             continue;
         if (!language::has_phrase(word.prompt, other)) word.prompt += ", " + other;
@@ -277,7 +275,7 @@ double WordSearch::recognised(const std::string& word) const {
     std::vector<const Image*> some;
     const std::size_t step = std::max<std::size_t>(1, seen_.renders.size() / RecognisedViews);
     for (std::size_t v = 0; v < seen_.renders.size(); v += step) some.push_back(&seen_.renders[v]);
-    const std::string sentence = edit_sentence(request()).before();
+    const std::string& sentence = request().sentence().before();
     return tools_.recognition->of(language::has_phrase(sentence, word) ? sentence : "a " + word, word, some);
 }
 

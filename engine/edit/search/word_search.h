@@ -56,7 +56,7 @@ public:
     std::size_t broken() const { return broken_; }
 
 private:
-    const EditRequest& request() const { return input_.request; }
+    const CheckedRequest& request() const { return input_.request; }
     double threshold() const;
     void check_stop() const;
     /// Drops maps of views in which the word draws much less attention than elsewhere: scaled to their

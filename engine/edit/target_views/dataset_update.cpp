@@ -18,9 +18,9 @@ namespace gse::edit {
 namespace {
 
 /// Every setting that the redrawn pictures follow from.
-std::string redraw_key(const EditRequest& request, EditMode mode, const std::string& of_model) {
+std::string redraw_key(const CheckedRequest& request, EditMode mode, const std::string& of_model) {
     const auto plan = round_plan(request, mode);
-    return fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", request.prompt, request.seed, plan.rounds,
+    return fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", request.prompt(), request.seed, plan.rounds,
                        plan.views, plan.view_steps, plan.strength, plan.again_strength, plan.guided_until,
                        of_model);
 }
@@ -40,7 +40,7 @@ std::ptrdiff_t index_of(const std::vector<std::size_t>& views, std::size_t view)
 
 }  // namespace
 
-DatasetUpdate::DatasetUpdate(const EditPlan& plan, const EditRequest& request, const EditTools& tools,
+DatasetUpdate::DatasetUpdate(const EditPlan& plan, const CheckedRequest& request, const EditTools& tools,
                              const std::vector<Image>& originals, const DynamicMasks& masks,
                              ShapeFinder* shapes)
     : plan_(plan), request_(request), tools_(tools), originals_(originals), masks_(masks),

@@ -20,7 +20,7 @@ namespace gse::edit {
 class DatasetUpdate {
 public:
     /// `shapes` cuts out of the redrawn views what has a new shape; null where nothing has.
-    DatasetUpdate(const EditPlan& plan, const EditRequest& request, const EditTools& tools,
+    DatasetUpdate(const EditPlan& plan, const CheckedRequest& request, const EditTools& tools,
                   const std::vector<Image>& originals, const DynamicMasks& masks,
                   ShapeFinder* shapes = nullptr);
 
@@ -84,7 +84,7 @@ private:
     void show_sheet() const;
 
     const EditPlan& plan_;
-    const EditRequest& request_;
+    const CheckedRequest& request_;
     const EditTools& tools_;
     const std::vector<Image>& originals_;
     const DynamicMasks& masks_;

@@ -15,7 +15,6 @@
 #include "engine/edit/masks/view_vote.h"
 #include "engine/edit/masks/word_mask.h"
 #include "engine/edit/request/colour_word.h"
-#include "engine/language/words.h"
 
 namespace gse::edit {
 namespace {
@@ -39,12 +38,12 @@ Image over(const Image& picture, const Image& share, const Image& backdrop) {
 
 }  // namespace
 
-ShapeFinder::ShapeFinder(const EditPlan& plan, const EditRequest& request, std::string word,
+ShapeFinder::ShapeFinder(const EditPlan& plan, const CheckedRequest& request, std::string word,
                          AttentionSource& attention)
     : plan_(plan), request_(request), word_(std::move(word)), attention_(attention) {}
 
 AttentionQuery ShapeFinder::query_of(const EditView& view, const Image& picture, std::uint64_t seed) const {
-    return {picture, language::normalised_prompt(request_.prompt), {word_}, view.view_words, false, 1, seed};
+    return {picture, request_.sentence().prompt(), {word_}, view.view_words, false, 1, seed};
 }
 
 Image ShapeFinder::outline_of(const EditView& view, const EditedViews& drawn, std::size_t index,

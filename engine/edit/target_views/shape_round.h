@@ -11,6 +11,7 @@
 #include "engine/edit/interfaces/edit_plan.h"
 #include "engine/edit/interfaces/interfaces.h"
 #include "engine/edit/placement/visual_hull.h"
+#include "engine/edit/request/checked_request.h"
 
 namespace gse::edit {
 
@@ -24,7 +25,7 @@ struct CutOut {
 class ShapeFinder {
 public:
     /// `word` is what is looked for in the redrawn pictures.
-    ShapeFinder(const EditPlan& plan, const EditRequest& request, std::string word,
+    ShapeFinder(const EditPlan& plan, const CheckedRequest& request, std::string word,
                 AttentionSource& attention);
 
     /// Finds the thing in each picture and lays it over the view's backdrop: the pictures become what the
@@ -53,7 +54,7 @@ private:
                      std::uint64_t seed) const;
 
     const EditPlan& plan_;
-    const EditRequest& request_;
+    const CheckedRequest& request_;
     std::string word_;
     AttentionSource& attention_;
 };

@@ -11,7 +11,6 @@
 #include "engine/edit/request/colour_word.h"
 #include "engine/edit/request/scales.h"
 #include "engine/language/description.h"
-#include "engine/language/words.h"
 #include "engine/localize/clusters.h"
 
 namespace gse::edit {
@@ -47,52 +46,52 @@ EditedViews drawn_by(MultiViewEditor& guidance, const std::vector<EditView>& vie
 namespace {
 
 /// Lets a thing that gets another shape leave the old one.
-void free_geometry(EditRequest& request) {
-    request.geometry_share.override_if_unset(1);
-    request.colour_coupling.override_if_unset(0);
-    for (const auto anchor : {&EditRequest::anchor_position, &EditRequest::anchor_rotation,
-                              &EditRequest::anchor_opacity, &EditRequest::anchor_scale})
-        (request.*anchor).override_if_unset(0);
+void free_geometry(LoopSettings& settings) {
+    settings.geometry_share.override_if_unset(1);
+    settings.colour_coupling.override_if_unset(0);
+    for (const auto anchor : {&LoopSettings::anchor_position, &LoopSettings::anchor_rotation,
+                              &LoopSettings::anchor_opacity, &LoopSettings::anchor_scale})
+        (settings.*anchor).override_if_unset(0);
 }
 
 /// New rows grow several times in each round, from hulls whose colours are near: fast rates follow single
 /// views.
-void grow_often(EditRequest& request, int fit_steps) {
+void grow_often(LoopSettings& settings, int fit_steps) {
     constexpr int GrowthsPerRound = 6;
-    request.densify_percent.override_if_unset(0.1);
-    request.max_growth.override_if_unset(4);
-    request.max_aspect.override_if_unset(6);
-    request.rate_colour.override_if_unset(0.012);
-    if (request.densify_every > 0)
-        request.densify_every = request.densify_from = std::max(1, fit_steps / GrowthsPerRound);
+    settings.densify_percent.override_if_unset(0.1);
+    settings.max_growth.override_if_unset(4);
+    settings.max_aspect.override_if_unset(6);
+    settings.rate_colour.override_if_unset(0.012);
+    if (settings.densify_every > 0)
+        settings.densify_every = settings.densify_from = std::max(1, fit_steps / GrowthsPerRound);
 }
 
 }  // namespace
 
-EditRequest restyling(EditRequest request, EditMode mode) {
-    if (mode != EditMode::Modify) return request;
-    request.view_strength.override_if_unset(1);
-    request.view_steps = request.restyle_steps;
-    return request;
+EditSettings restyling(EditSettings settings, EditMode mode) {
+    if (mode != EditMode::Modify) return settings;
+    settings.view_strength.override_if_unset(1);
+    settings.view_steps = settings.restyle_steps;
+    return settings;
 }
 
-EditRequest loop_request(EditRequest request, EditMode mode, bool by_views,
-                         bool supports_appearance_editing) {
-    if (supports_appearance_editing) request = restyling(std::move(request), mode);
-    const auto plan = round_plan(request, mode);
-    if (mode == EditMode::Replace || (by_views && plan.anew)) free_geometry(request);
-    if (!by_views) return request;
-    request.iterations = plan.rounds * plan.fit_steps;
-    request.rounds = plan.rounds;
-    request.fit_steps = plan.fit_steps;
-    request.dynamic_mask = request.prune_added = false;
+EditSettings loop_settings(EditSettings settings, EditMode mode, bool by_views,
+                           bool supports_appearance_editing) {
+    if (supports_appearance_editing) settings = restyling(std::move(settings), mode);
+    const auto plan = round_plan(settings, mode);
+    if (mode == EditMode::Replace || (by_views && plan.anew)) free_geometry(settings);
+    if (!by_views) return settings;
+    settings.iterations = plan.rounds * plan.fit_steps;
+    settings.rounds = plan.rounds;
+    settings.fit_steps = plan.fit_steps;
+    settings.dynamic_mask = settings.prune_added = false;
     if (plan.anew) {
-        grow_often(request, plan.fit_steps);
-    } else if (request.densify_every > 0) {
-        request.densify_every = request.densify_from = std::max(1, plan.fit_steps / 2);
+        grow_often(settings, plan.fit_steps);
+    } else if (settings.densify_every > 0) {
+        settings.densify_every = settings.densify_from = std::max(1, plan.fit_steps / 2);
     }
-    request.densify_until = 1 - 0.5 / plan.rounds;
-    return request;
+    settings.densify_until = 1 - 0.5 / plan.rounds;
+    return settings;
 }
 
 Image blend_inside(const Image& edited, const Image& original, const Mask& mask, double feather_px) {
@@ -116,7 +115,7 @@ Image blend_inside(const Image& edited, const Image& original, const Mask& mask,
     return result;
 }
 
-ViewRounds::ViewRounds(const EditPlan& plan, const EditRequest& request, MultiViewEditor& guidance,
+ViewRounds::ViewRounds(const EditPlan& plan, const CheckedRequest& request, MultiViewEditor& guidance,
                        ShapeFinder* shapes, std::vector<std::string> known)
     : plan_(plan), request_(request), guidance_(guidance), shapes_(shapes), known_(std::move(known)),
       targets_(plan.views.size()), edited_(plan.views.size()) {}
@@ -154,7 +153,7 @@ EditViewsRequest ViewRounds::input(std::uint64_t stream) const {
 /// Colour of the new object when the sentence leaves it open: the one that the search has drawn it in most.
 /// Otherwise the view with most room for it is drawn first. All views are told the word for it.
 void ViewRounds::name_colour(const std::vector<EditView>& views, const JobControl& job) {
-    const auto told = language::normalised_prompt(request_.prompt);
+    const auto& told = request_.sentence().prompt();
     if (shapes_ == nullptr || views.empty() || language::is_described(told, shapes_->word())) return;
     const auto colour = plan_.drawn_colour.empty() ? colour_of_key_view(views, job) : plan_.drawn_colour;
     if (colour.empty()) return;

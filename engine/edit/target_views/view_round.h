@@ -11,22 +11,22 @@
 #include "engine/edit/interfaces/interfaces.h"
 #include "engine/edit/interfaces/view_targets.h"
 #include "engine/edit/masks/view_choice.h"
-#include "engine/edit/request/request.h"
+#include "engine/edit/request/checked_request.h"
 #include "engine/edit/target_views/shape_round.h"
 #include "engine/edit/target_views/view_agreement.h"
 
 namespace gse::edit {
 
-/// Request of the loop, with settings that suit the kind of edit (METHOD.md, What the scene is fitted to).
+/// Settings of the loop, as they suit the kind of edit (METHOD.md, What the scene is fitted to).
 /// With view guidance the steps are those of the fits, without a mask to follow. Growth comes once in the
 /// middle of each round. Gaussians that get another shape move without anchors, each for itself, and grow
 /// often. Settings that somebody set stay as they are. `supports_appearance_editing`: the editor of the
 /// views does (MultiViewEditor::supports_appearance_editing()).
-EditRequest loop_request(EditRequest request, EditMode mode, bool by_views,
-                         bool supports_appearance_editing = false);
+EditSettings loop_settings(EditSettings settings, EditMode mode, bool by_views,
+                           bool supports_appearance_editing = false);
 /// Part of those settings that follows from `supports_appearance_editing` alone. Shapes are shown, so that
 /// views begin from noise alone, in steps of their own number.
-EditRequest restyling(EditRequest request, EditMode mode);
+EditSettings restyling(EditSettings settings, EditMode mode);
 
 /// F edited + (1 - F) original, where F is the mask, feathered inwards by `feather_px`: outside the mask the
 /// original stays bit by bit.
@@ -37,7 +37,7 @@ class ViewRounds {
 public:
     /// `shapes` cuts out of the redrawn views what has a new shape; null where nothing has.
     /// `known`: words of the model; empty = it takes any.
-    ViewRounds(const EditPlan& plan, const EditRequest& request, MultiViewEditor& guidance,
+    ViewRounds(const EditPlan& plan, const CheckedRequest& request, MultiViewEditor& guidance,
                ShapeFinder* shapes = nullptr, std::vector<std::string> known = {});
 
     /// Picks the views to redraw from those in which the edit is seen.
@@ -84,7 +84,7 @@ private:
     std::string colour_of_key_view(const std::vector<EditView>& views, const JobControl& job);
 
     const EditPlan& plan_;
-    const EditRequest& request_;
+    const CheckedRequest& request_;
     MultiViewEditor& guidance_;
     ShapeFinder* shapes_;
     std::vector<std::string> known_;

@@ -179,7 +179,7 @@ private:
         pipeline::EditJob job(recipe, input(setting), quiet());
         try {
             job.locate();
-            setting.request = job.recipe().request;
+            setting.request = job.recipe().request.plain();
             entry["guessed"] = {{"target", setting.request.target},
                                 {"right", setting.request.target == edit.target_word}};
             setting.seen = {job.views(), job.view_words()};
@@ -241,9 +241,9 @@ private:
         Json entry{{"index", index}, {"kind", setting.edit.kind}};
         try {
             fields_from_json(setting.request, settings);
-            auto recipe = job.recipe();
+            auto recipe = job.recipe().plain();
             recipe.request = setting.request;
-            job.take_settings(recipe);
+            job.take_settings(check(recipe));
             entry.update(edit_and_compare(setting, job));
         } catch (const Error& error) {
             if (error.code() == ErrorCode::Cancelled) throw;

@@ -138,7 +138,8 @@ void write_before_after(const fs::path& folder, EditJob& job) {
         std::copy(row.data.begin(), row.data.end(),
                   sheet.data.begin() + static_cast<std::ptrdiff_t>(row.data.size()) * i);
     }
-    write_png(folder / "before_after.png", sheet, picture_text(job.recipe(), recipe_to_json(job.recipe())));
+    const auto recipe = job.recipe().plain();
+    write_png(folder / "before_after.png", sheet, picture_text(recipe, recipe_to_json(recipe)));
 }
 
 namespace {
@@ -214,7 +215,7 @@ void write_edit(const fs::path& folder, EditJob& job) {
     edited.extra = gathered(edited.extra, sources_of(job.result().base_to_new, edited.gaussians.size()));
     edited.labels = {};
     save_scene(folder / "scene.ply", edited, {.format = "ply"});
-    write_file(folder / "recipe.json", json_text(recipe_to_json(job.recipe()), 2) + "\n");
+    write_file(folder / "recipe.json", json_text(recipe_to_json(job.recipe().plain()), 2) + "\n");
     write_labelled_source(folder / "source.ply", job);
     write_evidence(folder / "evidence", job.painter().pool(), job.located(), job.views());
     write_targets(folder / "evidence", job.painter().pool(), job.targets(), job.views());
@@ -255,7 +256,7 @@ nlohmann::ordered_json make_report(EditJob& job) {
     if (!job.targets().empty()) report["targets"] = targets_to_json(job.targets(), job.views());
     report["model"] = job.model().name();
     report["model_kind"] = neural::kind_name(job.model().kind());
-    report["settings_from"] = settings_from(job.recipe());
+    report["settings_from"] = settings_from(job.recipe().plain());
     report["seconds"] = job.times().to_json();
     report["networks"] = job.times().networks_json();
     report["peak_rss_mb"] = peak_rss_mb();

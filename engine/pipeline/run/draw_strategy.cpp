@@ -28,15 +28,16 @@ const char* DrawStrategy::name() const {
 std::optional<edit::GroundUnder> plain_ground_under(const SceneEdit& scene_edit) {
     const auto& [workplace, scene, located, plan, recipe, observer, control] = scene_edit;
     if (!recipe.guidance.plain_ground) return std::nullopt;
-    if (edit::replaces_accessory(recipe.request, plan.mode)) {
+    const auto& request = recipe.request;
+    if (edit::replaces_accessory(request.sentence(), plan.mode)) {
         workplace.look_for_ground(located.views.views);
-        const auto below = workplace.ground(recipe.request.prompt);
+        const auto below = workplace.ground(request.prompt());
         return below ? std::optional<edit::GroundUnder>({*below, true}) : std::nullopt;
     }
     const bool adds = plan.mode == edit::EditMode::Add;
-    if (adds && recipe.request.source == recipe.request.target) return std::nullopt;  // to all of the scene
+    if (adds && request.source() == request.target()) return std::nullopt;  // to all of the scene
     const auto& bits = adds ? *located.result.source_label.bits : plan.label;
-    return edit::ground_under(recipe.request.prompt, scene, bits, located.views.orbit.up, located.views.front,
+    return edit::ground_under(request.prompt(), scene, bits, located.views.orbit.up, located.views.front,
                               workplace.painter().rasterizer(), workplace.traits());
 }
 
@@ -59,7 +60,7 @@ std::vector<DrawStrategy> draw_strategies(const SceneEdit& scene_edit,
         strategies.insert(in_nothing ? strategies.begin() : strategies.end(), {restyle, Ground::Plain});
     if (draws_anew && in_nothing) strategies.resize(1);
     if (!keeps_shapes) return strategies;
-    if (edit::usual_look(recipe.request, mode, scene_edit.workplace.traits()))
+    if (edit::usual_look(recipe.request.sentence(), mode, scene_edit.workplace.traits()))
         strategies.push_back({restyle, Ground::DefaultColour});
     else strategies.push_back({false, Ground::Scene});  // the model itself
     return strategies;

@@ -1,6 +1,5 @@
 // Loads, locates, edits.
 #include "engine/pipeline/run/edit_job.h"
-#include "engine/edit/request/checked_request.h"
 #include "engine/edit/request/edit_method.h"
 
 #include <fmt/format.h>
@@ -17,7 +16,6 @@
 #include "engine/edit/request/vocabulary.h"
 #include "engine/language/grammar.h"
 #include "engine/language/news.h"
-#include "engine/language/sentence.h"
 #include "engine/language/vocabulary.h"
 #include "engine/language/words.h"
 #include "engine/localize/focus.h"
@@ -44,11 +42,11 @@ std::vector<std::uint8_t> label_of(const Scene& scene, const std::filesystem::pa
 }
 
 /// Label in the box of --cut-out.
-std::vector<std::uint8_t> labelled_by_box(const Scene& scene, const EditRecipe& recipe,
+std::vector<std::uint8_t> labelled_by_box(const Scene& scene, const CheckedRecipe& recipe,
                                           edit::Segmenter* segmenter, const JobControl& control) {
     const auto& job = recipe.job;
     auto request = cut_out_request(job.cut_out, scene, job.up);
-    request.ground = language::names_ground(recipe.request.source);
+    request.ground = language::names_ground(recipe.request.source());
     auto bits = cut_out(drawable(scene.gaussians), request, segmenter, control);
     if (std::find(bits.begin(), bits.end(), std::uint8_t{1}) != bits.end()) return bits;
     throw Error(ErrorCode::InvalidArgument,
@@ -97,7 +95,7 @@ void warn_unknown_words(const std::vector<std::string>& words, const std::vector
 }
 
 EditJob::EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCache> cache)
-    : recipe_(std::move(recipe)), control_(std::move(control)) {
+    : recipe_(check(std::move(recipe))), control_(std::move(control)) {
     check_recipe(nullptr);
     if (recipe_.job.use_label && !recipe_.job.cut_out.empty())
         throw Error(ErrorCode::InvalidArgument, "--use-label and --cut-out both say what may change",
@@ -128,7 +126,7 @@ EditJob::EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCach
 }
 
 EditJob::EditJob(EditRecipe recipe, EditJobInput input, JobControl control)
-    : recipe_(std::move(recipe)), control_(std::move(control)) {
+    : recipe_(check(std::move(recipe), {input.said})), control_(std::move(control)) {
     hints_.said = std::move(input.said);
     hints_.label = std::move(input.label);
     auto model = std::move(input.model);
@@ -145,10 +143,7 @@ EditJob::EditJob(EditRecipe recipe, EditJobInput input, JobControl control)
     begin(std::move(input.scene), std::move(model), std::move(input.segmenters), given);
 }
 
-void EditJob::check_recipe(const neural::TextToImage* model) {
-    const auto checked = edit::check(recipe_.request, {hints_.said});
-    hints_.target_open = checked.target_open();
-    recipe_.request = checked.plain();
+void EditJob::check_recipe(const neural::TextToImage* model) const {
     check_fields(recipe_.job);
     check_fields(recipe_.guidance);
     check_fields(recipe_.attention);
@@ -157,7 +152,8 @@ void EditJob::check_recipe(const neural::TextToImage* model) {
     const auto drawn = !edit::method_of(recipe_.request).draws_views() ? std::vector<std::string>{}
                        : model != nullptr ? edit::with_dyes(model->drawn_words(), known)
                                           : drawn_words(model_path(recipe_.job));
-    edit::require_known_words(checked, known, drawn, recipe_.job.brings_label() || !hints_.label.empty());
+    edit::require_known_words(recipe_.request, known, drawn,
+                              recipe_.job.brings_label() || !hints_.label.empty());
     check_length();
     parse_colour(recipe_.request.background);
     parse_up(recipe_.job.up, {});
@@ -168,11 +164,12 @@ void EditJob::check_recipe(const neural::TextToImage* model) {
 
 /// The text encoder has so many places; what stands behind them has no effect.
 void EditJob::check_length() const {
-    const auto words = language::words_of(recipe_.request.prompt);
+    const auto& sentence = recipe_.request.sentence().sentence();
+    const auto& words = sentence.words();
     const auto read = words_read(model_path(recipe_.job), words);
     if (read >= words.size()) return;
-    for (const auto& word : {recipe_.request.source, recipe_.request.target}) {
-        const auto first = language::position_of(recipe_.request.prompt, word);
+    for (const auto& word : {recipe_.request.source(), recipe_.request.target()}) {
+        const auto first = sentence.position_of(word);
         if (first < words.size() && first + language::words_of(word).size() > read)
             throw Error(
                 ErrorCode::InvalidArgument,
@@ -187,8 +184,8 @@ void EditJob::begin(Scene scene, std::shared_ptr<neural::TextToImage> model, Seg
                     const GivenCameras& given) {
     workplace_ =
         std::make_unique<RunContext>(std::move(scene), std::move(model), recipe_.job, std::move(segmenters));
-    auto words = language::words_of(recipe_.request.prompt);
-    for (auto& word : language::words_of(recipe_.request.source)) words.push_back(std::move(word));
+    auto words = recipe_.request.sentence().sentence().words();
+    for (auto& word : language::words_of(recipe_.request.source())) words.push_back(std::move(word));
     std::sort(words.begin(), words.end());
     words.erase(std::unique(words.begin(), words.end()), words.end());
     const auto known = workplace_->model().known_words();
@@ -200,11 +197,11 @@ void EditJob::begin(Scene scene, std::shared_ptr<neural::TextToImage> model, Seg
     if (views_->automatic && !given.cameras.empty())
         log::info("{} stored views are too few to search from: an orbit around the scene is used",
                   given.cameras.size());
-    located_ = std::make_shared<const Located>();
+    located_ = std::make_shared<const Located>(Located{*views_, recipe_, {}, {}, false, {}});
     edited_ = std::make_shared<const Edited>();
 }
 
-std::string EditJob::model_prompt() const { return language::normalised_prompt(recipe_.request.prompt); }
+std::string EditJob::model_prompt() const { return recipe_.request.sentence().prompt(); }
 
 std::vector<Image> EditJob::instance_pictures() {
     const Views& chosen = *views_;
@@ -225,7 +222,7 @@ std::vector<Image> EditJob::instance_pictures() {
 void EditJob::tune() {
     times_.begin("dreambooth");
     auto tuned = model().tune(recipe_.dreambooth, instance_pictures(),
-                              language::instance_prompt(edit::edit_sentence(recipe_.request)),
+                              language::instance_prompt(recipe_.request.sentence()),
                               language::without_identifier(model_prompt()), control_);
     workplace_->take_model(std::move(tuned.model));
     tuning_ = std::move(tuned.report);
@@ -265,7 +262,7 @@ void EditJob::locate() {
 
 /// Locates again from the views chosen already. The networks are asked only about pictures they have not
 /// seen.
-void EditJob::relocate(const EditRecipe& recipe) {
+void EditJob::relocate(const CheckedRecipe& recipe) {
     times_.begin("locate");
     take(pipeline::locate_again(*workplace_, *located_, recipe, control_));
     times_.end();
@@ -277,14 +274,14 @@ double EditJob::attention_threshold() const {
 }
 
 void EditJob::locate_again(double attention_threshold, const std::string& excluded_views) {
-    EditRecipe recipe = recipe_;
+    CheckedRecipe recipe = recipe_;
     recipe.request.excluded_views = excluded_views;
     recipe.request.attention_threshold = attention_threshold;
     relocate(recipe);
 }
 
 void EditJob::locate_anyway() {
-    EditRecipe recipe = recipe_;
+    CheckedRecipe recipe = recipe_;
     recipe.request.least_confidence = 0;
     relocate(recipe);
 }
@@ -303,17 +300,17 @@ void EditJob::use_label(const std::vector<std::uint8_t>& bits) {
     times_.end();
 }
 
-void EditJob::take_settings(const EditRecipe& recipe, bool relabels) {
-    const auto request = edit::check(recipe.request);
-    const edit::LabelThresholds before = recipe_.request;
-    static_cast<edit::LoopSettings&>(recipe_.request) = request;
-    recipe_.request.label_threshold = request.label_threshold;
+void EditJob::take_settings(const CheckedRecipe& recipe, bool relabels) {
+    const edit::LoopSettings& loop = recipe.request;
+    const edit::LabelThresholds before = recipe_.request, &after = recipe.request;
+    static_cast<edit::LoopSettings&>(recipe_.request) = loop;
+    recipe_.request.label_threshold = after.label_threshold;
     recipe_.guidance = recipe.guidance;
     plan_.reset();  // how far masks are grown, and whether the label counts at all
-    if (before.attention_threshold != request.attention_threshold ||
-        before.excluded_views != request.excluded_views ||
-        (relabels && before.label_threshold != request.label_threshold))
-        locate_again(request.attention_threshold, request.excluded_views);
+    if (before.attention_threshold != after.attention_threshold ||
+        before.excluded_views != after.excluded_views ||
+        (relabels && before.label_threshold != after.label_threshold))
+        locate_again(after.attention_threshold, after.excluded_views);
 }
 
 const edit::EditPlan& EditJob::plan() {
@@ -355,7 +352,7 @@ void EditJob::run(const EditObserver& observer) {
 
 Edited EditJob::probe(const ProbeSize& size) {
     const log::Quiet nothing_said;  // of how well a few steps did: they only tell what a step takes
-    EditRecipe plain = recipe_;
+    CheckedRecipe plain = recipe_;
     plain.request.iterations = plain.request.fit_steps = size.steps;
     plain.request.dynamic_mask = plain.request.prune_added = plain.request.early_stop = false;
     plain.request.densify_every = 0;

@@ -81,9 +81,9 @@ public:
     /// Takes the settings of the loop and of the guidance, and the label's thresholds, of a recipe with the
     /// same search_key(): no network is asked. `relabels` = false: an artist's own label is used, which
     /// follows no share of the votes.
-    void take_settings(const EditRecipe& recipe, bool relabels = true);
+    void take_settings(const CheckedRecipe& recipe, bool relabels = true);
 
-    const EditRecipe& recipe() const { return recipe_; }
+    const CheckedRecipe& recipe() const { return recipe_; }
     const Scene& scene() const { return workplace_->scene(); }
     /// The scene and the result as pictures and figures are made from them: without what cannot be drawn.
     const GaussianSet& drawn() const { return workplace_->drawn(); }
@@ -135,15 +135,15 @@ public:
     const JobControl& control() const { return control_; }
 
 private:
-    void check_recipe(const neural::TextToImage* model);
+    void check_recipe(const neural::TextToImage* model) const;
     void check_length() const;
     void begin(Scene scene, std::shared_ptr<neural::TextToImage> model, Segmenters segmenters,
                const GivenCameras& given);
     void take(Located located);
-    void relocate(const EditRecipe& recipe);
+    void relocate(const CheckedRecipe& recipe);
     std::vector<Image> instance_pictures();
 
-    EditRecipe recipe_;
+    CheckedRecipe recipe_;
     JobControl control_;
     Hints hints_;
     StageTimes times_;

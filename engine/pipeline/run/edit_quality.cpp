@@ -81,14 +81,14 @@ bool EditQuality::is_poor() const {
     return score ? *score < LeastScore : likeness && *likeness < LeastLikeness;
 }
 
-EditQuality judge(const neural::TextToImage& model, const edit::EditRequest& request, const std::string& told,
-                  const std::vector<PicturePair>& pictures) {
+EditQuality judge(const neural::TextToImage& model, const language::EditSentence& sentence,
+                  const std::string& told, const std::vector<PicturePair>& pictures) {
     EditQuality result;
     const auto encoder = model.image_text_encoder();
     if (!encoder || pictures.empty()) return result;
-    const auto said_before = edit::edit_sentence(request).before();
+    const auto& said_before = sentence.before();
     if (says_what_is_drawn_only(model, said_before, told)) {
-        const auto thing = edit::edit_sentence(request).replacement();
+        const auto& thing = sentence.replacement();
         if (!thing.empty() && says_what_is_drawn_only(model, said_before, thing))
             result.likeness = likeness_of(model, *encoder, said_before, told, thing, pictures);
         return result;
@@ -106,12 +106,12 @@ EditQuality judge(const neural::TextToImage& model, const edit::EditRequest& req
     return result;
 }
 
-EditQuality judge_targets(const neural::TextToImage& model, const edit::EditRequest& request,
-                          const std::string& told, const edit::ViewTargets& round) {
+EditQuality judge_targets(const neural::TextToImage& model, const language::EditSentence& sentence,
+                          const edit::ViewTargets& round) {
     std::vector<PicturePair> pictures;
     for (const auto& view : round.views)
         if (!view.dropped) pictures.emplace_back(view.before.get(), view.after.get());
-    return judge(model, request, told, pictures);
+    return judge(model, sentence, sentence.prompt(), pictures);
 }
 
 nlohmann::ordered_json verdict_to_json(const EditQuality& verdict) {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/edit/interfaces/view_targets.h"
-#include "engine/edit/request/request.h"
+#include "engine/language/sentence.h"
 #include "engine/neural/api/api.h"
 
 namespace gse::pipeline {
@@ -31,14 +31,13 @@ struct EditQuality {
 /// A picture before and after.
 using PicturePair = std::pair<const Image*, const Image*>;
 
-/// Quality of pictures [H,W,3] in [0,1]. The request is completed. `told` is the sentence as the model is
-/// told it.
-EditQuality judge(const neural::TextToImage& model, const edit::EditRequest& request, const std::string& told,
-                  const std::vector<PicturePair>& pictures);
+/// Quality of pictures [H,W,3] in [0,1]. `told` is the prompt as the model is told it.
+EditQuality judge(const neural::TextToImage& model, const language::EditSentence& sentence,
+                  const std::string& told, const std::vector<PicturePair>& pictures);
 
 /// Quality of the redrawn views of a round that the fit uses, against the scene as they were drawn from.
-EditQuality judge_targets(const neural::TextToImage& model, const edit::EditRequest& request,
-                          const std::string& told, const edit::ViewTargets& round);
+EditQuality judge_targets(const neural::TextToImage& model, const language::EditSentence& sentence,
+                          const edit::ViewTargets& round);
 
 /// JSON {"score", "verdict", "warns"}, and "likeness" if it was asked.
 nlohmann::ordered_json verdict_to_json(const EditQuality& verdict);

@@ -18,25 +18,26 @@ namespace {
 
 /// Words that the dynamic mask looks for in the changing pictures: the new object, or the changing one by its
 /// new name.
-std::string dynamic_word(const Located& located, const edit::EditRequest& request) {
+std::string dynamic_word(const Located& located, const language::EditSentence& sentence) {
     const auto& result = located.result;
     const bool keeps_name =
-        result.mode == edit::EditMode::Modify && language::has_phrase(request.prompt, result.word);
-    return keeps_name ? result.word : new_thing(request, result.mode);
+        result.mode == edit::EditMode::Modify && sentence.sentence().contains(result.word);
+    return keeps_name ? result.word : new_thing(sentence, result.mode);
 }
 
 }  // namespace
 
-neural::SdsParameters with_sentence_before(neural::SdsParameters guidance, const edit::EditRequest& request) {
-    if (guidance.before_prompt.empty()) guidance.before_prompt = edit::edit_sentence(request).before();
+neural::SdsParameters with_sentence_before(neural::SdsParameters guidance,
+                                           const language::EditSentence& sentence) {
+    if (guidance.before_prompt.empty()) guidance.before_prompt = sentence.before();
     return guidance;
 }
 
-std::string told_to_editor(const edit::EditRequest& request) {
+std::string told_to_editor(const edit::CheckedRequest& request) {
     return language::normalised_prompt(edit::instruction_of(request));
 }
 
-edit::EditPlan plan_of(RunContext& workplace, const Located& located, const EditRecipe& recipe) {
+edit::EditPlan plan_of(RunContext& workplace, const Located& located, const CheckedRecipe& recipe) {
     const auto* label = located.by_label() ? &located.label : nullptr;
     auto plan = edit::make_plan(question(workplace, recipe, located.views, label), located.result,
                                 workplace.painter().rasterizer());
@@ -52,11 +53,11 @@ edit::EditPlan plan_of(RunContext& workplace, const Located& located, const Edit
 }
 
 Edited edit_scene(RunContext& workplace, const Located& located, const edit::EditPlan& plan,
-                  const EditRecipe& recipe, const EditObserver& observer, const JobControl& control) {
+                  const CheckedRecipe& recipe, const EditObserver& observer, const JobControl& control) {
     return edit_scene(workplace, workplace.scene().gaussians, located, plan, recipe, observer, control);
 }
 
-edit::EditTools tools_of(const SceneEdit& scene_edit, const edit::EditRequest& request,
+edit::EditTools tools_of(const SceneEdit& scene_edit, const language::EditSentence& sentence,
                          edit::AttentionSource& attention, edit::Segmenter& segmenter) {
     const auto& [workplace, scene, located, plan, recipe, observer, control] = scene_edit;
     edit::EditTools tools{workplace.painter().rasterizer(), nullptr, observer.snapshot, control,
@@ -68,17 +69,17 @@ edit::EditTools tools_of(const SceneEdit& scene_edit, const edit::EditRequest& r
     const bool lost = located.by_label() && located.result.mode == edit::EditMode::Modify;
     tools.attention = lost ? nullptr : &attention;
     tools.segmenter = &segmenter;
-    tools.word = dynamic_word(located, request);
+    tools.word = dynamic_word(located, sentence);
     return tools;
 }
 
-Edited finished(const SceneEdit& scene_edit, const edit::EditRequest& request, edit::EditResult result) {
+Edited finished(const SceneEdit& scene_edit, const edit::LoopSettings& settings, edit::EditResult result) {
     Edited edited;
     edited.result = std::move(result);
     edited.drawn = drawable(edited.result.set);
     ContentHash hash;
     hash.text(scene_edit.located.key);
-    hash.fields(static_cast<const edit::LoopSettings&>(request));
+    hash.fields(settings);
     hash.fields(scene_edit.recipe.guidance);
     edited.key = hash.key().hex();
     return edited;
@@ -104,7 +105,8 @@ Edited fit_to_views(const SceneEdit& scene_edit) {
         const auto quality = chooser.quality() ? *chooser.quality() : candidate.judge();
         if (!chooser.accepts(quality)) {
             log::info("the first views hardly show \"{}\" (score {:.2f}); they are drawn another way",
-                      scene_edit.recipe.request.prompt, quality.score.value_or(quality.likeness.value_or(0)));
+                      scene_edit.recipe.request.prompt(),
+                      quality.score.value_or(quality.likeness.value_or(0)));
             continue;
         }
         if (quality.warns) log::warning("{}", quality.verdict);
@@ -120,12 +122,11 @@ Edited follow_gradient(const SceneEdit& scene_edit) {
     const auto& [workplace, scene, located, plan, recipe, observer, control] = scene_edit;
     const auto& model = workplace.model();
     const auto& request = recipe.request;
-    const auto prompt = model.kind() == neural::BundleKind::InstructPix2Pix
-                            ? told_to_editor(request)
-                            : language::normalised_prompt(request.prompt);
-    const auto guidance = model.guidance(prompt, with_sentence_before(recipe.guidance, request));
+    const auto prompt = model.kind() == neural::BundleKind::InstructPix2Pix ? told_to_editor(request)
+                                                                            : request.sentence().prompt();
+    const auto guidance = model.guidance(prompt, with_sentence_before(recipe.guidance, request.sentence()));
     const auto attention = uncached(model).attention(recipe.attention);
-    auto tools = tools_of(scene_edit, request, *attention, uncached(workplace.segmenter()));
+    auto tools = tools_of(scene_edit, request.sentence(), *attention, uncached(workplace.segmenter()));
     tools.guidance = guidance.get();
     return finished(scene_edit, request, edit::run_edit(scene, plan, request, tools));
 }
@@ -134,17 +135,17 @@ Edited follow_gradient(const SceneEdit& scene_edit) {
 class SceneMethodRun final : public edit::MethodRun {
 public:
     explicit SceneMethodRun(const SceneEdit& scene_edit) : scene_edit_(scene_edit) {}
-    void fit_redrawn_views(const edit::EditRequest& request) override {
+    void fit_redrawn_views(const edit::CheckedRequest& request) override {
         edited_ = run(request, fit_to_views);
     }
-    void follow_gradient(const edit::EditRequest& request) override {
+    void follow_gradient(const edit::CheckedRequest& request) override {
         edited_ = run(request, pipeline::follow_gradient);
     }
     Edited take() { return std::move(edited_); }
 
 private:
-    template <class Lead> Edited run(const edit::EditRequest& request, Lead&& lead) const {
-        EditRecipe recipe = scene_edit_.recipe;
+    template <class Lead> Edited run(const edit::CheckedRequest& request, Lead&& lead) const {
+        CheckedRecipe recipe = scene_edit_.recipe;
         recipe.request = request;
         return lead({scene_edit_.workplace, scene_edit_.scene, scene_edit_.located, scene_edit_.plan, recipe,
                      scene_edit_.observer, scene_edit_.control});
@@ -157,7 +158,7 @@ private:
 }  // namespace
 
 Edited edit_scene(RunContext& workplace, const GaussianSet& scene, const Located& located,
-                  const edit::EditPlan& plan, const EditRecipe& recipe, const EditObserver& observer,
+                  const edit::EditPlan& plan, const CheckedRecipe& recipe, const EditObserver& observer,
                   const JobControl& control) {
     const auto use_before = network_use();
     const SceneEdit scene_edit{workplace, scene, located, plan, recipe, observer, control};

@@ -38,23 +38,24 @@ struct Edited {
     double seconds = 0;      // that it took, with what the artist was waited for
 };
 
-/// The guidance's settings with the sentence before the edit, worked out from the request where none is
+/// The guidance's settings with the sentence before the edit, worked out from the edit's where none is
 /// given.
-neural::SdsParameters with_sentence_before(neural::SdsParameters guidance, const edit::EditRequest& request);
+neural::SdsParameters with_sentence_before(neural::SdsParameters guidance,
+                                           const language::EditSentence& sentence);
 
 /// Instruction for a model that edits pictures by instructions.
-std::string told_to_editor(const edit::EditRequest& request);
+std::string told_to_editor(const edit::CheckedRequest& request);
 
 /// Masks, label and seeds for the loop. The recipe counts for how far masks are grown.
-edit::EditPlan plan_of(RunContext& workplace, const Located& located, const EditRecipe& recipe);
+edit::EditPlan plan_of(RunContext& workplace, const Located& located, const CheckedRecipe& recipe);
 
 /// Runs the edit loop with the settings of `recipe`, which agrees with `located.recipe` in what search_key()
 /// is of. Throws as edit::run_edit does.
 Edited edit_scene(RunContext& workplace, const Located& located, const edit::EditPlan& plan,
-                  const EditRecipe& recipe, const EditObserver& observer, const JobControl& control);
+                  const CheckedRecipe& recipe, const EditObserver& observer, const JobControl& control);
 /// Loop with another scene in place of the workplace's. The plan is of that one.
 Edited edit_scene(RunContext& workplace, const GaussianSet& scene, const Located& located,
-                  const edit::EditPlan& plan, const EditRecipe& recipe, const EditObserver& observer,
+                  const edit::EditPlan& plan, const CheckedRecipe& recipe, const EditObserver& observer,
                   const JobControl& control);
 
 }  // namespace gse::pipeline

@@ -73,7 +73,8 @@ PreviewCheck look_through_gate(EditJob& job, const GateParameters& parameters) {
     }
     std::vector<PicturePair> pairs;
     for (const auto& picture : gate.pictures) pairs.emplace_back(&picture.before, &picture.after);
-    static_cast<EditQuality&>(gate) = judge(job.model(), job.recipe().request, job.model_prompt(), pairs);
+    static_cast<EditQuality&>(gate) =
+        judge(job.model(), job.recipe().request.sentence(), job.model_prompt(), pairs);
     if (gate.warns) log::warning("{}", gate.verdict);
     job.times().end();
     return gate;

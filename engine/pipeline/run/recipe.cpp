@@ -8,7 +8,6 @@
 #include "engine/base/file.h"
 #include "engine/base/json.h"
 #include "engine/base/path_text.h"
-#include "engine/edit/request/checked_request.h"
 #include "engine/io/image/image_file.h"
 #include "engine/neural/api/lora_spec.h"
 
@@ -118,10 +117,15 @@ EditRecipe read_recipe(const std::filesystem::path& path) {
     }
 }
 
-std::string search_key(const EditRecipe& recipe) {
+CheckedRecipe check(EditRecipe recipe, const edit::News& news) {
+    auto request = edit::check(std::move(recipe.request), news);
+    return {std::move(recipe), std::move(request)};
+}
+
+std::string search_key(const CheckedRecipe& recipe) {
     const auto& job = recipe.job;
     ContentHash hash;
-    hash.fields(static_cast<const edit::EditWords&>(recipe.request));
+    hash.fields(recipe.request.words());
     hash.fields(static_cast<const edit::SearchSettings&>(recipe.request));
     hash.fields(recipe.attention);
     add_surroundings(hash, job);
@@ -134,9 +138,8 @@ std::string search_key(const EditRecipe& recipe) {
 
 std::string valid_search_key(EditRecipe recipe) {
     try {
-        recipe.request = edit::check(recipe.request).plain();
+        return search_key(check(std::move(recipe)));
     } catch (const Error&) { return {}; }
-    return search_key(recipe);
 }
 
 std::string tuning_key(const EditRecipe& recipe) {

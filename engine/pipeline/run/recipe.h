@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "engine/base/fields.h"
-#include "engine/edit/request/request.h"
+#include "engine/edit/request/checked_request.h"
 #include "engine/io/scene/reading_options.h"
 #include "engine/neural/api/attention_parameters.h"
 #include "engine/neural/api/dreambooth_parameters.h"
@@ -94,10 +94,9 @@ struct JobParameters {
     bool brings_label() const { return use_label || !cut_out.empty(); }
 };
 
-/// All settings that decide the result.
-struct EditRecipe {
+/// Settings of a run beside its request.
+struct RunSettings {
     JobParameters job;
-    edit::EditRequest request;
     neural::SdsParameters guidance;
     neural::AttentionParameters attention;
     bool use_dreambooth = false;  // the model learns the scene first (METHOD.md, DreamBooth)
@@ -107,6 +106,21 @@ struct EditRecipe {
     std::map<std::string, std::string>
         sources;  // where values come from that are not the program's; see model_settings.h
 };
+
+/// All settings that decide the result, as they are typed and written.
+struct EditRecipe : RunSettings {
+    edit::EditRequest request;
+};
+
+/// The recipe of a run, as its stages take it: its request is checked, its sentence parsed.
+struct CheckedRecipe : RunSettings {
+    edit::CheckedRequest request;
+
+    EditRecipe plain() const { return {*this, request.plain()}; }
+};
+
+/// Checks the request alone. Throws as edit::check() does.
+CheckedRecipe check(EditRecipe recipe, const edit::News& news = {});
 
 /// JSON {"version", "job", "request", "guidance"}, with "attention" if it is not as usual and "dreambooth" if
 /// it is used. Reading throws Error for unknown or wrong entries. A relative scene path is taken relative to
@@ -120,8 +134,8 @@ EditRecipe read_recipe(const std::filesystem::path& path);
 EditRecipe recipe_from_json(const nlohmann::ordered_json& json, const std::filesystem::path& folder);
 
 /// Key of all requests to the networks before the loop begins, for a scene. Recipes with equal keys find
-/// equal labels. The recipe's request must be completed.
-std::string search_key(const EditRecipe& recipe);
+/// equal labels.
+std::string search_key(const CheckedRecipe& recipe);
 /// Key of the recipe once its words are completed. Empty if they cannot be.
 std::string valid_search_key(EditRecipe recipe);
 

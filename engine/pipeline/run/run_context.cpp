@@ -12,7 +12,6 @@
 #include "engine/base/log.h"
 #include "engine/edit/interfaces/stage_timer.h"
 #include "engine/edit/search/grabcut_segmenter.h"
-#include "engine/language/words.h"
 #include "engine/pipeline/models/neural_loader.h"
 #include "engine/pipeline/run/scene_loading.h"
 
@@ -78,9 +77,9 @@ void RunContext::ask_anew(const neural::AttentionParameters& attention) {
     place_cost_ = {};
 }
 
-std::unique_ptr<edit::MultiViewEditor> RunContext::place_drawing(const edit::EditRequest& request) {
+std::unique_ptr<edit::MultiViewEditor> RunContext::place_drawing(const language::EditSentence& sentence) {
     if (!model_->supports_scene_conditioning()) return nullptr;
-    auto views = model_->views(language::normalised_prompt(request.prompt), neural::SdsParameters{});
+    auto views = model_->views(sentence.prompt(), neural::SdsParameters{});
     return views ? std::make_unique<MeteredViews>(std::move(views), place_cost_) : nullptr;
 }
 

@@ -72,7 +72,7 @@ public:
     /// Editor that draws the place of an addition, if the model can
     /// (TextToImage::supports_scene_conditioning()), else null. Its cost is counted. It is not the artist's
     /// guidance, which belongs to the loop.
-    std::unique_ptr<edit::MultiViewEditor> place_drawing(const edit::EditRequest& request);
+    std::unique_ptr<edit::MultiViewEditor> place_drawing(const language::EditSentence& sentence);
     const PlaceCost& place_cost() const { return place_cost_; }
     edit::VocabularyRanker& recognition() { return *recognition_; }
     edit::Segmenter& segmenter() { return *segmenters_.clicks; }

@@ -15,16 +15,16 @@ struct SceneEdit {
     const GaussianSet& scene;
     const Located& located;
     const edit::EditPlan& plan;
-    const EditRecipe& recipe;
+    const CheckedRecipe& recipe;
     const EditObserver& observer;
     const JobControl& control;
 };
 
-/// Tools without a lead, for an edit that is told `request`; `attention` and `segmenter` stay alive.
-edit::EditTools tools_of(const SceneEdit& scene_edit, const edit::EditRequest& request,
+/// Tools without a lead, for an edit that is told `sentence`; `attention` and `segmenter` stay alive.
+edit::EditTools tools_of(const SceneEdit& scene_edit, const language::EditSentence& sentence,
                          edit::AttentionSource& attention, edit::Segmenter& segmenter);
 
-/// Takes over a result that was told `request`.
-Edited finished(const SceneEdit& scene_edit, const edit::EditRequest& request, edit::EditResult result);
+/// Takes over a result of a loop with these settings.
+Edited finished(const SceneEdit& scene_edit, const edit::LoopSettings& settings, edit::EditResult result);
 
 }  // namespace gse::pipeline

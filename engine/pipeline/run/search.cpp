@@ -25,7 +25,6 @@
 #include "engine/edit/search/scene_reading.h"
 #include "engine/language/grammar.h"
 #include "engine/language/news.h"
-#include "engine/language/sentence.h"
 #include "engine/language/vocabulary.h"
 #include "engine/localize/focus.h"
 #include "engine/pipeline/select/cut_out.h"
@@ -53,9 +52,8 @@ constexpr double MostBack = 1.25;
 constexpr std::size_t FrontViews = 12;  // in which the front of a scene is looked for
 
 /// Room for an addition around the source; beside it more than on it.
-double room_around(const edit::EditRequest& request) {
+double room_around(language::Relation relation) {
     constexpr double BesideIt = 1.75;
-    const auto relation = edit::edit_sentence(request).relation();
     return language::place_name(relation).empty() ? 1 : BesideIt;  // what is worn fits into the head room
 }
 
@@ -139,24 +137,23 @@ Located finished(Located located) {
 }
 
 /// Looks for a ground, where it is wanted; the first views that are looked at decide.
-void look_for_ground(RunContext& workplace, const EditRecipe& recipe, const Views& views) {
+void look_for_ground(RunContext& workplace, const CheckedRecipe& recipe, const Views& views) {
     if (recipe.guidance.plain_ground) workplace.look_for_ground(views.views);
 }
 
 /// The ground on which words are looked for; a label is what it is.
-std::optional<edit::StudioBackground> ground_shown(RunContext& workplace, const EditRecipe& recipe,
+std::optional<edit::StudioBackground> ground_shown(RunContext& workplace, const CheckedRecipe& recipe,
                                                    const Views& views) {
     look_for_ground(workplace, recipe, views);
-    return recipe.guidance.plain_ground ? workplace.ground(edit::edit_sentence(recipe.request).before())
-                                        : std::nullopt;
+    return recipe.guidance.plain_ground ? workplace.ground(recipe.request.sentence().before()) : std::nullopt;
 }
 
-edit::LocateResult search_from(RunContext& workplace, const Views& views, const EditRecipe& recipe,
+edit::LocateResult search_from(RunContext& workplace, const Views& views, const CheckedRecipe& recipe,
                                const std::vector<std::uint8_t>* label, const JobControl& control) {
     auto input = question(workplace, recipe, views, label);
     input.ground = label == nullptr ? ground_shown(workplace, recipe, views) : std::nullopt;
     auto tools = workplace.tools(views, input.ground, control);
-    const auto drawing = workplace.place_drawing(recipe.request);
+    const auto drawing = workplace.place_drawing(recipe.request.sentence());
     tools.drawing = drawing.get();
     tools.plain_ground = recipe.guidance.plain_ground;
     return edit::locate(input, tools);
@@ -165,7 +162,7 @@ edit::LocateResult search_from(RunContext& workplace, const Views& views, const 
 /// One search; every step of it gives a new value.
 class Search {
 public:
-    Search(RunContext& workplace, EditRecipe recipe, const Views& views, const Hints& hints,
+    Search(RunContext& workplace, CheckedRecipe recipe, const Views& views, const Hints& hints,
            const JobControl& control)
         : workplace_(workplace), recipe_(std::move(recipe)), views_(views), hints_(hints), control_(control) {
     }
@@ -181,7 +178,7 @@ private:
         const bool by_label =
             !hints_.label.empty() &&
             (recipe_.job.brings_label() ||
-             !language::vocabulary_contains(workplace_.model().known_words(), recipe_.request.source));
+             !language::vocabulary_contains(workplace_.model().known_words(), recipe_.request.source()));
         if (hints_.label.empty()) look_for_ground(workplace_, recipe_, views_);
         read_scene(moves() && !by_label);
         if (by_label) return from_label();
@@ -207,8 +204,9 @@ private:
         distances_ = scans ? std::vector<double>(ScanDistances.begin(), ScanDistances.end())
                            : std::vector<double>{1.0};
         auto& recognition = workplace_.recognition();
-        if (!recognition.compares() || !(scans || hints_.target_open)) return;
         auto& request = recipe_.request;
+        const bool open = request.target_open();
+        if (!recognition.compares() || !(scans || open)) return;
         const int side = request.image_size;
         std::vector<std::vector<Image>> pictures;
         for (const double distance : distances_) {
@@ -219,13 +217,10 @@ private:
             control_.report("comparing the sentence with the scene", static_cast<int>(pictures.size()),
                             static_cast<int>(distances_.size()));
         }
-        std::vector<std::string> targets{request.target};
-        if (hints_.target_open)
-            targets =
-                language::possible_targets(language::Sentence(request.prompt), request.source, hints_.said);
-        if (const auto thing = edit::edit_sentence(request).replacement();
-            hints_.target_open && !thing.empty())
-            targets = {thing};
+        const auto& sentence = request.sentence();
+        std::vector<std::string> targets{request.target()};
+        if (open) targets = language::possible_targets(sentence.sentence(), request.source(), hints_.said);
+        if (open && !sentence.replacement().empty()) targets = {sentence.replacement()};
         // The encoder is not told words that are only drawn: they are new where the scene shows all else that
         // the sentence says.
         const auto known = workplace_.model().known_words(),
@@ -233,11 +228,11 @@ private:
                        known, edit::with_dyes(workplace_.model().drawn_words(), known));
         std::erase_if(targets, [&](const auto& word) { return !language::vocabulary_contains(said, word); });
         const auto reading = edit::read_scene(recognition, request, targets, pictures, known);
-        if (hints_.target_open)
+        if (open)
             log::info("new in the sentence: \"{}\" (what it says without fits the scene to {:.2f})",
                       reading.target, reading.fit);
-        request.target = reading.target;
-        target_read_ = hints_.target_open;
+        request = request.with_target(reading.target);
+        target_read_ = open;
         std::vector<double> worth;
         if (scans && ground() && reading.distances.front() != 0)
             worth.push_back(ScanDistances.front());  // a scene of one thing shows it whole from there
@@ -276,12 +271,12 @@ private:
         const auto pictures = workplace_.pictures(some, render_settings(workplace_.scene(), recipe_.request),
                                                   ground(), control_);
         const auto read =
-            edit::read_front(recognition, edit::edit_sentence(recipe_.request).before(), pictures, azimuths);
+            edit::read_front(recognition, recipe_.request.sentence().before(), pictures, azimuths);
         log::info("the front is seen at {:.0f} degrees (lead {:.4f})", read.azimuth / Degree, read.lead);
         return read;
     }
 
-    edit::LocateResult look(const EditRecipe& recipe, const Views& views,
+    edit::LocateResult look(const CheckedRecipe& recipe, const Views& views,
                             const std::vector<std::uint8_t>& label) {
         return search_from(workplace_, views, recipe, label.empty() ? nullptr : &label, control_);
     }
@@ -296,9 +291,9 @@ private:
     /// The fitted orbit shows the whole scene; what the words mean may be a small part of it. The distance
     /// from which it is found most surely wins; a few views tell, and what something is added to is enough.
     Glance best_glance(const std::vector<double>& distances) {
-        EditRecipe scan = recipe_;
+        CheckedRecipe scan = recipe_;
         scan.request.views = std::min(scan.request.views, ScanViews);
-        scan.request.mode = "modify";
+        scan.request.mode = edit::EditMode::Modify;
         Glance best{views_.orbit, {}};
         best.result.problem = edit::SearchProblem::FewViews;
         double most = -1;
@@ -346,24 +341,21 @@ private:
     std::vector<std::uint8_t> wearer_of(const Label& worn, const OrbitParameters& orbit) {
         const std::size_t rows = workplace_.drawn().size();
         if (ground_shown(workplace_, recipe_, views_)) return std::vector<std::uint8_t>(rows, 1);
-        EditRecipe scan = recipe_;
-        auto& request = scan.request;
-        const auto things = language::Sentence(request.prompt).things({request.source, request.target});
+        CheckedRecipe scan = recipe_;
+        const auto& request = recipe_.request;
+        const auto& said = request.sentence();
+        const auto things = said.sentence().things({said.source(), said.target()});
         const auto wearer = std::find_if(things.begin(), things.end(), [&](const auto& thing) {
-            return thing != request.source && thing != request.target &&
+            return thing != said.source() && thing != said.target() &&
                    language::vocabulary_contains(workplace_.model().known_words(), thing);
         });
         if (wearer == things.end()) return {};
-        // The scene shows nothing of the new words.
-        request.prompt = edit::edit_sentence(recipe_.request).before();
-        request.target = recipe_.request.source;
-        request.source = *wearer;
-        request.mode = "modify";
-        request.views = std::min(request.views, ScanViews);
+        scan.request = request.search_for(*wearer);
+        scan.request.views = std::min(request.views, ScanViews);
         auto around = localize::focus_orbit(workplace_.drawn(), *worn.bits, orbit, {});
         around.radius *= WearerSize;
         const auto found = look(scan, views_on(around, scan), {});
-        log::debug("\"{}\", who wears \"{}\": confidence {:.2f}", *wearer, recipe_.request.source,
+        log::debug("\"{}\", who wears \"{}\": confidence {:.2f}", *wearer, said.source(),
                    found.confidence.value);
         return found.problem == edit::SearchProblem::None ? *found.label.bits : std::vector<std::uint8_t>{};
     }
@@ -371,7 +363,7 @@ private:
     /// Place of an object that is worn elsewhere than the one it replaces.
     edit::VoxelRegion room_on_wearer(const Located& located) {
         const auto& result = located.result;
-        if (!located.found() || !edit::moves_worn_place(recipe_.request, result.mode)) return {};
+        if (!located.found() || !edit::moves_worn_place(recipe_.request.sentence(), result.mode)) return {};
         const auto standing = standing_of_wearer(result.label, located.views.orbit, located.views.front);
         return edit::room_above(standing, located.views.orbit.up, located.views.front,
                                 recipe_.request.add_room);
@@ -384,7 +376,7 @@ private:
             const auto standing = edit::wearer_of(recipe_.request, workplace_.drawn(), *label.bits, orbit.up,
                                                   front, mode == edit::EditMode::Add, workplace_.traits())
                                       .standing;
-            const auto wearer = edit::replaces_accessory(recipe_.request, mode)
+            const auto wearer = edit::replaces_accessory(recipe_.request.sentence(), mode)
                                     ? standing_of_wearer(label, orbit, front)
                                     : edit::UprightBounds{};
             if (standing.found())
@@ -393,7 +385,7 @@ private:
         localize::FocusParameters framing;
         framing.head_room = workplace_.traits().head_room;
         auto focused = localize::focus_orbit(workplace_.drawn(), *label.bits, orbit, framing);
-        if (mode == edit::EditMode::Add) focused.radius *= room_around(recipe_.request);
+        if (mode == edit::EditMode::Add) focused.radius *= room_around(recipe_.request.sentence().relation());
         return focused;
     }
 
@@ -445,8 +437,8 @@ private:
             located.views = faced(views_on(focused, recipe_));
             located.result = look(recipe_, located.views, by_hand);
         }
-        const bool worn =
-            result.mode == edit::EditMode::Add || edit::replaces_accessory(recipe_.request, result.mode);
+        const bool worn = result.mode == edit::EditMode::Add ||
+                          edit::replaces_accessory(recipe_.request.sentence(), result.mode);
         for (const double share : CutShares) {
             if (!worn || !as_figure || !is_cut_off(result, share)) break;
             log::info("\"{}\" does not fit into the pictures; it is looked for from farther off",
@@ -462,8 +454,8 @@ private:
     Views framed_as_worn(const Views& from) {
         const auto mode = edit::decide_mode(recipe_.request, std::nullopt).first;
         if (!moves() || mode != edit::EditMode::Add || !framed_as_figure(mode)) return from;
-        EditRecipe wearer = recipe_;
-        wearer.request.mode = "modify";
+        CheckedRecipe wearer = recipe_;
+        wearer.request.mode = edit::EditMode::Modify;
         const auto found = look(wearer, from, {});
         if (found.problem != edit::SearchProblem::None) return from;
         const auto focused = focused_on(found.label, mode, from.orbit, from.front);
@@ -484,7 +476,7 @@ private:
     }
 
     RunContext& workplace_;
-    EditRecipe recipe_;
+    CheckedRecipe recipe_;
     const Views& views_;
     const Hints& hints_;
     const JobControl& control_;
@@ -495,7 +487,7 @@ private:
 
 }  // namespace
 
-edit::LocateInput question(const RunContext& workplace, const EditRecipe& recipe, const Views& views,
+edit::LocateInput question(const RunContext& workplace, const CheckedRecipe& recipe, const Views& views,
                            const std::vector<std::uint8_t>* label) {
     const auto& scene = workplace.scene();
     const auto elevations = views.azimuths.empty() ? std::vector<double>{} : elevations_above(views);
@@ -514,13 +506,13 @@ edit::LocateInput question(const RunContext& workplace, const EditRecipe& recipe
             workplace.traits()};
 }
 
-Located locate(RunContext& workplace, const EditRecipe& recipe, const Views& views, const Hints& hints,
+Located locate(RunContext& workplace, const CheckedRecipe& recipe, const Views& views, const Hints& hints,
                const JobControl& control) {
     if (hints.label.empty())
         edit::require_views(edit::excluded_views_of(recipe.request.excluded_views),
                             views.views.size());  // before any work
     workplace.ask_anew(recipe.attention);
-    EditRecipe all = recipe;  // from all views; what is left out is a matter of those that it ends with
+    CheckedRecipe all = recipe;  // from all views; what is left out is a matter of those that it ends with
     all.request.excluded_views.clear();
     Located located = finished(Search(workplace, all, views, hints, control).run());
     if (recipe.request.excluded_views.empty() || located.by_label()) return located;
@@ -529,13 +521,14 @@ Located locate(RunContext& workplace, const EditRecipe& recipe, const Views& vie
     return locate_again(workplace, located, all, control);
 }
 
-Located locate_again(RunContext& workplace, const Located& located, const EditRecipe& recipe,
+Located locate_again(RunContext& workplace, const Located& located, const CheckedRecipe& recipe,
                      const JobControl& control) {
     workplace.ask(recipe.attention);
     Located again{located.views, recipe, located.label, {}, located.target_read, {}};
     const auto* label = again.by_label() ? &again.label : nullptr;
     again.result = search_from(workplace, again.views, recipe, label, control);
-    if (edit::moves_worn_place(recipe.request, again.result.mode)) again.result.room = located.result.room;
+    if (edit::moves_worn_place(recipe.request.sentence(), again.result.mode))
+        again.result.room = located.result.room;
     return finished(std::move(again));
 }
 

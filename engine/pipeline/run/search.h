@@ -15,13 +15,12 @@ namespace gse::pipeline {
 struct Hints {
     std::vector<std::uint8_t> label;  // [N] made by hand: says where when the words do not; empty = none
     std::vector<std::string> said;    // words that the scene is known to show: no news
-    bool target_open = false;  // the recipe's target is only guessed from the sentence: the pictures decide
 };
 
 /// Result of a search. A value: another threshold or a corrected label makes another one.
 struct Located {
     Views views;                      // where it was found from
-    EditRecipe recipe;                // for which: with the word that the pictures said is new
+    CheckedRecipe recipe;             // for which: with the word that the pictures said is new
     std::vector<std::uint8_t> label;  // by hand, where that alone says what may change; empty = the words did
     edit::LocateResult result;
     bool target_read = false;  // the pictures said which word is new, and not the recipe
@@ -35,14 +34,14 @@ struct Located {
 /// looks again. With a label made by hand, unknown words are not looked for, and one that is not found does
 /// no harm. A search without a result is a result too: see found().
 ///
-/// The recipe's request is completed. Excluded views of the recipe count among those that the search ends
+/// Excluded views of the recipe count among those that the search ends
 /// with. Throws Error (Cancelled) on a stop request, and for failures of the tools.
-Located locate(RunContext& workplace, const EditRecipe& recipe, const Views& views, const Hints& hints,
+Located locate(RunContext& workplace, const CheckedRecipe& recipe, const Views& views, const Hints& hints,
                const JobControl& control);
 
 /// Search from its own views for a recipe of equal search_key(): other thresholds. Networks are only asked
 /// new questions.
-Located locate_again(RunContext& workplace, const Located& located, const EditRecipe& recipe,
+Located locate_again(RunContext& workplace, const Located& located, const CheckedRecipe& recipe,
                      const JobControl& control);
 
 /// Search with a label made by hand, [N] 0 or 1, which alone is the scope of the edit.
@@ -53,7 +52,7 @@ Located locate_by_label(RunContext& workplace, const Located& located, std::vect
 Located with_label(const Located& located, const std::vector<std::uint8_t>& bits);
 
 /// Question that a recipe puts to its views. Refers to its arguments.
-edit::LocateInput question(const RunContext& workplace, const EditRecipe& recipe, const Views& views,
+edit::LocateInput question(const RunContext& workplace, const CheckedRecipe& recipe, const Views& views,
                            const std::vector<std::uint8_t>* label);
 
 }  // namespace gse::pipeline

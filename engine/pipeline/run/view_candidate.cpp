@@ -27,33 +27,33 @@ void keep(std::vector<edit::ViewTargets>& rounds, const edit::ViewTargets& sheet
     else *found = sheet;
 }
 
-edit::BeforePlain shown_before(const edit::EditPlan& plan, const EditRecipe& recipe) {
-    return plan.mode == edit::EditMode::Add || edit::replaces_accessory(recipe.request, plan.mode)
+edit::BeforePlain shown_before(const edit::EditPlan& plan, const CheckedRecipe& recipe) {
+    return plan.mode == edit::EditMode::Add || edit::replaces_accessory(recipe.request.sentence(), plan.mode)
                ? edit::BeforePlain::Scene
                : edit::BeforePlain::Nothing;
 }
 
 /// Judges remapped views in the colour that the model was told, which its encoder knows. There is nothing to
 /// say of a thing that only gets another colour.
-EditQuality judge_undyed(const neural::TextToImage& model, const edit::EditRequest& request,
+EditQuality judge_undyed(const neural::TextToImage& model, const edit::CheckedRequest& request,
                          edit::EditMode mode, const edit::ColourRemap& remap, const edit::DyedViews* views) {
     if (mode == edit::EditMode::Modify || views == nullptr) return {};
     std::vector<PicturePair> pictures;
     for (const auto& view : views->drawn()) pictures.emplace_back(&view.original, &view.undyed);
-    auto told = request;
-    for (auto* words : {&told.prompt, &told.target}) *words = edit::told_with(remap, *words);
-    return judge(model, told, language::normalised_prompt(told.prompt), pictures);
+    const auto told = request.sentence().reworded(edit::told_with(remap, request.prompt()),
+                                                  edit::told_with(remap, request.target()));
+    return judge(model, told, told.prompt(), pictures);
 }
 
 /// Share of the way to a ground's colour from which on pictures show that ground, by judgement.
 constexpr double InItsColour = 0.6;
 
 /// Judges by the encoder; a ground that it has no word for, by the colour that such a ground has.
-EditQuality judge_drawn(const neural::TextToImage& model, const edit::EditRequest& request,
+EditQuality judge_drawn(const neural::TextToImage& model, const language::EditSentence& sentence,
                         edit::EditMode mode, const edit::ViewTargets& round,
                         const edit::ModelTraits& traits) {
-    auto verdict = judge_targets(model, request, language::normalised_prompt(request.prompt), round);
-    const auto look = edit::usual_look(request, mode, traits);
+    auto verdict = judge_targets(model, sentence, round);
+    const auto look = edit::usual_look(sentence, mode, traits);
     if (!look) return verdict;
     const double gone = edit::gone_towards(*look, round);
     if (!verdict.score) verdict.likeness = gone;
@@ -61,24 +61,23 @@ EditQuality judge_drawn(const neural::TextToImage& model, const edit::EditReques
         verdict.warns = false;
         verdict.verdict = fmt::format(
             "The pictures show the colour of {}, which the model's encoder hardly sees (score {:.2f}).",
-            request.target, *verdict.score);
+            sentence.target(), *verdict.score);
     }
     return verdict;
 }
 
 /// Gives what comes in a thing's place or is added its usual colour where the sentence tells none.
-edit::EditRequest in_usual_colour(const neural::TextToImage& model, edit::EditRequest request,
-                                  edit::EditMode mode, const edit::ModelTraits& traits) {
+edit::CheckedRequest in_usual_colour(const neural::TextToImage& model, edit::CheckedRequest request,
+                                     edit::EditMode mode, const edit::ModelTraits& traits) {
     if (mode == edit::EditMode::Modify) return request;
     const auto known = model.known_words();
-    const auto thing = new_thing(request, mode), told = language::normalised_prompt(request.prompt);
+    const auto &thing = new_thing(request.sentence(), mode), &told = request.sentence().prompt();
     const auto usual = language::with_usual_colour(
         told, thing, language::promptable_vocabulary(known, edit::with_dyes(model.drawn_words(), known)),
         traits.usual_colours);
     if (usual == told) return request;
     log::info("the sentence names no colour for \"{}\": it is drawn as \"{}\"", thing, usual);
-    request.prompt = usual;
-    return request;
+    return request.reworded(usual, request.target());
 }
 
 }  // namespace
@@ -108,20 +107,20 @@ ViewCandidate::ViewCandidate(const SceneEdit& scene_edit, const DrawStrategy& st
     const auto& model = workplace.model();
     if (model.kind() != neural::BundleKind::InstructPix2Pix) {
         request_ = in_usual_colour(model, std::move(request_), plan.mode, workplace.traits());
-        remap_ = edit::dye_of(request_, plan.mode,
+        remap_ = edit::dye_of(request_.sentence(), plan.mode,
                               language::promptable_vocabulary(model.known_words(), model.drawn_words()));
     }
     if (remap_ && remap_->pattern)
         pattern_ = PatternLayer{*remap_, located.views.orbit.up, located.views.front, request_.seed};
-    settings_ = with_sentence_before(recipe.guidance, request_);
+    settings_ = with_sentence_before(recipe.guidance, request_.sentence());
     settings_.restyle = strategy.restyle;
     add_editors(strategy, ground, drawn);
     attention_ = uncached(model).attention(recipe.attention);  // every render is another question
-    auto tools = tools_of(scene_edit, request_, *attention_, workplace.segmenter());
+    auto tools = tools_of(scene_edit, request_.sentence(), *attention_, workplace.segmenter());
     if (pattern_) tools.snapshot = pattern_->over(tools.snapshot);
     tools.views = editors_.back().get();
     tools.known = model.known_words();
-    tools.redraw_key = model.name() + tuning_key(recipe) + fields_to_json(settings_).dump() +
+    tools.redraw_key = model.name() + tuning_key(recipe.plain()) + fields_to_json(settings_).dump() +
                        strategy.name() + (remap_ ? language::joined(remap_->words) : "");
     tools.targets = [this](const edit::ViewTargets& sheet) { show(sheet); };
     tools.target_orders = observer.target_orders;
@@ -142,11 +141,10 @@ void ViewCandidate::add_editors(const DrawStrategy& strategy, const std::optiona
     const auto& model = scene_edit_.workplace.model();
     if (strategy.ground == DrawStrategy::Ground::DefaultColour) {
         add<edit::DefaultGroundColour>(
-            *edit::usual_look(recipe.request, plan.mode, scene_edit_.workplace.traits()));
+            *edit::usual_look(recipe.request.sentence(), plan.mode, scene_edit_.workplace.traits()));
     } else {
         const bool instructed = model.kind() == neural::BundleKind::InstructPix2Pix;
-        const auto prompt =
-            instructed ? told_to_editor(request_) : language::normalised_prompt(request_.prompt);
+        const auto prompt = instructed ? told_to_editor(request_) : request_.sentence().prompt();
         editors_.push_back(model.views(remap_ ? edit::told_with(*remap_, prompt) : prompt, settings_));
         if (remap_) remapped_ = &add<edit::DyedViews>(*editors_.back(), *remap_);
     }
@@ -168,7 +166,7 @@ EditQuality ViewCandidate::judge() const {
     const auto& model = scene_edit_.workplace.model();
     const auto mode = scene_edit_.plan.mode;
     return remap_ ? judge_undyed(model, request_, mode, *remap_, remapped_)
-                  : judge_drawn(model, request_, mode, *sheet_, scene_edit_.workplace.traits());
+                  : judge_drawn(model, request_.sentence(), mode, *sheet_, scene_edit_.workplace.traits());
 }
 
 void ViewCandidate::show(const edit::ViewTargets& sheet) {

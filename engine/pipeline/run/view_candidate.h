@@ -47,7 +47,7 @@ private:
     void show(const edit::ViewTargets& sheet);
 
     const SceneEdit& scene_edit_;
-    edit::EditRequest request_;  // with what the model is told
+    edit::CheckedRequest request_;  // with what the model is told
     std::optional<edit::ColourRemap> remap_;
     std::optional<PatternLayer> pattern_;
     neural::SdsParameters settings_;

@@ -38,7 +38,7 @@ Vec3 direction_at(const OrbitParameters& orbit, double azimuth) {
 }
 
 /// Key of all inputs of the views' renders beside the scene.
-std::string key_of(const Views& views, const EditRecipe& recipe) {
+std::string key_of(const Views& views, const CheckedRecipe& recipe) {
     ContentHash hash;
     for (const auto& view : views.views) {
         const Camera& camera = view.camera;
@@ -53,7 +53,7 @@ std::string key_of(const Views& views, const EditRecipe& recipe) {
 }
 
 /// Fills in all values that follow from cameras and orbit.
-Views finished(Views views, const EditRecipe& recipe, const std::map<std::string, std::string>& words) {
+Views finished(Views views, const CheckedRecipe& recipe, const std::map<std::string, std::string>& words) {
     const auto front = parse_front(recipe.job.front);
     views.front = direction_at(views.orbit, front.value_or(0));
     for (const auto& view : views.views) {
@@ -94,7 +94,7 @@ std::string turned_to(const Camera& camera, const Vec3& up) {
                : fmt::format("{:.0f}", degrees);
 }
 
-Views facing(Views views, double front, const EditRecipe& recipe) {
+Views facing(Views views, double front, const CheckedRecipe& recipe) {
     views.front = direction_at(views.orbit, front);
     views.front_read = front;
     views.azimuths = azimuths_around(views);
@@ -170,14 +170,14 @@ OrbitParameters nearer(OrbitParameters orbit, double share) {
     return orbit;
 }
 
-raster::Settings render_settings(const Scene& scene, const edit::EditRequest& request) {
+raster::Settings render_settings(const Scene& scene, const edit::SearchSettings& search) {
     raster::Settings settings;
-    settings.background = parse_colour(request.background);
+    settings.background = parse_colour(search.background);
     settings.antialiased = scene.info.antialiased;
     return settings;
 }
 
-Views choose_views(const Scene& scene, const EditRecipe& recipe, const GivenCameras& given) {
+Views choose_views(const Scene& scene, const CheckedRecipe& recipe, const GivenCameras& given) {
     RenderParameters render;
     render.up = recipe.job.up;
     render.elevation = recipe.request.elevation;
@@ -190,7 +190,7 @@ Views choose_views(const Scene& scene, const EditRecipe& recipe, const GivenCame
     return finished(std::move(views), recipe, given.words);
 }
 
-Views views_on(const OrbitParameters& orbit, const EditRecipe& recipe) {
+Views views_on(const OrbitParameters& orbit, const CheckedRecipe& recipe) {
     const int side = recipe.request.image_size;
     Views views;
     views.orbit = orbit;

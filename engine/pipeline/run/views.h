@@ -36,10 +36,10 @@ struct GivenCameras {
 
 /// First views of a run: the given cameras, of many those farthest apart (METHOD.md, Viewpoints), or an orbit
 /// fitted to the scene.
-Views choose_views(const Scene& scene, const EditRecipe& recipe, const GivenCameras& given);
+Views choose_views(const Scene& scene, const CheckedRecipe& recipe, const GivenCameras& given);
 
 /// Views on another orbit, as many as the request asks for.
-Views views_on(const OrbitParameters& orbit, const EditRecipe& recipe);
+Views views_on(const OrbitParameters& orbit, const CheckedRecipe& recipe);
 
 /// "front view" and so on of every view. The front is the direction of `views.front`; `sided` as in
 /// edit::view_words.
@@ -53,7 +53,7 @@ std::vector<double> elevations_above(const Views& views);
 
 /// These views of a scene whose front is seen from an azimuth of their orbit (radians), with words for their
 /// directions.
-Views facing(Views views, double front, const EditRecipe& recipe);
+Views facing(Views views, double front, const CheckedRecipe& recipe);
 
 /// Azimuth from which a camera sees the orbit's centre, in radians in the convention of orbit_camera.
 double azimuth_of(const Camera& camera, const OrbitParameters& orbit);
@@ -75,6 +75,6 @@ double looked_from(const Camera& camera, const Vec3& up);
 std::string turned_to(const Camera& camera, const Vec3& up);
 
 /// Settings of the renders of a run's views.
-raster::Settings render_settings(const Scene& scene, const edit::EditRequest& request);
+raster::Settings render_settings(const Scene& scene, const edit::SearchSettings& search);
 
 }  // namespace gse::pipeline

@@ -12,6 +12,7 @@
 #include "engine/laboratory/synth/synth.h"
 #include "engine/localize/clusters.h"
 #include "engine/scene/delta.h"
+#include "tests/unit/edit/requests.h"
 
 namespace oracle_edits_test {
 
@@ -54,7 +55,7 @@ Mask region(const OracleCase& oracle, const Camera& camera, raster::Rasterizer& 
     return localize::dilate(mask, radius);
 }
 
-edit::EditResult edit_of(const OracleCase& oracle, const edit::EditRequest& request,
+edit::EditResult edit_of(const OracleCase& oracle, const edit::CheckedRequest& request,
                          raster::Rasterizer& rasterizer) {
     edit::EditPlan plan;
     plan.views = ring(oracle.scene, 16, 0);
@@ -70,7 +71,7 @@ struct Outcome {
     edit::EditResult result;
 };
 
-Outcome run(const OracleCase& oracle, edit::EditRequest request) {
+Outcome run(const OracleCase& oracle, const edit::CheckedRequest& request) {
     ThreadPool pool(2);
     const auto rasterizer = raster::make_fast_rasterizer(pool);
     Outcome outcome;
@@ -162,7 +163,7 @@ OracleCase add_sphere() {
 }  // namespace
 
 DOCTEST_TEST_CASE("an oracle recolouring arrives, with and without common colour change") {
-    edit::EditRequest request;
+    auto request = test::asked("bear", "a blue bear", "blue");
     request.iterations = 150;
     for (const double coupling : {0.9, 0.0}) {
         request.colour_coupling = coupling;
@@ -177,7 +178,7 @@ DOCTEST_TEST_CASE("an oracle recolouring arrives, with and without common colour
 }
 
 DOCTEST_TEST_CASE("an oracle removal arrives") {
-    edit::EditRequest request;
+    auto request = test::asked("bear", "a blue bear", "blue");
     request.iterations = 300;
     request.geometry_share = 1;
     request.anchor_opacity = 0;  // what goes away must be free to fade
@@ -191,7 +192,7 @@ DOCTEST_TEST_CASE("an oracle removal arrives") {
 }
 
 DOCTEST_TEST_CASE("an oracle addition grows from seeds") {
-    edit::EditRequest request;
+    auto request = test::asked("bear", "a blue bear", "blue");
     request.iterations = 400;
     request.colour_coupling = 0;
     const auto outcome = run(add_sphere(), request);
@@ -238,7 +239,7 @@ DOCTEST_TEST_CASE(
     const GaussianSet& base = oracle.scene.scene.gaussians;
     ThreadPool pool(2);
     const auto rasterizer = raster::make_fast_rasterizer(pool);
-    edit::EditRequest request;
+    auto request = test::asked("bear", "a blue bear", "blue");
     request.iterations = 60;
     const auto full = edit_of(oracle, request, *rasterizer);
     const Vec3 before = mean_colour(oracle, base, *rasterizer),

@@ -7,10 +7,10 @@
 
 #include "engine/base/log.h"
 #include "engine/edit/placement/voxel_region.h"
-#include "engine/edit/request/checked_request.h"
 #include "engine/edit/search/locate.h"
 #include "engine/laboratory/synth/synth.h"
 #include "engine/localize/clusters.h"
+#include "tests/unit/edit/requests.h"
 
 namespace related_place_test {
 
@@ -86,11 +86,7 @@ private:
 };
 
 edit::LocateResult locate(const World& world, const std::string& sentence, const Vec3* place) {
-    edit::EditRequest request;
-    request.source = "bear";
-    request.prompt = sentence;
-    request.target = "ball";
-    request = edit::check(request).plain();
+    const auto request = test::asked("bear", sentence, "ball");
     KnowingAttention attention(world, place);
     const std::vector<std::string> no_words;
     return edit::locate(

@@ -12,13 +12,13 @@
 
 #include "engine/base/error.h"
 #include "engine/edit/optimise/edit_loop.h"
-#include "engine/edit/request/checked_request.h"
 #include "engine/edit/search/locate.h"
 #include "engine/edit/search/make_plan.h"
 #include "engine/evaluate/metrics.h"
 #include "engine/laboratory/synth/synth.h"
 #include "engine/localize/clusters.h"
 #include "engine/raster/rasterizer.h"
+#include "tests/unit/edit/requests.h"
 
 namespace shape_edit_test {
 
@@ -131,12 +131,8 @@ struct ShapeEdit {
     ShapeEdit(const synth::SynthScene& before, const synth::SynthScene& after, edit::EditMode edit_mode)
         : source(before), target(after), mode(edit_mode),
           part(edit_mode == edit::EditMode::Add ? synth::Part::Accessory : synth::Part::Object) {
-        request.prompt = "a blue cat";
-        request.source = "bear";
-        request.target = "cat";
         request.method = "views";
         request.shape_rounds = 2;  // what a later round does is seen, too
-        request = edit::check(request).plain();
         plan.views = ring(source, 24, 0);
         edit::LocateResult located;
         plan.label = rows_of(source, synth::Part::Object);
@@ -211,7 +207,7 @@ struct ShapeEdit {
     synth::Part part;
     ThreadPool threads{2};
     std::unique_ptr<raster::Rasterizer> rasterizer = raster::make_fast_rasterizer(threads);
-    edit::EditRequest request;
+    edit::CheckedRequest request = test::asked("bear", "a blue cat", "cat");
     edit::EditPlan plan;
     TrueViews views{target, part, *rasterizer};
     NoGuidance never;

@@ -10,6 +10,7 @@
 #include "engine/laboratory/synth/synth.h"
 #include "engine/scene/delta.h"
 #include "tests/agree/raster/scenes.h"
+#include "tests/unit/edit/requests.h"
 
 namespace view_session_edit_test {
 
@@ -26,7 +27,7 @@ struct Case {
     GaussianSet target;
     std::vector<std::uint8_t> hat;
     edit::EditPlan plan;
-    edit::EditRequest request;
+    edit::CheckedRequest request;
 };
 
 Case hat_case() {
@@ -34,7 +35,7 @@ Case hat_case() {
     spec.accessory = "hat";
     spec.accessory_colour = "blue";
     spec.seed = 6;
-    Case c{synth::generate(spec), {}, {}, {}, {}};
+    Case c{synth::generate(spec), {}, {}, {}, test::asked("bear", "a bear wearing a red hat", "red")};
     spec.accessory_colour = "red";
     c.target = synth::generate(spec).scene.gaussians;
     for (const auto part : c.scene.parts) c.hat.push_back(part == synth::Part::Accessory ? 1 : 0);

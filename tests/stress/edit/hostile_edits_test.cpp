@@ -24,8 +24,8 @@ struct Quiet {
     ~Quiet() { log::set_level(log::Level::Info); }
 };
 
-edit::EditRequest hostile_request() {
-    edit::EditRequest request;
+edit::CheckedRequest hostile_request() {
+    auto request = test::asked("ball", "a blue ball", "blue");
     request.iterations = 30;
     request.densify_from = 5;
     request.densify_every = 5;
@@ -35,7 +35,7 @@ edit::EditRequest hostile_request() {
     return request;
 }
 
-edit::EditResult run(const test::BallScene& scene, const edit::EditRequest& request,
+edit::EditResult run(const test::BallScene& scene, const edit::CheckedRequest& request,
                      edit::Guidance& guidance) {
     const Quiet quiet;
     ThreadPool pool(2);

@@ -8,7 +8,6 @@
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/edit/optimise/oracle_guidance.h"
-#include "engine/edit/request/checked_request.h"
 #include "engine/scene/delta.h"
 #include "tests/unit/edit/view_oracle.h"
 
@@ -223,9 +222,7 @@ DOCTEST_TEST_CASE(
         BreakingGuidance guidance(oracle, 0.25, seed + 10);
         BreakingAttention attention(0.5, seed + 20);
         NoiseSegmenter segmenter(seed + 30);
-        edit::EditRequest request;
-        request.source = request.target = "ball";
-        request.prompt = "a blue ball";
+        auto request = test::asked("ball", "a blue ball", "ball");
         request.method = "sds";
         request.iterations = 150;
         request.seed = seed;
@@ -287,11 +284,7 @@ DOCTEST_TEST_CASE("a search whose attention is broken in places finds what it fi
     const auto views = test::ball_views(12, 48);
     ThreadPool pool(1);
     const auto rasterizer = raster::make_fast_rasterizer(pool);
-    edit::EditRequest request;
-    request.source = "ball";
-    request.target = "blue";
-    request.prompt = "a blue ball";
-    request = edit::check(request).plain();
+    const auto request = test::asked("ball", "a blue ball", "blue");
     const std::vector<std::string> words;
     const edit::LocateInput input{scene.set, views, words, request, {}, {0, -1, 0}};
     BreakingAttention whole(0, 1);

@@ -100,8 +100,7 @@ DOCTEST_TEST_CASE(
     const int count = iterations();
     const test::Redrawing ball(24);
     edit::OracleGuidance guidance(ball.target, ball.plan.views, ball.plan.settings, *ball.rasterizer);
-    edit::EditRequest request;
-    request.prompt = "a blue ball";
+    auto request = test::asked("ball", "a blue ball", "blue");
     request.method = "sds";
     request.iterations = count;
     request.densify_every = request.densify_from = std::max(20, count / 20);

@@ -111,7 +111,7 @@ std::string outcome(test::Redrawing& ball, edit::Guidance& guidance, const edit:
         if (record.iteration + 1 >= Steps) stop.request_stop();
     };
     try {
-        const auto valid = edit::check(request).plain();
+        const auto valid = edit::check(request);
         const auto result = edit::run_edit(ball.scene.set, plan, valid, tools);
         const auto& set = result.set;
         for (const auto values :
@@ -205,7 +205,7 @@ DOCTEST_TEST_CASE("every field of a search at each end of its range") {
                                                 : request.image_size < 32 ? 16
                                                                           : 48);
             try {
-                const auto valid = edit::check(request).plain();
+                const auto valid = edit::check(request);
                 const auto located = edit::locate({scene.set, views, words, valid, {}, {0, -1, 0}},
                                                   {*rasterizer, attention, nullptr, nullptr, {}});
                 DOCTEST_CHECK(all_finite(*located.label.weight));

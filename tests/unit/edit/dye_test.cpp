@@ -32,13 +32,13 @@ edit::EditRequest request_of(const std::string& prompt, const std::string& targe
     request.source = "bear";
     request.prompt = prompt;
     request.target = target;
-    return edit::check(request).plain();
+    return request;
 }
 
 std::optional<edit::ColourRemap> dye(const std::string& prompt, const std::string& target,
                                      edit::EditMode mode = edit::EditMode::Modify,
                                      const std::vector<std::string>& known = Few) {
-    return edit::dye_of(request_of(prompt, target), mode, known);
+    return edit::dye_of(edit::check(request_of(prompt, target)).sentence(), mode, known);
 }
 
 using Words = std::vector<std::string>;

@@ -46,13 +46,12 @@ public:
 
 struct Setup {
     edit::EditPlan plan;
-    edit::EditRequest request;
+    edit::CheckedRequest request = test::asked("ball", "a ball", "ball");
     FixedAttention attention;
     Image shown{Side, Side, 3, 0.5f};
     Setup() {
         plan.views = test::ball_views(2, Side);
         plan.masks = {disc(32, 32, 10), disc(32, 32, 10)};
-        request.prompt = "a ball";
         request.iterations = 100;
         request.dilate_px = 0;
     }
@@ -112,12 +111,11 @@ DOCTEST_TEST_CASE("what replaces the word is looked for, as the sentence does no
     setup.attention.where = disc(32, 32, 10);
     setup.masks().refresh(0, 50, setup.shown, picture(disc(32, 32, 12)));
     DOCTEST_CHECK(setup.attention.word == "ball");
-    setup.request.prompt = "a bear on the snow";
-    setup.request.target = "snow";
+    setup.request = setup.request.reworded("a bear on the snow", "snow");
     edit::DynamicMasks(setup.plan, setup.request, "grass", &setup.attention, nullptr)
         .refresh(0, 50, setup.shown, picture(disc(32, 32, 12)));
     DOCTEST_CHECK(setup.attention.word == "snow");
-    setup.request.target = "";
+    setup.request = setup.request.with_target("");
     DOCTEST_CHECK_FALSE(
         edit::DynamicMasks(setup.plan, setup.request, "grass", &setup.attention, nullptr).due(0, 99));
 }
@@ -152,8 +150,7 @@ DOCTEST_TEST_CASE("the loop refreshes masks and stops when it is at rest") {
     const auto scene = test::ball_scene();
     auto rasterizer = raster::make_plain_rasterizer();
     const auto plan = test::ball_plan(scene, *rasterizer, 4, 24);
-    edit::EditRequest request;
-    request.prompt = "a ball";
+    auto request = test::asked("ball", "a ball", "ball");
     request.iterations = 40;
     request.densify_every = 0;
     FixedAttention attention;
@@ -184,8 +181,7 @@ DOCTEST_TEST_CASE("new splats outside of where the new thing is seen go, unless 
     plan.seeds = edit::seed_splats(high, 30, 0, 1, 0.5);
     const auto below = edit::seed_splats(low, 20, 0, 2, 0.5);
     for (std::size_t row = 0; row < below.size(); ++row) plan.seeds.append_row(below, row);
-    edit::EditRequest request;
-    request.prompt = "a ball wearing a hat";
+    auto request = test::asked("ball", "a ball wearing a hat", "hat");
     request.iterations = 8;
     request.densify_every = 0;
     request.dynamic_mask = false;

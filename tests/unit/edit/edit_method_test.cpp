@@ -65,8 +65,8 @@ DOCTEST_TEST_CASE("methods: steps that are set are the steps of the edit, and co
             method->set_steps(request, mode, 60);
             DOCTEST_CHECK(edit::loop_steps(request, mode) == 60);
             DOCTEST_CHECK(!method->steps_help(request, mode).empty());
-            const auto all = method->work(request, mode, 0, true),
-                       rest = method->work(request, mode, 60, true);
+            const auto all = method->work(request, {}, mode, 0, true),
+                       rest = method->work(request, {}, mode, 60, true);
             DOCTEST_CHECK(all.pulls + all.pictures() > 0);
             DOCTEST_CHECK(rest.pulls + rest.pictures() == 0);
             DOCTEST_CHECK((all.pictures() > 0) == method->draws_views());

@@ -13,6 +13,7 @@
 #include "engine/edit/optimise/edit_loop.h"
 #include "engine/edit/search/locate.h"
 #include "engine/localize/clusters.h"
+#include "tests/unit/edit/requests.h"
 
 namespace gse::test {
 

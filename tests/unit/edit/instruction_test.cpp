@@ -2,7 +2,8 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
-#include "engine/edit/request/request.h"
+#include "engine/edit/request/checked_request.h"
+#include "engine/edit/request/unchecked_request.h"
 
 namespace instruction_test {
 
@@ -29,6 +30,8 @@ DOCTEST_TEST_CASE(
                   "turn the teddy bear into teddy bear wearing a hat");
     DOCTEST_CHECK(instruction_of(asked("bear", "an orange * bear")) == "turn the bear into orange bear");
     DOCTEST_CHECK(instruction_of(asked("", "a snowy garden")) == "make it snowy garden");
+    DOCTEST_CHECK(instruction_of(check(asked("bear", "A golden bear."))) == "turn the bear into golden bear");
+    DOCTEST_CHECK(instruction_of(check(asked("bear", "a golden bear", "gild it"))) == "gild it");
     // No article.
     DOCTEST_CHECK(instruction_of(asked("bear", "andalusian bear")) == "turn the bear into andalusian bear");
 }

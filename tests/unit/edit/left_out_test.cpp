@@ -51,15 +51,11 @@ struct Search {
     ThreadPool pool{1};
     std::unique_ptr<raster::Rasterizer> rasterizer = raster::make_fast_rasterizer(pool);
     MisledAttention attention;
-    edit::EditRequest request;
+    edit::CheckedRequest request = test::asked("ball", "a blue ball", "blue");
 
     Search() {
         log::set_level(log::Level::Off);
-        request.source = "ball";
-        request.prompt = "a blue ball";
-        request.target = "blue";
         request.retry_passes = 0;
-        request = edit::check(request).plain();
         attention.wrong = run().views[Wrong].render;
     }
     ~Search() { log::set_level(log::Level::Info); }
@@ -147,8 +143,8 @@ DOCTEST_TEST_CASE("faint is what is far below most, in at most half of the views
 
 DOCTEST_TEST_CASE("something new is not put where only a view says that was left out") {
     Search search;
-    search.request.mode = "add";
-    search.request.prompt = "a ball with a hat", search.request.target = "hat";
+    search.request = search.request.reworded("a ball with a hat", "hat");
+    search.request.mode = edit::EditMode::Add;
     search.request.excluded_views = std::to_string(Wrong);
     const auto located = search.run();
     DOCTEST_CHECK(located.views[Wrong].step == edit::ViewStep::LeftOut);

@@ -125,13 +125,10 @@ public:
     std::string name() const override { return "greedy"; }
 };
 
-inline edit::EditRequest request_for(const std::string& prompt, const std::string& target) {
-    edit::EditRequest request;
-    request.source = "ball";
-    request.prompt = prompt;
-    request.target = target;
+inline edit::CheckedRequest request_for(const std::string& prompt, const std::string& target) {
+    auto request = test::asked("ball", prompt, target);
     request.seed = 3;
-    return edit::check(request).plain();
+    return request;
 }
 
 struct Fixture {
@@ -142,7 +139,7 @@ struct Fixture {
     std::unique_ptr<raster::Rasterizer> rasterizer = raster::make_fast_rasterizer(pool);
     ColourAttention attention;
 
-    edit::LocateInput input(const edit::EditRequest& request) const {
+    edit::LocateInput input(const edit::CheckedRequest& request) const {
         return {scene.set, views, words, request, {}, {0, -1, 0}};
     }
     edit::LocateTools tools(edit::Segmenter* segmenter = nullptr, edit::TextSegmenter* text = nullptr) {

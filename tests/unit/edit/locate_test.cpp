@@ -252,7 +252,7 @@ DOCTEST_TEST_CASE("attention has to be surer of what is not there yet") {
     const Quiet quiet;
     Fixture fixture;
     const double level = fixture.attention.threshold();
-    const auto least_inside = [&](const edit::EditRequest& request) {
+    const auto least_inside = [&](const edit::CheckedRequest& request) {
         double least = 1;
         for (const auto& view : edit::locate(fixture.input(request), fixture.tools()).views)
             for (std::size_t i = 0; i < view.region.data.size(); ++i)
@@ -370,14 +370,13 @@ DOCTEST_TEST_CASE("a threshold at which another view is at odds with the rest as
 DOCTEST_TEST_CASE(
     "attention is asked about whole phrases, in the sentence as every part of the model is told it") {
     const Quiet quiet;
-    auto request = request_for("A Blue, * beach ball on Grass!", "blue");
-    request.source = "beach ball";
+    auto request = test::asked("beach ball", "A Blue, * beach ball on Grass!", "blue");
     Fixture fixture;
     const auto found = edit::locate(fixture.input(request), fixture.tools());
     DOCTEST_CHECK(found.word == "beach ball");
     DOCTEST_REQUIRE(!fixture.attention.queries.empty());
     const auto& query = fixture.attention.queries.front();
-    DOCTEST_CHECK(query.prompt == language::normalised_prompt(request.prompt));
+    DOCTEST_CHECK(query.prompt == language::normalised_prompt(request.prompt()));
     DOCTEST_CHECK(query.prompt == "a blue * beach ball on grass");
     // Its head is no rival of the phrase.
     DOCTEST_CHECK(query.words == std::vector<std::string>{"beach ball", "grass"});

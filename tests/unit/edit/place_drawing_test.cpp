@@ -108,15 +108,12 @@ struct Fixture {
     ColourAttention attention;
     HatPainter painter;
     edit::LocateCache cache;
-    edit::EditRequest request;
+    edit::CheckedRequest request;
     bool plain_ground = false;
 
-    explicit Fixture(const std::string& prompt = "a ball wearing a hat") {
-        request.source = "ball";
-        request.prompt = prompt;
-        request.target = "hat";
+    explicit Fixture(const std::string& prompt = "a ball wearing a hat")
+        : request(test::asked("ball", prompt, "hat")) {
         request.place_views = 6;
-        request = edit::check(request).plain();
     }
     edit::LocateResult locate(const std::vector<std::uint8_t>* label = nullptr) {
         edit::LocateTools tools{*rasterizer, attention, nullptr, nullptr, {}};

@@ -4,12 +4,11 @@
 
 #include <string>
 
-#include "engine/edit/request/checked_request.h"
 #include "engine/edit/request/decide_mode.h"
-#include "engine/edit/request/request.h"
 #include "engine/edit/search/locate.h"
 #include "engine/language/lexicon.h"
 #include "engine/language/sentence.h"
+#include "tests/unit/edit/requests.h"
 
 namespace relation_test {
 
@@ -75,12 +74,8 @@ DOCTEST_TEST_CASE("the sentence says where the target is, seen from the source")
 DOCTEST_TEST_CASE("what stands somewhere is added, and the sentence before has neither it nor its place") {
     for (const auto& said : table()) {
         DOCTEST_INFO(said.sentence);
-        edit::EditRequest request;
-        request.source = "bear";
-        request.prompt = said.sentence;
-        request.target = said.target;
-        request = edit::check(request).plain();
-        DOCTEST_CHECK(edit::edit_sentence(request).before() == said.before);
+        const auto request = test::asked("bear", said.sentence, said.target);
+        DOCTEST_CHECK(request.sentence().before() == said.before);
         if (said.relation != Relation::None)
             DOCTEST_CHECK(edit::decide_mode(request, std::nullopt).first == edit::EditMode::Add);
     }

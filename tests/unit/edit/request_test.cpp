@@ -14,6 +14,7 @@
 #include "engine/edit/request/decide_mode.h"
 #include "engine/edit/request/edit_method.h"
 #include "engine/edit/request/request.h"
+#include "engine/edit/request/unchecked_request.h"
 #include "engine/edit/request/vocabulary.h"
 #include "engine/edit/search/locate.h"
 #include "engine/edit/target_views/view_round.h"
@@ -38,7 +39,7 @@ EditRequest bear(const std::string& source, const std::string& prompt, const std
 }
 
 edit::EditMode mode_of(const std::string& source, const std::string& prompt, const std::string& target) {
-    return edit::decide_mode(edit::check(bear(source, prompt, target)).plain(), std::nullopt).first;
+    return edit::decide_mode(edit::check(bear(source, prompt, target)), std::nullopt).first;
 }
 
 /// Another value that the field's range allows.
@@ -113,7 +114,7 @@ DOCTEST_TEST_CASE("JSON with an unknown name, a wrong type or a value out of ran
     EditRequest hostile;
     hostile.prompt = "a blue bear";
     hostile.source = "bear";
-    DOCTEST_CHECK(edit::check(hostile).words().target() == "blue");
+    DOCTEST_CHECK(edit::check(hostile).target() == "blue");
     hostile.rate_colour = std::numeric_limits<double>::quiet_NaN();
     DOCTEST_CHECK_THROWS_AS(edit::check(hostile), Error);
     // A number without limits would let anything pass.
@@ -127,16 +128,16 @@ DOCTEST_TEST_CASE("JSON with an unknown name, a wrong type or a value out of ran
 }
 
 DOCTEST_TEST_CASE("a request is checked in one sentence") {
-    DOCTEST_CHECK_THROWS_AS(edit::check(bear("bear", "", "hat")).plain(), Error);
-    DOCTEST_CHECK_THROWS_AS(edit::check(bear("bear", "a blue bear", "hat")).plain(), Error);
-    DOCTEST_CHECK_THROWS_AS(edit::check(bear("", "a blue bear", "")).plain(), Error);
-    DOCTEST_CHECK_THROWS_AS(edit::check(bear("bear", "a bluebear", "blue")).plain(),
+    DOCTEST_CHECK_THROWS_AS(edit::check(bear("bear", "", "hat")), Error);
+    DOCTEST_CHECK_THROWS_AS(edit::check(bear("bear", "a blue bear", "hat")), Error);
+    DOCTEST_CHECK_THROWS_AS(edit::check(bear("", "a blue bear", "")), Error);
+    DOCTEST_CHECK_THROWS_AS(edit::check(bear("bear", "a bluebear", "blue")),
                             Error);  // whole words only
     EditRequest request = bear("bear", "a blue bear", "blue");
     request.mode = "guess";
-    DOCTEST_CHECK_THROWS_AS(edit::check(request).plain(), Error);
+    DOCTEST_CHECK_THROWS_AS(edit::check(request), Error);
     try {
-        edit::check(bear("bear", "a blue bear", "hat")).plain();
+        edit::check(bear("bear", "a blue bear", "hat"));
     } catch (const Error& error) {
         DOCTEST_CHECK(error.code() == ErrorCode::InvalidArgument);
         DOCTEST_CHECK(error.message().find("hat") != std::string::npos);
@@ -146,6 +147,52 @@ DOCTEST_TEST_CASE("a request is checked in one sentence") {
     DOCTEST_CHECK(good.source == "bear");
     DOCTEST_CHECK(good.target == "blue");
     DOCTEST_CHECK(edit::check(bear("", "a golden statue", "golden")).plain().source == "golden");
+}
+
+DOCTEST_TEST_CASE(
+    "a checked request is written as it was checked, and derives others with the same settings") {
+    auto written = bear("Bear", "A red bear, wearing a hat.", "Hat");
+    written.views = 7;
+    written.mode = "add";
+    const auto request = edit::check(written);
+    DOCTEST_CHECK(request.mode == edit::EditMode::Add);
+    DOCTEST_CHECK(request.prompt() == written.prompt);
+    DOCTEST_CHECK(request.sentence().prompt() == "a red bear wearing a hat");
+    written.source = "bear", written.target = "hat";
+    DOCTEST_CHECK(fields_to_json(request.plain()) == fields_to_json(written));
+    DOCTEST_CHECK(!request.target_open());
+    written.mode = "auto", written.target.clear();
+    const auto open = edit::check(written);
+    DOCTEST_CHECK(!open.mode);
+    DOCTEST_CHECK(open.plain().mode == "auto");
+    DOCTEST_CHECK(open.target_open());
+
+    const auto red = open.with_target("red");
+    DOCTEST_CHECK(red.target() == "red");
+    DOCTEST_CHECK(red.sentence().before() == "a bear wearing a hat");
+    DOCTEST_CHECK(red.target_open());
+    const auto told = request.reworded("a red bear wearing a blue hat", "blue hat");
+    DOCTEST_CHECK(told.prompt() == "a red bear wearing a blue hat");
+    DOCTEST_CHECK(told.sentence().before() == "a red bear");
+    DOCTEST_CHECK(told.mode == edit::EditMode::Add);
+    const auto wearer = edit::check(bear("hat", "a bear wearing a crown", "crown")).search_for("bear");
+    DOCTEST_CHECK(wearer.prompt() == "a bear wearing a hat");
+    DOCTEST_CHECK(wearer.source() == "bear");
+    DOCTEST_CHECK(wearer.target() == "hat");
+    DOCTEST_CHECK(wearer.mode == edit::EditMode::Modify);
+    for (const auto* other : {&red, &told}) DOCTEST_CHECK(other->views == 7);
+}
+
+DOCTEST_TEST_CASE("words that nobody has checked mean what they say so far") {
+    EditRequest typed = bear("bear", "a bear wearing a red", "");
+    DOCTEST_CHECK(edit::planned_mode(typed) == edit::EditMode::Modify);
+    DOCTEST_CHECK(edit::unchecked_sentence(typed).target().empty());
+    typed.prompt += " hat", typed.target = "hat";
+    DOCTEST_CHECK(edit::planned_mode(typed) == edit::EditMode::Add);
+    DOCTEST_CHECK(edit::planned_steps(typed) == edit::loop_steps(typed, edit::EditMode::Add));
+    typed.mode = "modify";
+    DOCTEST_CHECK(edit::planned_mode(typed) == edit::EditMode::Modify);
+    DOCTEST_CHECK(edit::planned_mode({}) == edit::EditMode::Modify);
 }
 
 DOCTEST_TEST_CASE("the sentence decides whether something is changed or added") {
@@ -163,14 +210,14 @@ DOCTEST_TEST_CASE("the sentence decides whether something is changed or added") 
     DOCTEST_CHECK(mode_of("statue", "a statue in gold", "gold") == EditMode::Modify);
     DOCTEST_CHECK(mode_of("bear", "add a hat to the bear", "hat") == EditMode::Add);
     DOCTEST_CHECK(mode_of("bear", "a hat on the bear", "hat") == EditMode::Add);
-    auto request = bear("bear", "a red bear wearing a blue hat", "hat");
+    auto request = edit::check(bear("bear", "a red bear wearing a blue hat", "hat"));
     // The detector sees one already.
     DOCTEST_CHECK(edit::decide_mode(request, 0.8).first == EditMode::Modify);
     DOCTEST_CHECK(edit::decide_mode(request, 0.1).first == EditMode::Add);
-    request.mode = "modify";
+    request.mode = EditMode::Modify;
     DOCTEST_CHECK(edit::decide_mode(request, 0.0).first == EditMode::Modify);
-    request = bear("bear", "a blue bear", "blue");
-    request.mode = "add";
+    request = edit::check(bear("bear", "a blue bear", "blue"));
+    request.mode = EditMode::Add;
     DOCTEST_CHECK(edit::decide_mode(request, 1.0).first == EditMode::Add);
 }
 
@@ -178,7 +225,7 @@ DOCTEST_TEST_CASE(
     "another thing in the source's place replaces it, whatever word of its phrase is the new one") {
     using edit::EditMode;
     const auto thing_of = [](const char* source, const char* prompt, const char* target) {
-        return edit::edit_sentence(edit::check(bear(source, prompt, target)).plain()).replacement();
+        return edit::check(bear(source, prompt, target)).sentence().replacement();
     };
     for (const auto& [source, prompt, target, thing] : std::vector<std::array<const char*, 4>>{
              {"bear", "a blue dog on the grass", "dog", "dog"},
@@ -211,8 +258,9 @@ DOCTEST_TEST_CASE(
     auto request = bear("bear", "a red cat on the grass", "cat");
     for (const char* asked : {"modify", "replace", "add"}) {  // what the artist says wins
         request.mode = asked;
-        DOCTEST_CHECK(std::string(edit::mode_name(
-                          edit::decide_mode(edit::check(request).plain(), std::nullopt).first)) == asked);
+        const auto checked = edit::check(request);
+        DOCTEST_CHECK(edit::mode_name(edit::decide_mode(checked, std::nullopt).first) == std::string(asked));
+        DOCTEST_CHECK(checked.plain().mode == asked);
         DOCTEST_CHECK(edit::mode_name(*edit::mode_named(asked)) == std::string(asked));
     }
     DOCTEST_CHECK(!edit::mode_named("auto"));
@@ -247,28 +295,29 @@ DOCTEST_TEST_CASE("what gets another shape has rounds of its own; what is set wi
     DOCTEST_CHECK(guided.guided_steps_of(0) == 4 + 4 * 0.5);
     DOCTEST_CHECK(guided.guided_steps_of(1) == 4 * 0.5);
     DOCTEST_CHECK(edit::round_plan(request, EditMode::Modify).guided_steps_of(0) == request.view_steps);
-    const auto free = edit::loop_request(request, EditMode::Replace, true);
+    const auto free = edit::loop_settings(request, EditMode::Replace, true);
     DOCTEST_CHECK(free.iterations == 2 * request.shape_fit_steps);
     DOCTEST_CHECK(free.geometry_share == 1);
     DOCTEST_CHECK(free.colour_coupling == 0);
     DOCTEST_CHECK(free.anchor_position == 0);
     request.geometry_share = 0.5;
     request.max_aspect = 9;
-    const auto asked = edit::loop_request(request, EditMode::Replace, true);
+    const auto asked = edit::loop_settings(request, EditMode::Replace, true);
     DOCTEST_CHECK(asked.geometry_share == 0.5);
     DOCTEST_CHECK(asked.max_aspect == 9);
     const EditRequest usual;
-    DOCTEST_CHECK(edit::loop_request(usual, EditMode::Modify, true).geometry_share == usual.geometry_share);
-    DOCTEST_CHECK(fields_to_json(edit::loop_request(usual, EditMode::Add, false)) == fields_to_json(usual));
+    DOCTEST_CHECK(edit::loop_settings(usual, EditMode::Modify, true).geometry_share == usual.geometry_share);
+    DOCTEST_CHECK(fields_to_json(edit::loop_settings(usual, EditMode::Add, false)) ==
+                  fields_to_json<edit::EditSettings>(usual));
     // By the paper's way, too.
-    DOCTEST_CHECK(edit::loop_request(usual, EditMode::Replace, false).geometry_share == 1);
+    DOCTEST_CHECK(edit::loop_settings(usual, EditMode::Replace, false).geometry_share == 1);
     // What is shown the scene begins from noise alone, unless it is asked otherwise.
-    DOCTEST_CHECK(edit::loop_request(usual, EditMode::Modify, true).view_strength == usual.view_strength);
-    DOCTEST_CHECK(edit::loop_request(usual, EditMode::Modify, true, true).view_strength == 1);
-    DOCTEST_CHECK(edit::loop_request(usual, EditMode::Modify, true, true).view_steps == usual.restyle_steps);
+    DOCTEST_CHECK(edit::loop_settings(usual, EditMode::Modify, true).view_strength == usual.view_strength);
+    DOCTEST_CHECK(edit::loop_settings(usual, EditMode::Modify, true, true).view_strength == 1);
+    DOCTEST_CHECK(edit::loop_settings(usual, EditMode::Modify, true, true).view_steps == usual.restyle_steps);
     DOCTEST_CHECK(edit::restyling(usual, EditMode::Replace).view_steps == usual.view_steps);
     request.view_strength = 0.5;
-    DOCTEST_CHECK(edit::loop_request(request, EditMode::Modify, true, true).view_strength == 0.5);
+    DOCTEST_CHECK(edit::loop_settings(request, EditMode::Modify, true, true).view_strength == 0.5);
 }
 
 namespace {
@@ -283,12 +332,13 @@ EditRequest with_defaults_set() {
     return request;
 }
 
-nlohmann::ordered_json overridable_fields(const EditRequest& request) {
+nlohmann::ordered_json overridable_fields(const edit::EditSettings& settings) {
     nlohmann::ordered_json json;
-    EditRequest::visit_fields(request, [&](const char* name, const auto& value, const char*, const auto&...) {
-        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, Overridable>)
-            json[name] = static_cast<double>(value);
-    });
+    edit::EditSettings::visit_fields(
+        settings, [&](const char* name, const auto& value, const char*, const auto&...) {
+            if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, Overridable>)
+                json[name] = static_cast<double>(value);
+        });
     return json;
 }
 
@@ -298,13 +348,14 @@ DOCTEST_TEST_CASE("a number that is set to its default stays there, whatever sui
     const auto request = with_defaults_set();
     const auto defaults = overridable_fields(EditRequest{});
     DOCTEST_CHECK(defaults.size() == 11);
-    DOCTEST_CHECK(overridable_fields(edit::loop_request(request, edit::EditMode::Replace, true)) == defaults);
-    DOCTEST_CHECK(overridable_fields(edit::loop_request(request, edit::EditMode::Modify, true, true)) ==
+    DOCTEST_CHECK(overridable_fields(edit::loop_settings(request, edit::EditMode::Replace, true)) ==
                   defaults);
-    DOCTEST_CHECK(overridable_fields(edit::loop_request({}, edit::EditMode::Replace, true)) != defaults);
+    DOCTEST_CHECK(overridable_fields(edit::loop_settings(request, edit::EditMode::Modify, true, true)) ==
+                  defaults);
+    DOCTEST_CHECK(overridable_fields(edit::loop_settings({}, edit::EditMode::Replace, true)) != defaults);
     EditRequest one;
     one.colour_coupling = 0.9;
-    const auto kept = edit::loop_request(one, edit::EditMode::Replace, true);
+    const auto kept = edit::loop_settings(one, edit::EditMode::Replace, true);
     DOCTEST_CHECK(kept.colour_coupling == 0.9);
     DOCTEST_CHECK(kept.geometry_share == 1);
 }
@@ -330,11 +381,7 @@ DOCTEST_TEST_CASE("JSON tells numbers that were set from those that were not") {
 
 DOCTEST_TEST_CASE("the sentence before an edit lacks what the edit brings") {
     const auto before = [](const char* prompt, const char* source, const char* target) {
-        edit::EditRequest request;
-        request.prompt = prompt;
-        request.source = source;
-        request.target = target;
-        return edit::edit_sentence(edit::check(request).plain()).before();
+        return edit::check(bear(source, prompt, target)).sentence().before();
     };
     DOCTEST_CHECK(before("a blue bear on the grass", "bear", "blue") == "a bear on the grass");
     DOCTEST_CHECK(before("a bear wearing a red hat on the grass", "bear", "hat") == "a bear on the grass");
@@ -379,14 +426,11 @@ DOCTEST_TEST_CASE("the target is guessed from the sentence") {
                   "panda");
     for (const char* sentence : {"turn the bear into a golden bear", "the bear is golden",
                                  "make the bear golden", "paint the bear golden on the grass"}) {
-        edit::EditRequest golden;
-        golden.source = "bear";
-        golden.prompt = sentence;
-        golden = edit::check(golden).plain();
-        DOCTEST_CHECK_MESSAGE(golden.target == "golden", sentence);
-        DOCTEST_CHECK_MESSAGE(!language::has_phrase(edit::edit_sentence(golden).before(), "golden"),
+        const auto golden = edit::check(bear("bear", sentence, ""));
+        DOCTEST_CHECK_MESSAGE(golden.target() == "golden", sentence);
+        DOCTEST_CHECK_MESSAGE(!language::has_phrase(golden.sentence().before(), "golden"), sentence);
+        DOCTEST_CHECK_MESSAGE(edit::decide_mode(golden, std::nullopt).first == edit::EditMode::Modify,
                               sentence);
-        DOCTEST_CHECK_MESSAGE(edit::planned_mode(golden) == edit::EditMode::Modify, sentence);
     }
     DOCTEST_CHECK(language::guessed_target(language::Sentence("a panda on the grass"), "bear") == "panda");
     DOCTEST_CHECK(language::guessed_target(language::Sentence("a bear wearing a golden crown"), "hat") ==
@@ -425,7 +469,7 @@ DOCTEST_TEST_CASE("all that a sentence says of the source or names may be its ne
 DOCTEST_TEST_CASE("what applied edits said already is no news") {
     const auto said = [](const std::vector<EditRequest>& applied) {
         std::vector<language::EditSentence> sentences;
-        for (const auto& request : applied) sentences.push_back(edit::edit_sentence(request));
+        for (const auto& request : applied) sentences.push_back(edit::check(request).sentence());
         return language::words_said(sentences);
     };
     const auto blue = bear("bear", "a blue bear on the grass", "blue"),

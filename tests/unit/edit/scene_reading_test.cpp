@@ -7,6 +7,7 @@
 
 #include "engine/edit/search/scene_reading.h"
 #include "engine/language/words.h"
+#include "tests/unit/edit/requests.h"
 
 namespace scene_reading_test {
 
@@ -40,19 +41,14 @@ Image showing(float golden, float bear, float hat, float snow) {
     return picture;
 }
 
-edit::EditRequest sentence() {
-    edit::EditRequest request;
-    request.source = "bear";
-    request.prompt = "a golden bear wearing a hat on the snow";
-    request.target = "hat";
-    return request;
-}
+edit::CheckedRequest request_for(const std::string& prompt) { return test::asked("bear", prompt, "hat"); }
 
 edit::SceneReading read(const std::vector<std::vector<Image>>& pictures,
                         const std::vector<std::string>& targets = {"hat", "golden", "snow"}) {
     int asked = 0;
     edit::VocabularyRanker recognition(std::make_unique<WordScore>(asked), {});
-    auto reading = edit::read_scene(recognition, sentence(), targets, pictures);
+    auto reading = edit::read_scene(recognition, request_for("a golden bear wearing a hat on the snow"),
+                                    targets, pictures);
     std::size_t all = 0;
     for (const auto& group : pictures) all += group.size();
     DOCTEST_CHECK(asked == static_cast<int>(all));  // each picture once, whatever it is compared with
@@ -75,12 +71,10 @@ DOCTEST_TEST_CASE("the word that the pictures do not show is new") {
 
 DOCTEST_TEST_CASE("a word that the encoder is not told is new where the pictures show all else") {
     const auto read_pink = [](const Image& picture) {
-        auto request = sentence();
-        request.prompt = "a pink bear wearing a hat";
         int asked = 0;
         edit::VocabularyRanker recognition(std::make_unique<WordScore>(asked), {});
-        return edit::read_scene(recognition, request, {"hat", "pink"}, {{picture}},
-                                {"a", "bear", "wearing", "hat"})
+        return edit::read_scene(recognition, request_for("a pink bear wearing a hat"), {"hat", "pink"},
+                                {{picture}}, {"a", "bear", "wearing", "hat"})
             .target;
     };
     DOCTEST_CHECK(read_pink(showing(0, 1, 1, 0)) == "pink");

@@ -20,11 +20,8 @@ namespace {
 
 using namespace gse;
 
-edit::EditRequest short_request() {
-    edit::EditRequest request;
-    request.prompt = "a blue ball";
-    request.source = "ball";
-    request.target = "blue";
+edit::CheckedRequest short_request() {
+    auto request = test::asked("ball", "a blue ball", "blue");
     request.iterations = 40;
     request.densify_from = 10;
     request.densify_every = 10;
@@ -41,8 +38,8 @@ struct Run {
     double snapshot_seconds = 0;
 };
 
-edit::EditResult run(const test::BallScene& scene, const edit::EditRequest& request, edit::Guidance& guidance,
-                     const Run& how = {}) {
+edit::EditResult run(const test::BallScene& scene, const edit::CheckedRequest& request,
+                     edit::Guidance& guidance, const Run& how = {}) {
     ThreadPool pool(how.threads);
     const auto rasterizer = raster::make_fast_rasterizer(pool);
     const auto plan = test::ball_plan(scene, *rasterizer);
@@ -317,7 +314,7 @@ DOCTEST_TEST_CASE("a label corrected in the middle of a run is taken over") {
     const auto scene = test::ball_scene();
     auto rasterizer = raster::make_plain_rasterizer();
     const auto plan = test::ball_plan(scene, *rasterizer);
-    edit::EditRequest request = short_request();
+    auto request = short_request();
     auto guidance = test::towards({0.1, 0.1, 0.9});
     // The upper half of the red ball leaves the label, ten rows of the green one join it.
     std::vector<std::uint8_t> corrected = scene.first;
@@ -351,8 +348,7 @@ DOCTEST_TEST_CASE("what was driven to black comes back") {
     const auto scene = test::ball_scene();
     auto rasterizer = raster::make_plain_rasterizer();
     const auto plan = test::ball_plan(scene, *rasterizer, 6, 24);
-    edit::EditRequest request;
-    request.prompt = "a grey ball";
+    auto request = test::asked("ball", "a grey ball", "grey");
     request.iterations = 160;
     request.densify_every = 0;
     test::FunctionGuidance guidance([&](const edit::GuidanceInput& input) {

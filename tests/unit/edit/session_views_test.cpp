@@ -32,9 +32,8 @@ edit::EditPlan separate_plan(const test::BallScene& scene, raster::Rasterizer& r
     return plan;
 }
 
-edit::EditRequest plain_request(int iterations) {
-    edit::EditRequest request;
-    request.prompt = "a blue ball";
+edit::CheckedRequest plain_request(int iterations) {
+    auto request = test::asked("ball", "a blue ball", "blue");
     request.iterations = iterations;
     request.densify_every = 0;
     request.dynamic_mask = false;

@@ -59,8 +59,7 @@ Image disc_picture(double radius, float colour) {
 /// Radius of the disc that has as many pixels as the outline covers.
 double outline_radius(double threshold, Image picture, float backdrop = 0) {
     const edit::EditPlan plan;
-    edit::EditRequest request;
-    request.prompt = "a cat on the grass";
+    const auto request = test::asked("bear", "a cat on the grass", "cat");
     SlopingAttention attention(threshold);
     const edit::ShapeFinder finder(plan, request, "cat", attention);
     Image outline;
@@ -96,8 +95,7 @@ DOCTEST_TEST_CASE(
 DOCTEST_TEST_CASE(
     "where the model tells what is new in its picture, that is the new thing, whatever the word draws") {
     const edit::EditPlan plan;
-    edit::EditRequest request;
-    request.prompt = "a cat on the grass";
+    const auto request = test::asked("bear", "a cat on the grass", "cat");
     SlopingAttention attention(0.5);
     const edit::ShapeFinder finder(plan, request, "cat", attention);
     Image told(Side, Side, 1), outline;
@@ -125,7 +123,7 @@ DOCTEST_TEST_CASE(
         found.outlines.push_back(std::move(outline));
         found.usable.push_back(found.usable.size());
     }
-    edit::EditRequest request;
+    const auto request = test::asked("bear", "a cat on the grass", "cat");
     SlopingAttention attention(0.5);
     const auto reach = [&](edit::EditMode mode) {
         edit::EditPlan plan;

@@ -16,11 +16,7 @@ constexpr double Rounding = 1e-5;  // of a few float operations on values up to 
 
 std::optional<Rgb> look(const char* prompt, const char* target,
                         edit::EditMode mode = edit::EditMode::Modify) {
-    edit::EditRequest request;
-    request.source = "grass";
-    request.prompt = prompt;
-    request.target = target;
-    return edit::usual_look(request, mode, edit::ModelTraits{});
+    return edit::usual_look({language::Sentence(prompt), "grass", target}, mode, edit::ModelTraits{});
 }
 
 /// A grey ramp of 8x8, times `light`; its lower half may change.

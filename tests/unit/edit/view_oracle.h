@@ -89,15 +89,14 @@ struct Redrawing {
         [](const edit::GuidanceInput&) -> edit::GuidanceOutput { throw Error(ErrorCode::Model, "asked"); }};
     edit::EditTools tools{*rasterizer, &never, {}, {}};
     explicit Redrawing(int picture_side = 32) : side(picture_side) { tools.views = &oracle; }
-    edit::EditResult edited(const edit::EditRequest& request) {
+    edit::EditResult edited(const edit::CheckedRequest& request) {
         return edit::run_edit(scene.set, plan, request, tools);
     }
     double error_of(const GaussianSet& set) { return difference(set, target, plan.views, *rasterizer); }
 };
 
-inline edit::EditRequest view_request(int rounds, int fit_steps) {
-    edit::EditRequest request;
-    request.prompt = "a blue ball";
+inline edit::CheckedRequest view_request(int rounds, int fit_steps) {
+    auto request = asked("ball", "a blue ball", "blue");
     request.method = "views";
     request.rounds = rounds;
     request.fit_steps = fit_steps;

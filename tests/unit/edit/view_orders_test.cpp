@@ -43,7 +43,7 @@ std::set<std::size_t> drawn(const edit::EditResult& result, int from = 0) {
     return views;
 }
 
-edit::EditSnapshot snapshot_at(Redrawing& run, const edit::EditRequest& request, int iteration) {
+edit::EditSnapshot snapshot_at(Redrawing& run, const edit::CheckedRequest& request, int iteration) {
     std::optional<edit::EditSnapshot> found;
     run.tools.snapshot = [&](edit::EditSnapshot snapshot) {
         if (snapshot.iteration == iteration) found = std::move(snapshot);
@@ -291,7 +291,7 @@ template <class T> void change(T& value, double low, double high) {
 
 DOCTEST_TEST_CASE("settings that are said to have no effect have none") {
     for (const bool by_views : {true, false}) {
-        const auto run = [by_views](const edit::EditRequest& request) {
+        const auto run = [by_views](const edit::CheckedRequest& request) {
             Redrawing edit;
             auto guidance = towards({0.1, 0.1, 0.9});
             edit::EditTools pulling{*edit.rasterizer, &guidance, {}, {}};
@@ -304,7 +304,7 @@ DOCTEST_TEST_CASE("settings that are said to have no effect have none") {
         const auto plain = run(request);
         const auto& method = *edit::method_named(by_views ? "views" : "sds");
         std::size_t unused = 0;
-        edit::EditRequest::visit_fields(
+        edit::EditSettings::visit_fields(
             request, [&](const char* name, auto& value, const FieldHelp& help, auto... range) {
                 DOCTEST_CHECK(method.counts(help.uses) == edit::why_unused(method, help.uses).empty());
                 if (method.counts(help.uses)) return;

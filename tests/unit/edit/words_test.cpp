@@ -25,12 +25,12 @@ using namespace gse;
 using edit::EditRequest;
 using Words = std::vector<std::string>;
 
-EditRequest valid(const std::string& source, const std::string& prompt, const std::string& target) {
+edit::CheckedRequest valid(const std::string& source, const std::string& prompt, const std::string& target) {
     EditRequest request;
     request.source = source;
     request.prompt = prompt;
     request.target = target;
-    return edit::check(request).plain();
+    return edit::check(request);
 }
 
 /// Writes down the sentences it is asked for; all fit all pictures.
@@ -82,23 +82,23 @@ DOCTEST_TEST_CASE(
                   Words{"the", "dogs", "ball", "isn't", "red"});
     DOCTEST_CHECK(language::words_of("' 's ''") == Words{"s"});
     DOCTEST_CHECK(language::words_of("\u00e9t\u00e9") == Words{"\u00e9t\u00e9"});
-    DOCTEST_CHECK(valid("bear", "the bear's hat is red", "hat").source == "bear");
+    DOCTEST_CHECK(valid("bear", "the bear's hat is red", "hat").source() == "bear");
 }
 
 DOCTEST_TEST_CASE(
     "source and target may be phrases; they must have a word, and the target must be in the sentence") {
     const auto request = valid("Teddy  Bear", "a teddy bear wearing a Top Hat", "top hat");
-    DOCTEST_CHECK(request.source == "teddy bear");
-    DOCTEST_CHECK(request.target == "top hat");
-    DOCTEST_CHECK(valid("teddy bear", "a teddy bear wearing a top hat", "").target == "hat");
-    DOCTEST_CHECK(valid("teddy bear", "a golden teddy bear", "").target == "golden");
+    DOCTEST_CHECK(request.source() == "teddy bear");
+    DOCTEST_CHECK(request.target() == "top hat");
+    DOCTEST_CHECK(valid("teddy bear", "a teddy bear wearing a top hat", "").target() == "hat");
+    DOCTEST_CHECK(valid("teddy bear", "a golden teddy bear", "").target() == "golden");
     DOCTEST_CHECK_THROWS_AS(valid("teddy bear", "a teddy bear with a hat on top", "top hat"), Error);
     DOCTEST_CHECK_THROWS_AS(valid("...", "a teddy bear", "bear"), Error);
     DOCTEST_CHECK_THROWS_AS(valid("bear", "a teddy bear", "!"), Error);
 }
 
 DOCTEST_TEST_CASE("the mode and the sentence before treat a phrase as one thing") {
-    const auto mode = [](const EditRequest& request) {
+    const auto mode = [](const edit::CheckedRequest& request) {
         return edit::decide_mode(request, std::nullopt).first;
     };
     DOCTEST_CHECK(mode(valid("teddy bear", "a teddy bear wearing a top hat", "top hat")) ==
@@ -106,7 +106,7 @@ DOCTEST_TEST_CASE("the mode and the sentence before treat a phrase as one thing"
     DOCTEST_CHECK(mode(valid("teddy bear", "a light blue teddy bear", "light blue")) ==
                   edit::EditMode::Modify);
     DOCTEST_CHECK(mode(valid("bear", "a teddy bear with a hat", "teddy bear")) == edit::EditMode::Modify);
-    const auto before = [](const EditRequest& request) { return edit::edit_sentence(request).before(); };
+    const auto before = [](const edit::CheckedRequest& request) { return request.sentence().before(); };
     DOCTEST_CHECK(before(valid("teddy bear", "a teddy bear wearing a top hat on the grass", "top hat")) ==
                   "a teddy bear on the grass");
     DOCTEST_CHECK(before(valid("teddy bear", "a light blue teddy bear", "light blue")) == "a teddy bear");
@@ -126,18 +126,17 @@ DOCTEST_TEST_CASE("things are named whole, and the identifier describes nothing"
     DOCTEST_CHECK(language::guessed_target(language::Sentence("a blue * bear"), "bear") == "blue");
     DOCTEST_CHECK(language::guessed_target(language::Sentence("a * clown"), "man") == "clown");
     // A teddy bear that became a panda can be asked for again.
-    const auto said =
-        language::words_said({edit::edit_sentence(valid("teddy bear", "a golden teddy bear", "golden")),
-                              edit::edit_sentence(valid("teddy bear", "a panda", "panda"))});
+    const auto said = language::words_said({valid("teddy bear", "a golden teddy bear", "golden").sentence(),
+                                            valid("teddy bear", "a panda", "panda").sentence()});
     DOCTEST_CHECK(language::guessed_target(language::Sentence("a teddy bear"), "panda", said) == "bear");
 }
 
 DOCTEST_TEST_CASE("what the model learns of the scene carries the identifier, what it keeps does not") {
-    DOCTEST_CHECK(language::instance_prompt(edit::edit_sentence(valid("bear", "a blue bear", "blue"))) ==
+    DOCTEST_CHECK(language::instance_prompt(valid("bear", "a blue bear", "blue").sentence()) ==
                   "a photo of a bear");
-    DOCTEST_CHECK(language::instance_prompt(edit::edit_sentence(valid("bear", "a blue * bear", "blue"))) ==
+    DOCTEST_CHECK(language::instance_prompt(valid("bear", "a blue * bear", "blue").sentence()) ==
                   "a photo of a * bear");
-    DOCTEST_CHECK(language::instance_prompt(edit::edit_sentence(valid("* bear", "a blue * bear", "blue"))) ==
+    DOCTEST_CHECK(language::instance_prompt(valid("* bear", "a blue * bear", "blue").sentence()) ==
                   "a photo of a * bear");
 }
 
@@ -147,9 +146,9 @@ DOCTEST_TEST_CASE("every word of a phrase must be known to a model with a fixed 
     DOCTEST_CHECK(!language::vocabulary_contains(known, "top hat"));
     DOCTEST_CHECK(!language::vocabulary_contains(known, ""));
     DOCTEST_CHECK(language::unknown_word(known, "top hat") == "top");
-    const auto refused = [&](const EditRequest& request) {
+    const auto refused = [&](const edit::CheckedRequest& request) {
         try {
-            edit::require_known_words(edit::check(request), known, {}, false);
+            edit::require_known_words(request, known, {}, false);
             return std::string();
         } catch (const Error& error) { return error.message(); }
     };

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <memory>
 
-#include "engine/edit/request/checked_request.h"
 #include "engine/io/project/load_scene.h"
 #include "engine/laboratory/synth/without_ground.h"
 #include "engine/pipeline/models/installed.h"
@@ -102,7 +101,7 @@ DOCTEST_TEST_CASE(
         DOCTEST_CHECK(job.found());
         DOCTEST_CHECK(length(job.views()[0].camera.centre()) <
                       0.6 * fitted);  // most of the fitted picture is ground
-        return job.recipe().request.target;
+        return job.recipe().request.target();
     };
     DOCTEST_CHECK(read("bear", "a golden bear wearing a hat on the snow") == "golden");
     DOCTEST_CHECK(read("bear", "a red bear wearing a hat and a scarf on the snow") == "scarf");
@@ -196,7 +195,7 @@ DOCTEST_TEST_CASE(
     job.locate();
     DOCTEST_REQUIRE(job.found());
     DOCTEST_CHECK(job.located().mode == edit::EditMode::Modify);
-    DOCTEST_CHECK(job.recipe().request.target == "green");
+    DOCTEST_CHECK(job.recipe().request.target() == "green");
     const auto& bits = *job.located().label.bits;
     DOCTEST_REQUIRE(bits.size() == scene.parts.size());
     std::size_t both = 0, either = 0;
@@ -211,7 +210,7 @@ DOCTEST_TEST_CASE(
     other.locate();
     DOCTEST_REQUIRE(other.found());
     DOCTEST_CHECK(other.located().mode == edit::EditMode::Replace);
-    DOCTEST_CHECK(other.recipe().request.target == "crown");
+    DOCTEST_CHECK(other.recipe().request.target() == "crown");
     DOCTEST_CHECK(other.located().confidence.value >= 0);  // it was looked for
 }
 
@@ -255,9 +254,8 @@ DOCTEST_TEST_CASE(
 }
 
 DOCTEST_TEST_CASE("the front is read off the scene where the recipe leaves it open") {
-    EditRecipe recipe = bear_recipe(false);
+    auto recipe = check(bear_recipe(false));
     recipe.request.views = 8;
-    recipe.request = edit::check(recipe.request).plain();
     RunContext workplace(load_scene(assets_path() / "scenes/bear/scene.ply"), load_recipe_model({}),
                          recipe.job);
     const auto found = [&](const std::string& front) {
@@ -430,17 +428,17 @@ DOCTEST_TEST_CASE(
 }
 
 DOCTEST_TEST_CASE("stages: each is a value that names what it follows from, and only that") {
-    EditRecipe recipe = bear_recipe(false);
-    recipe.request.prompt = "a blue bear on the grass";
-    recipe.request.target = "blue";
-    recipe.request.views = 6;
-    recipe.request.iterations = 3;
-    recipe.request = edit::check(recipe.request).plain();
+    EditRecipe written = bear_recipe(false);
+    written.request.prompt = "a blue bear on the grass";
+    written.request.target = "blue";
+    written.request.views = 6;
+    written.request.iterations = 3;
+    const auto recipe = check(written);
     RunContext workplace(load_scene(assets_path() / "scenes/bear/scene.ply"), load_recipe_model({}),
                          recipe.job);
     const Views views = choose_views(workplace.scene(), recipe, {});
     DOCTEST_CHECK(choose_views(workplace.scene(), recipe, {}).key == views.key);
-    EditRecipe turned = recipe;
+    auto turned = recipe;
     turned.job.front = "90";
     DOCTEST_CHECK(choose_views(workplace.scene(), turned, {}).key != views.key);  // the views have words now
     DOCTEST_CHECK(views_on(nearer(views.orbit, 0.7), recipe).key != views.key);
@@ -449,7 +447,7 @@ DOCTEST_TEST_CASE("stages: each is a value that names what it follows from, and 
     const auto bits = *located.result.label.bits;
     DOCTEST_REQUIRE_MESSAGE(located.found(), located.result.message);
     const auto asked = workplace.questions();
-    EditRecipe stricter = located.recipe;
+    auto stricter = located.recipe;
     stricter.request.attention_threshold = workplace.stated_threshold() + 0.2;
     const Located again = locate_again(workplace, located, stricter, {});
     DOCTEST_CHECK(workplace.questions() == asked);  // no network is asked for a threshold
@@ -462,7 +460,7 @@ DOCTEST_TEST_CASE("stages: each is a value that names what it follows from, and 
     const auto plan = plan_of(workplace, located, recipe);
     const Edited edited = edit_scene(workplace, located, plan, recipe, {}, {});
     DOCTEST_CHECK(edit_scene(workplace, located, plan, recipe, {}, {}).key == edited.key);
-    EditRecipe slower = recipe;
+    auto slower = recipe;
     slower.request.rate_colour = 0.5 * slower.request.rate_colour;
     const Edited other = edit_scene(workplace, located, plan, slower, {}, {});
     DOCTEST_CHECK(other.key != edited.key);

@@ -14,6 +14,7 @@
 #include "engine/pipeline/models/installed.h"
 #include "engine/pipeline/run/edit_job.h"
 #include "tests/unit/edit/box_rows.h"
+#include "tests/unit/edit/requests.h"
 
 namespace head_test {
 
@@ -39,12 +40,8 @@ test::BoxRows person() {
     return rows;
 }
 
-edit::EditRequest wearing(const std::string& thing) {
-    edit::EditRequest request;
-    request.source = "person";
-    request.target = thing;
-    request.prompt = "a person wearing " + thing;
-    return request;
+edit::CheckedRequest wearing(const std::string& thing) {
+    return test::asked("person", "a person wearing " + thing, thing);
 }
 
 double lowest(const GaussianSet& set, const std::vector<std::uint8_t>& bits) {
@@ -122,14 +119,13 @@ DOCTEST_TEST_CASE(
     Scene scene;
     scene.gaussians = rows.set();
     scene.info.up = Up;
-    auto request = wearing("hat");
-    request.prompt = "a person wearing a red hat";
+    auto request = test::asked("person", "a person wearing a red hat", "hat");
     request.views = 8;
     request.place_views = request.shape_views = 4;
     request.place_steps = request.shape_steps = 1;
     request.shape_fit_steps = 2;
     pipeline::EditRecipe recipe;
-    recipe.request = request;
+    recipe.request = request.plain();
     pipeline::EditJob job(recipe, {scene, {}, pipeline::load_recipe_model({}), rows.bits}, JobControl{});
     job.locate();
     DOCTEST_REQUIRE(job.found());
@@ -146,21 +142,19 @@ DOCTEST_TEST_CASE(
 #endif
 
 DOCTEST_TEST_CASE("only what is worn takes the place of something worn, and only where it replaces it") {
-    edit::EditRequest request;
-    request.source = "hat";
-    request.target = "crown";
-    DOCTEST_CHECK(edit::replaces_accessory(request, edit::EditMode::Replace));
-    DOCTEST_CHECK_FALSE(edit::replaces_accessory(request, edit::EditMode::Add));
-    DOCTEST_CHECK_FALSE(edit::replaces_accessory(request, edit::EditMode::Modify));
-    DOCTEST_CHECK_FALSE(edit::moves_worn_place(request, edit::EditMode::Replace));
-    request.target = "sunglasses";
-    DOCTEST_CHECK(edit::moves_worn_place(request, edit::EditMode::Replace));
-    DOCTEST_CHECK_FALSE(edit::moves_worn_place(request, edit::EditMode::Modify));
-    request.source = "ball";
-    DOCTEST_CHECK_FALSE(edit::replaces_accessory(request, edit::EditMode::Replace));  // a crown on the ground
-    request.source = "hat";
-    request.target = "ball";
-    DOCTEST_CHECK_FALSE(edit::replaces_accessory(request, edit::EditMode::Replace));
+    const auto instead = [](const std::string& source, const std::string& target) {
+        return language::EditSentence(language::Sentence("a bear with " + target), source, target);
+    };
+    const auto crown = instead("hat", "crown"), sunglasses = instead("hat", "sunglasses");
+    DOCTEST_CHECK(edit::replaces_accessory(crown, edit::EditMode::Replace));
+    DOCTEST_CHECK_FALSE(edit::replaces_accessory(crown, edit::EditMode::Add));
+    DOCTEST_CHECK_FALSE(edit::replaces_accessory(crown, edit::EditMode::Modify));
+    DOCTEST_CHECK_FALSE(edit::moves_worn_place(crown, edit::EditMode::Replace));
+    DOCTEST_CHECK(edit::moves_worn_place(sunglasses, edit::EditMode::Replace));
+    DOCTEST_CHECK_FALSE(edit::moves_worn_place(sunglasses, edit::EditMode::Modify));
+    // Of a crown on the ground.
+    DOCTEST_CHECK_FALSE(edit::replaces_accessory(instead("ball", "sunglasses"), edit::EditMode::Replace));
+    DOCTEST_CHECK_FALSE(edit::replaces_accessory(instead("hat", "ball"), edit::EditMode::Replace));
 }
 
 }  // namespace head_test

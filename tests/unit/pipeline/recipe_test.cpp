@@ -25,6 +25,10 @@ pipeline::EditRecipe plain() {
     return recipe;
 }
 
+std::string key_of(const pipeline::EditRecipe& recipe) {
+    return pipeline::search_key(pipeline::check(recipe));
+}
+
 /// Another value of the same type.
 void change(bool& value) { value = !value; }
 void change(std::string& value) { value += "x"; }
@@ -43,24 +47,32 @@ template <class Part> std::set<std::string> names() {
 DOCTEST_TEST_CASE(
     "the words and the settings of the search decide what is found, those of the loop and the thresholds do "
     "not") {
-    auto searched = names<edit::EditWords>();
-    searched.merge(names<edit::SearchSettings>());
-    const auto before = pipeline::search_key(plain());
+    const auto searched = names<edit::SearchSettings>();
+    const auto before = key_of(plain());
     std::size_t checked = 0;
-    for (const auto& name : names<edit::EditRequest>()) {
-        auto recipe = plain();
-        edit::EditRequest::visit_fields(recipe.request,
-                                        [&](const char* field, auto& value, const char*, const auto&...) {
-                                            if (field == name) change(value);
-                                        });
+    for (const auto& name : names<edit::EditSettings>()) {
+        auto recipe = pipeline::check(plain());
+        edit::EditSettings::visit_fields(recipe.request,
+                                         [&](const char* field, auto& value, const char*, const auto&...) {
+                                             if (field == name) change(value);
+                                         });
         DOCTEST_CAPTURE(name);
         DOCTEST_CHECK((pipeline::search_key(recipe) != before) == searched.contains(name));
         ++checked;
     }
     DOCTEST_CHECK(checked > 60);
+    for (const auto& [field, value] : {std::pair{&edit::EditWords::source, "grass"},
+                                       {&edit::EditWords::prompt, "a blue bear"},
+                                       {&edit::EditWords::target, "grass"},
+                                       {&edit::EditWords::mode, "modify"}}) {
+        auto recipe = plain();
+        recipe.request.*field = value;
+        DOCTEST_CAPTURE(value);
+        DOCTEST_CHECK(key_of(recipe) != before);
+    }
     auto recipe = plain();
     recipe.guidance.guidance_scale += 1;
-    DOCTEST_CHECK(pipeline::search_key(recipe) == before);
+    DOCTEST_CHECK(key_of(recipe) == before);
 }
 
 DOCTEST_TEST_CASE(
@@ -84,24 +96,24 @@ DOCTEST_TEST_CASE("every field of a request belongs to one part of it") {
 }
 
 DOCTEST_TEST_CASE("another model, up axis, front or set of cameras looks again; the film's size does not") {
-    const auto before = pipeline::search_key(plain());
+    const auto before = key_of(plain());
     for (const auto field : {&pipeline::JobParameters::model, &pipeline::JobParameters::up,
                              &pipeline::JobParameters::front, &pipeline::JobParameters::cameras}) {
         auto recipe = plain();
         recipe.job.*field = "other";
-        DOCTEST_CHECK(pipeline::search_key(recipe) != before);
+        DOCTEST_CHECK(key_of(recipe) != before);
     }
     auto tuned = plain();
     tuned.job.lora = {"a.safetensors:0.5"};
-    DOCTEST_CHECK(pipeline::search_key(tuned) != before);
+    DOCTEST_CHECK(key_of(tuned) != before);
     auto recipe = plain();
     recipe.job.rasterizer = "cuda";
-    DOCTEST_CHECK(pipeline::search_key(recipe) != before);
+    DOCTEST_CHECK(key_of(recipe) != before);
     recipe.job.rasterizer = "cpu";  // which "auto" is
     recipe.job.turntable_frames = 7;
-    DOCTEST_CHECK(pipeline::search_key(recipe) == before);
+    DOCTEST_CHECK(key_of(recipe) == before);
     recipe.use_dreambooth = true;
-    DOCTEST_CHECK(pipeline::search_key(recipe) != before);
+    DOCTEST_CHECK(key_of(recipe) != before);
 }
 
 DOCTEST_TEST_CASE("LoRAs are a list of the recipe; their files are those beside it, with their strength") {
@@ -126,10 +138,9 @@ DOCTEST_TEST_CASE("LoRAs are a list of the recipe; their files are those beside 
 
 DOCTEST_TEST_CASE("a target that is left to be guessed is the one that was guessed") {
     auto recipe = plain();
-    const auto guessed = pipeline::search_key(recipe);
+    const auto guessed = key_of(recipe);
     recipe.request.target.clear();
-    recipe.request = edit::check(recipe.request).plain();
-    DOCTEST_CHECK(pipeline::search_key(recipe) == guessed);
+    DOCTEST_CHECK(key_of(recipe) == guessed);
 }
 
 }  // namespace recipe_test

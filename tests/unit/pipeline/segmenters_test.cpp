@@ -158,9 +158,11 @@ DOCTEST_TEST_CASE("weights that cannot be used are refused with their name, and 
     refused(ErrorCode::NotFound);
     write_file(job.segmenter, "no weights at all");
     refused(ErrorCode::Malformed);
-    EditRecipe plain, other;
+    EditRecipe plain;
+    plain.request.source = "bear", plain.request.prompt = "a blue bear";
+    auto other = plain;
     other.job.segmenter = job.segmenter;
-    DOCTEST_CHECK(search_key(plain) != search_key(other));
+    DOCTEST_CHECK(search_key(check(plain)) != search_key(check(other)));
     DOCTEST_CHECK(tuning_key(plain) == tuning_key(other));
 }
 

@@ -14,11 +14,13 @@ DOCTEST_TEST_CASE("one or two bookmarks do not take the place of the automatic v
     using namespace gse;
     Scene scene = synth::generate({}).scene;
     pipeline::EditRecipe recipe;
+    recipe.request.source = "bear", recipe.request.prompt = "a blue bear";
     recipe.request.views = 8;
     const auto around = orbit_views(fit_orbit(compute_statistics(scene.gaussians), scene.info.up), 3, 64, 64);
     for (std::size_t count = 0; count <= 3; ++count) {
         const auto views = pipeline::choose_views(
-            scene, recipe, {{around.begin(), around.begin() + static_cast<std::ptrdiff_t>(count)}, {}});
+            scene, pipeline::check(recipe),
+            {{around.begin(), around.begin() + static_cast<std::ptrdiff_t>(count)}, {}});
         DOCTEST_CHECK(views.automatic == (count < 3));
         DOCTEST_CHECK(views.views.size() == (count < 3 ? 8u : 3u));
     }

@@ -139,14 +139,14 @@ Rgb dyed_gold(const Rgb& pixel, const ColourRemap& dye) {
 
 }  // namespace
 
-std::optional<ColourRemap> dye_of(const EditRequest& request, EditMode mode,
+std::optional<ColourRemap> dye_of(const language::EditSentence& sentence, EditMode mode,
                                   const std::vector<std::string>& known) {
     if (!lists_dye(known, PlainBase)) return std::nullopt;
-    const auto words = language::words_of(request.prompt);
-    const std::size_t target = language::position_of(request.prompt, request.target);
+    const auto& words = sentence.sentence().words();
+    const std::size_t target = sentence.sentence().position_of(sentence.target());
     if (target >= words.size()) return std::nullopt;
     const std::size_t begin = phrase_begin(words, target);
-    std::size_t end = target + language::words_of(request.target).size();
+    std::size_t end = target + language::words_of(sentence.target()).size();
     if (mode != EditMode::Modify) --end;  // the thing itself, whatever it is called
     for (std::size_t i = begin; i < end; ++i)
         if (auto dye = lists_dye(known, words[i]) ? std::nullopt : patterned(words, begin, i, end))

@@ -11,7 +11,7 @@
 #include "engine/edit/interfaces/interfaces.h"
 #include "engine/edit/placement/upright_bounds.h"
 #include "engine/edit/request/dye_words.h"
-#include "engine/edit/request/request.h"
+#include "engine/language/sentence.h"
 #include "engine/scene/surface_pattern.h"
 
 namespace gse::edit {
@@ -32,7 +32,7 @@ struct ColourRemap {
 /// Colour to lay over an edit: a colour name in its target, or right before it. The name is not in `known`,
 /// or "dark" or its like stands before it. Objects that are added or replace others may be named like a
 /// colour. None where there is none, or dye_words() is empty.
-std::optional<ColourRemap> dye_of(const EditRequest& request, EditMode mode,
+std::optional<ColourRemap> dye_of(const language::EditSentence& sentence, EditMode mode,
                                   const std::vector<std::string>& known);
 
 /// The sentence (words as language::normalised_prompt() has them) with the dye's words replaced by its base,

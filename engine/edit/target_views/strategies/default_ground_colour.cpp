@@ -33,11 +33,11 @@ float median_luminance(const std::vector<EditView>& views) {
 
 }  // namespace
 
-std::optional<std::array<float, 3>> usual_look(const EditRequest& request, EditMode mode,
+std::optional<std::array<float, 3>> usual_look(const language::EditSentence& sentence, EditMode mode,
                                                const ModelTraits& traits) {
-    if (mode != EditMode::Modify || language::is_described(request.prompt, request.target))
+    if (mode != EditMode::Modify || language::is_described(sentence.prompt(), sentence.target()))
         return std::nullopt;
-    const auto found = traits.ground_colours.find(request.target);
+    const auto found = traits.ground_colours.find(sentence.target());
     return found == traits.ground_colours.end() ? std::nullopt : std::optional(found->second);
 }
 

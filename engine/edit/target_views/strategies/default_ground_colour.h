@@ -9,14 +9,14 @@
 #include "engine/edit/interfaces/interfaces.h"
 #include "engine/edit/interfaces/model_traits.h"
 #include "engine/edit/interfaces/view_targets.h"
-#include "engine/edit/request/request.h"
+#include "engine/language/sentence.h"
 
 namespace gse::edit {
 
-/// Colour, display values in [0,1], of the ground that a completed request makes of another ("snow" for the
+/// Colour, display values in [0,1], of the ground that an edit makes of another ("snow" for the
 /// grass). None if it makes something else, if that ground has no usual colour, or if the sentence says its
 /// colour ("red sand").
-std::optional<std::array<float, 3>> usual_look(const EditRequest& request, EditMode mode,
+std::optional<std::array<float, 3>> usual_look(const language::EditSentence& sentence, EditMode mode,
                                                const ModelTraits& traits);
 
 /// Share of the way to the colour that redrawn views have gone, in their changed pixels. 1 = all of it; below
