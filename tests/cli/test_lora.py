@@ -16,9 +16,9 @@ QUICK = ["--views", 4, "--image-size", 64, "--attention-repeats", 1, "--iteratio
 RANK = 2
 
 
-def safetensors_bytes(tensors):
+def safetensors_bytes(tensors, metadata=None):
     """tensors: {name: (shape, floats)}, all F32."""
-    header, data = {}, b""
+    header, data = {"__metadata__": metadata} if metadata else {}, b""
     for name, (shape, values) in tensors.items():
         raw = struct.pack(f"<{len(values)}f", *values)
         header[name] = {"dtype": "F32", "shape": shape, "data_offsets": [len(data), len(data) + len(raw)]}
@@ -34,10 +34,10 @@ def model_shapes():
                 entry in json.loads(file.read(length)).items() if name != "__metadata__"}
 
 
-def lora_bytes(size=0.2, layers="attn2.to_v", rows=None):
-    """Kohya's names, for the starter's layers that end so."""
+def lora_bytes(size=0.2, layers="attn2.to_v", rows=None, alpha=RANK, metadata=None, more=()):
+    """Kohya's names, for the starter's layers that end so; `alpha` None = no tensor says it."""
     draw = random.Random(3)
-    tensors = {}
+    tensors = {name: ([1], [1.0]) for name in more}
     for name, shape in model_shapes().items():
         if not name.endswith(f"{layers}.weight"):
             continue
@@ -46,9 +46,10 @@ def lora_bytes(size=0.2, layers="attn2.to_v", rows=None):
         tensors[f"{stem}.lora_down.weight"] = ([RANK, inner],
                                                [draw.gauss(0, size) for _ in range(RANK * inner)])
         tensors[f"{stem}.lora_up.weight"] = ([out, RANK], [draw.gauss(0, size) for _ in range(RANK * out)])
-        tensors[f"{stem}.alpha"] = ([], [float(RANK)])
+        if alpha is not None:
+            tensors[f"{stem}.alpha"] = ([], [float(alpha)])
     assert tensors
-    return safetensors_bytes(tensors)
+    return safetensors_bytes(tensors, metadata)
 
 
 @unittest.skipUnless((MODEL / "model_index.json").exists(), "[skip] the starter model is not there")
@@ -84,6 +85,21 @@ class Loras(ProgramTest):
         self.assertEqual(process.returncode, 0, process.stderr)
         self.assertEqual(json.loads((again / "recipe.json").read_text())["job"]["lora"], [f"{style}:0"])
         self.assertEqual((again / "scene.ply").read_bytes(), (plain / "scene.ply").read_bytes())
+
+    def test_alphas_beside_the_tensors_count_and_what_is_left_out_is_said(self):
+        style = self.write("style.safetensors", lora_bytes(alpha=8))
+        told = self.write("told.safetensors", lora_bytes(alpha=None, metadata={"ss_network_alpha": "8"}))
+        strong = (self.edited("strong", "--lora", style) / "scene.ply").read_bytes()
+        self.assertEqual((self.edited("told", "--lora", told) / "scene.ply").read_bytes(), strong)
+        weak = self.write("weak.safetensors", lora_bytes(alpha=None))
+        self.assertNotEqual((self.edited("weak", "--lora", weak) / "scene.ply").read_bytes(), strong)
+        # A second time from the cache, too.
+        more = self.write("more.sft", lora_bytes(alpha=8, more=["bundle_emb.style.string_to_param.*"]))
+        for name in ("first", "second"):
+            process = self.edit(self.folder / name, "--lora", more)
+            self.assertEqual(process.returncode, 0, process.stderr)
+            self.assertIn("without 1 tensor of embeddings", process.stderr)
+            self.assertEqual((self.folder / name / "scene.ply").read_bytes(), strong)
 
     def test_a_distilled_one_brings_its_few_steps(self):
         fast = self.write("my lcm.safetensors", lora_bytes(0.01))

@@ -316,7 +316,7 @@ DOCTEST_TEST_CASE("the same request gives the same bytes; a snapshot goes on fro
 DOCTEST_TEST_CASE(
     "a colour that the sentence leaves open is the one that the first view shows, for all views and rounds") {
     ShapeEdit run(scene_of("bear", "red"), scene_of("cat", "orange"), edit::EditMode::Replace);
-    run.request.prompt = "a cat on the grass";
+    run.request = run.request.reworded("a cat on the grass", run.request.target());
     run.request.shape_fit_steps = 10;
     edit::ViewTargets shown;
     run.tools_changed = [&](edit::EditTools& tools) {

@@ -300,12 +300,12 @@ void FakeApplication::make_rest() {
     model_.words_known = true;
     model_.estimate = {62, 0.42, 850, 14200};
     model_.models = {
-        {"starter", "/usr/share/gseditpro/models/starter", "starter, 64 px", 48u << 20, true, "", true},
+        {"starter", "/usr/share/gseditpro/models/starter", "starter, 64 px", "", 48u << 20, true, "", true},
         {"stable-diffusion-v1-5", "/home/mira/ComfyUI/models/checkpoints/v1-5-pruned-emaonly.safetensors",
-         "Stable Diffusion 1.x", 4270000000u, true, "Slow without a graphics card: about 40 min for an edit.",
-         false},
+         "Stable Diffusion 1.x", "predicts noise", 4270000000u, true,
+         "Slow without a graphics card: about 40 min for an edit.", false},
         {"sd_xl_base", "/home/mira/ComfyUI/models/checkpoints/sd_xl_base_1.0.safetensors",
-         "Stable Diffusion XL", 6900000000u, false,
+         "Stable Diffusion XL", "", 6900000000u, false,
          "SDXL is not supported; use a Stable Diffusion 1.x or 2.x model.", false}};
     using log::Level;
     log_ = {

@@ -6,9 +6,11 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/pipeline/models/installed.h"
 #include "engine/pipeline/models/model_catalogue.h"
+#include "engine/pipeline/report/scene_report.h"
 #include "tests/test_paths.h"
 
 namespace model_catalogue_test {
@@ -133,6 +135,24 @@ DOCTEST_TEST_CASE("model catalogue: a model says what it predicts, and by which 
     DOCTEST_CHECK(describe_model(path).prediction == "predicts noise (by scheduler_config.json)");
     DOCTEST_CHECK(describe_model(starter_model_path()).prediction ==
                   "predicts velocity (by scheduler_config.json)");
+}
+
+DOCTEST_TEST_CASE("model catalogue: info tells what a model is, and refuses what is none") {
+    const test::ScratchFolder folder;
+    const auto path = folder.path() / "MODEL.SFT";
+    auto marked = whole_model(4, 768);
+    marked.push_back({"v_pred", {0}});
+    write_checkpoint(path, marked);
+    const auto json = scene_report(path);
+    DOCTEST_CHECK(json["structure"] == "Stable Diffusion 1.x");
+    DOCTEST_CHECK(json["usable"] == true);
+    const auto text = report_text(json);
+    DOCTEST_CHECK(text.find("predicts velocity (by its tensor \"v_pred\")") != std::string::npos);
+    DOCTEST_CHECK(scene_report(starter_model_path())["structure"] == "starter");
+    write_file(folder.path() / "noise.safetensors", "not a header");
+    write_file(folder.path() / "old.CKPT", "pickled");
+    for (const char* name : {"noise.safetensors", "old.CKPT", "nowhere.safetensors"})
+        DOCTEST_CHECK_THROWS_AS(scene_report(folder.path() / name), Error);
 }
 
 }  // namespace model_catalogue_test
