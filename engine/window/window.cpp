@@ -309,6 +309,7 @@ float Window::State::desktop_scale() const {
 /// Applies the scale to fonts and sizes. Glyphs are made for the pixels they are shown with.
 void Window::State::update_scale() {
     const float now = wanted_scale > 0 ? std::clamp(wanted_scale, 0.5f, 4.0f) : desktop_scale();
+    if (now == scale && !fonts_stale && !undressed) return;
     auto& io = ImGui::GetIO();
     auto& style = ImGui::GetStyle();
     if (now != scale || undressed || !io.Fonts->IsBuilt()) {
@@ -331,7 +332,6 @@ bool Window::State::start_frame() {
     if (!commands) commands.emplace(device->begin_commands());  // else those of an abandoned frame go on
     update_scale();
     hand_on_input();
-    ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
     frame_open = true;
     return true;

@@ -230,6 +230,23 @@ DOCTEST_TEST_CASE("where Apply is decided stands what it took and what it left a
                   harness.rect("viewport").y + harness.rect("viewport").height * 3 / 4);  // not over a hat
 }
 
+DOCTEST_TEST_CASE("the verdict on a result stands above its buttons; where it warns, Apply says so") {
+    Harness harness({Wide, High, 1, Situation::ResultWaiting, false});
+    auto& verdict = harness.application.model().verdict;
+    verdict.text = "The model's pictures show the edit (score 0.41).";
+    harness.frame(3);
+    DOCTEST_REQUIRE(harness.find("result.verdict") != nullptr);
+    const auto said = harness.rect("result.verdict"), apply = harness.rect("result.apply");
+    DOCTEST_CHECK(said.visible);
+    DOCTEST_CHECK(said.y + said.height <= apply.y);
+    verdict.text = "The model's pictures hardly show \"a bear with wings\" (score 0.02).";
+    verdict.warns = true;
+    harness.frame(3);
+    DOCTEST_CHECK(harness.rect("result.verdict").y < said.y);         // with what to try below it
+    DOCTEST_CHECK(harness.rect("result.apply").width > apply.width);  // "Apply anyway"
+    DOCTEST_CHECK(harness.asks("result.apply", "apply_result"));
+}
+
 DOCTEST_TEST_CASE("history: stack and steps") {
     Harness harness({Wide, High, 1, Situation::Located, false});
     DOCTEST_CHECK(harness.asks("history.enabled.7", "set_edit_enabled 7 off"));
