@@ -316,19 +316,18 @@ std::optional<std::array<double, 2>> shell(const VisibleRows& rows, const Indice
 }
 
 /// Kinds of the rows beyond the core: sky between two distances, haze, both or neither.
-struct SurroundingKind {
+struct FarKind {
     std::optional<std::array<double, 2>> sky;
     bool haze = false;
 };
 
-SurroundingKind kind_of(const VisibleRows& rows, const Indices& beyond, const Indices& near,
-                        const Bounds& core) {
+FarKind kind_of(const VisibleRows& rows, const Indices& beyond, const Indices& near, const Bounds& core) {
     constexpr double MostlyShell = 0.7, PartlyShell = 0.5;
     const auto hazy = [&](const Indices& some) {
         return !some.empty() &&
                (faint(rows, some, near) || scattered(rows, some) || fills_space(rows, some, core));
     };
-    SurroundingKind kind;
+    FarKind kind;
     kind.sky = shell(rows, beyond, core, MostlyShell);
     if (!kind.sky && hazy(beyond)) return {std::nullopt, true};
     if (!kind.sky) kind.sky = shell(rows, beyond, core, PartlyShell);

@@ -14,7 +14,7 @@ constexpr double SureLikelihood = 0.7;
 
 // Share of the files that are up along x, -x, y, -y, z, -z: COLMAP and 3DGS write -y, nerfstudio and Blender
 // z, viewers y.
-constexpr std::array<double, Directions> Habit{0.05, 0.05, 0.16, 0.42, 0.26, 0.06};
+constexpr std::array<double, Directions> Habit{0.05, 0.05, 0.18, 0.41, 0.26, 0.05};
 
 // Weights of a multinomial logistic model of the evidence.
 double support(const UpEvidence& evidence) {
