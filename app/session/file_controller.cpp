@@ -145,12 +145,11 @@ void FileController::take(OpenedWork opened) {
     if (!opened.project && state.info.looks_activated) offer_activated(opened.path);
 }
 
-/// Sizes and opacities in place of their logarithms and logits are drawn as a fog.
+/// Adds what to press to the warning that such a scene was read with.
 void FileController::offer_activated(const std::filesystem::path& path) {
     workspace_.notices.toast(
-        "The sizes or opacities of this scene look activated (not stored as logarithms and logits): it is "
-        "drawn as a fog.",
-        false, "Read them as they are", [this, path, revision = workspace_.document.revision()] {
+        "A fog? Sizes or opacities of this scene may be stored as they are drawn.", false, "Read them so",
+        [this, path, revision = workspace_.document.revision()] {
             if (workspace_.document.revision() == revision) return open(path, {.activated = true});
             workspace_.notices.toast("The scene was changed since: open it again first.");
         });

@@ -1,8 +1,6 @@
 // Scenes, projects and autosaves that the file thread reads, on their way to the window.
 #include "app/session/files/opened_work.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <utility>
 
@@ -10,7 +8,6 @@
 #include "engine/base/error.h"
 #include "engine/io/scene/scene_file.h"
 #include "engine/pipeline/run/scene_loading.h"
-#include "engine/scene/origin/world_offset.h"
 
 namespace gse::app {
 namespace {
@@ -37,11 +34,6 @@ void read_scene(OpenedWork& opened, const ReadingOptions& options) {
     if (!up.empty() && !scene.info.up_unsure) notes.push_back(up);  // else a bar over the picture asks
     opened.data.source = scene_source(opened.path, scene.gaussians);
     opened.notes = std::move(notes);
-    if (has_offset(scene.info.offset))
-        opened.notes.push_back(
-            fmt::format("The coordinates are large: {} is taken off them here, and added again in PLY files "
-                        "and viewpoints.",
-                        offset_text(scene.info.offset)));
     opened.state = initial_state(scene, std::move(views));
 }
 

@@ -14,6 +14,8 @@ namespace {
 // Logarithms that are all positive belong to splats of more than a unit; half of them below e units would be
 // of nearly one size.
 constexpr float LargestUsualSize = 1;
+// The values of fewer splats lie in any range by chance.
+constexpr std::size_t FewestRows = 5;
 
 /// Range of the finite values.
 struct ValueRange {
@@ -47,7 +49,7 @@ ActivatedValues can_be_activated(const GaussianSpans& set) {
 
 ActivatedValues looks_activated(const GaussianSpans& set) {
     ActivatedValues values = can_be_activated(set);
-    if (!values.any()) return values;
+    if (!values.any() || set.size < FewestRows) return {};
     const ValueRange sizes(set.log_scale), opacities(set.opacity_logit);
     const bool small = values.sizes && sizes.high > 0 && median(set.log_scale) < LargestUsualSize;
     values.opacities = values.opacities && opacities.high > 0 && (small || opacities.low < opacities.high);

@@ -60,8 +60,9 @@ Json report_of(const Scene& scene, const std::filesystem::path& path, const Came
     json["antialiased"] = scene.info.antialiased;
     json["mean_opacity"] = statistics.mean_opacity;
     const Vec3& offset = scene.info.offset;
+    const auto in_world = [&](const Vec3& at) { return list_of(has_offset(offset) ? at + offset : at); };
     const auto bounds = [&](const Vec3& low, const Vec3& high) {
-        return Json{{"low", list_of(low + offset)}, {"high", list_of(high + offset)}};
+        return Json{{"low", in_world(low)}, {"high", in_world(high)}};
     };
     json["bounds"] = bounds(statistics.bounds_low, statistics.bounds_high);
     json["robust_bounds"] = bounds(statistics.robust_low, statistics.robust_high);
