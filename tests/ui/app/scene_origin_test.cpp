@@ -27,7 +27,7 @@ bool said(const app::Application& app, const std::string& text) {
 
 /// The bundled scene in another place of the world, with a number for every splat.
 Scene far_bear() {
-    Scene scene = load_scene(assets_path() / "scenes/bear/scene.ply");
+    Scene scene = load_scene(app::assets_path() / "scenes/bear/scene.ply");
     std::vector<std::int32_t> numbers(scene.gaussians.size());
     std::iota(numbers.begin(), numbers.end(), 1000);
     std::vector<std::byte> bytes(numbers.size() * sizeof(std::int32_t));
@@ -87,7 +87,7 @@ DOCTEST_TEST_CASE("a scene that looks activated is read anew at the press of a b
     const Place place;
     Session session;
     auto& app = session.app;
-    Scene scene = load_scene(assets_path() / "scenes/bear/scene.ply");
+    Scene scene = load_scene(app::assets_path() / "scenes/bear/scene.ply");
     const GaussianSet raw = scene.gaussians;
     GaussianData data = raw.to_data();
     for (float& value : data.log_scale) value = std::exp(value);
