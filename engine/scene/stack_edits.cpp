@@ -55,9 +55,8 @@ DocumentState with_edit(const DocumentState& before, EditNode node, const std::s
         added[row] = ((*state.row_ids)[row] >> EditIdShift) == id ? 1 : 0;
     if (std::find(added.begin(), added.end(), std::uint8_t{1}) == added.end()) return state;
     if (beside || state.active_label < 0) {
-        state.labels.push_back(with_added(empty_label(target, added.size()), added));
-        if (!beside) state.active_label = static_cast<int>(state.labels.size()) - 1;
-        return state;
+        state.labels.push_back(empty_label(target, added.size()));
+        state.active_label = static_cast<int>(state.labels.size()) - 1;
     }
     auto& label = state.labels[static_cast<std::size_t>(state.active_label)];
     label = with_added(std::move(label), added);

@@ -229,8 +229,9 @@ bool faint(const VisibleRows& rows, const Indices& far, const Indices& near) {
 /// True when typical neighbours are too far apart for a surface.
 bool scattered(const VisibleRows& rows, const Indices& far) {
     constexpr std::size_t Probes = 200, MostRows = 100000;
-    constexpr double LeastGap = 6;  // sizes of a splat
-    if (far.size() < 2 || far.size() > MostRows) return false;
+    constexpr std::size_t FewestRows = 50;  // fewer may be a tall part of few splats
+    constexpr double LeastGap = 6;          // sizes of a splat
+    if (far.size() < FewestRows || far.size() > MostRows) return false;
     std::vector<double> gaps;
     const std::size_t count = std::min(Probes, far.size());
     for (std::size_t probe = 0; probe < count; ++probe) {
