@@ -22,8 +22,7 @@ DocumentState with_adjustment(const DocumentState& before, std::span<const std::
 
 /// The state with `node` (with its delta) on top of the stack. Added rows join a label, so that they can be
 /// edited further. A new label named `target` takes them if the edit put something beside the scene
-/// (`beside`) or no label is active. Otherwise the active one does. What is put beside leaves the active
-/// label as it is: the next sentence about the object means the object.
+/// (`beside`) or no label is active. Otherwise the active one does.
 DocumentState with_edit(const DocumentState& state, EditNode node, const std::string& target, bool beside);
 
 /// Names of later edits, switched on, that change or remove rows which the edit `id` added or changed. They
