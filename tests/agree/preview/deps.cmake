@@ -1,1 +1,2 @@
-target_link_libraries(${test_target} PRIVATE gse_preview gse_raster)
+target_sources(${test_target} PRIVATE image_baseline.cpp)
+target_link_libraries(${test_target} PRIVATE gse_preview gse_raster gse_io)

@@ -1,5 +1,5 @@
-// Pictures of the window in every state, size and scale, drawn without a device; the tests only ask that they
-// are not empty.
+// Pictures of the window in every state, size and scale, drawn without a device. At 1280x720 each is held
+// against its baseline.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "engine/io/image/image_file.h"
+#include "tests/image_baseline.h"
 #include "tests/test_paths.h"
 #include "tests/ui/support/harness.h"
 #include "ui/keys/keys.h"
@@ -21,11 +22,14 @@ std::filesystem::path gallery_folder() {
     return folder;
 }
 
+constexpr int KeptPixels = 4;  // sides of the squares of a baseline: small in the repository, still readable
+
 struct Shot {
     const char* name;
     Situation situation;
     std::vector<ui::PanelId> panels;
     std::function<void(Harness&)> act = {};
+    bool held = true;  // against a baseline: nothing in it depends on the machine's folders
 };
 
 const std::vector<Shot>& shots() {
@@ -56,7 +60,8 @@ const std::vector<Shot>& shots() {
              harness.modifiers(false, false, false);
              harness.frame(3);
              harness.key(ui::key::Down);
-         }},
+         },
+         false},
         {"settings",
          Situation::Scene,
          {PanelId::Prompt, PanelId::Settings},
@@ -103,6 +108,8 @@ void take(const Shot& shot, int width, int height, float scale) {
     for (const float value : picture.data) brightest = std::max(brightest, value);
     DOCTEST_CHECK(brightest > 0.5f);
     write_png(gallery_folder() / fmt::format("{}_{}x{}_{}.png", shot.name, width, height, scale), picture);
+    if (width == 1280 && scale == 1 && shot.held)
+        check_baseline(std::string("window/") + shot.name, picture, WindowTolerance, KeptPixels);
 }
 
 }  // namespace
