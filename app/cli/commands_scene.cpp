@@ -18,8 +18,8 @@
 #include "engine/io/scene/scene_file.h"
 #include "engine/pipeline/report/film.h"
 #include "engine/pipeline/report/scene_report.h"
-#include "engine/pipeline/run/scene_loading.h"
-#include "engine/pipeline/run/scene_tools.h"
+#include "engine/pipeline/scene/scene_loading.h"
+#include "engine/pipeline/scene/scene_tools.h"
 #include "engine/scene/colour_adjustment.h"
 #include "engine/scene/origin/world_offset.h"
 

@@ -3,7 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "engine/pipeline/run/recipe.h"
+#include "engine/pipeline/recipe/recipe.h"
 
 namespace gse::app {
 

@@ -16,9 +16,9 @@
 #include "engine/io/files/user_files.h"
 #include "engine/io/image/image_file.h"
 #include "engine/pipeline/models/installed.h"
-#include "engine/pipeline/run/recipe.h"
-#include "engine/pipeline/run/scene_loading.h"
-#include "engine/pipeline/run/scene_tools.h"
+#include "engine/pipeline/recipe/recipe.h"
+#include "engine/pipeline/scene/scene_loading.h"
+#include "engine/pipeline/scene/scene_tools.h"
 #include "engine/scene/stack_edits.h"
 
 namespace gse::app {

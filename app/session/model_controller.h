@@ -15,7 +15,7 @@
 #include "engine/base/content_hash.h"
 #include "engine/neural/api/model_profile.h"
 #include "engine/pipeline/models/recipe_model.h"
-#include "engine/pipeline/run/recipe.h"
+#include "engine/pipeline/recipe/recipe.h"
 #include "ui/model_settings.h"
 
 namespace gse::app {

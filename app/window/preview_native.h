@@ -15,7 +15,7 @@
 #include "app/session/preview_host.h"
 #include "engine/base/mailbox.h"
 #include "engine/base/shared_queue.h"
-#include "engine/pipeline/run/scene_tools.h"
+#include "engine/pipeline/scene/scene_tools.h"
 #include "engine/preview/moving_scale.h"
 #include "engine/preview/resolve.h"
 

@@ -93,6 +93,14 @@ SUB_ROOMS = {
         "clip": {"api", "layers", "weights", "diffusion"},
         "sam": {"api", "layers", "weights"},
     },
+    "pipeline": {
+        "recipe": set(),
+        "scene": set(),
+        "models": {"recipe"},
+        "select": {"scene"},
+        "run": {"recipe", "scene", "models", "select"},
+        "report": {"recipe", "scene", "models", "run"},
+    },
 }
 # room -> the one folder of it that other rooms include, and who may include the rest
 DOORS = {"neural": ("engine/neural/api/", {"neural", "laboratory/starter"})}

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "engine/language/words.h"
-#include "engine/pipeline/run/recipe.h"
+#include "engine/pipeline/recipe/recipe.h"
 #include "engine/pipeline/run/views.h"
 
 namespace gse::app {

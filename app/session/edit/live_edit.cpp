@@ -12,8 +12,8 @@
 #include "engine/base/log.h"
 #include "engine/edit/request/unchecked_request.h"
 #include "engine/pipeline/models/neural_loader.h"
+#include "engine/pipeline/recipe/recipe.h"
 #include "engine/pipeline/run/preview_check.h"
-#include "engine/pipeline/run/recipe.h"
 
 namespace gse::app {
 namespace {

@@ -7,7 +7,7 @@
 #include "app/engine_names.h"
 #include "engine/base/error.h"
 #include "engine/io/scene/scene_file.h"
-#include "engine/pipeline/run/scene_loading.h"
+#include "engine/pipeline/scene/scene_loading.h"
 
 namespace gse::app {
 namespace {

@@ -8,7 +8,7 @@
 #include "engine/base/fields.h"
 #include "engine/base/progress.h"
 #include "engine/edit/interfaces/image_text_encoder.h"
-#include "engine/pipeline/run/scene_tools.h"
+#include "engine/pipeline/scene/scene_tools.h"
 
 namespace gse::bench {
 

@@ -11,7 +11,7 @@
 #include "engine/edit/request/scales.h"
 #include "engine/edit/search/locate.h"
 #include "engine/laboratory/eval/eval_suite.h"
-#include "engine/pipeline/run/scene_tools.h"
+#include "engine/pipeline/scene/scene_tools.h"
 
 namespace gse::bench {
 

@@ -15,7 +15,7 @@
 #include "engine/laboratory/eval/eval_figures.h"
 #include "engine/localize/clusters.h"
 #include "engine/pipeline/report/edit_output.h"
-#include "engine/pipeline/run/scene_loading.h"
+#include "engine/pipeline/scene/scene_loading.h"
 
 namespace gse::bench {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "engine/base/fields.h"
 #include "engine/base/progress.h"
-#include "engine/pipeline/run/recipe.h"
+#include "engine/pipeline/recipe/recipe.h"
 
 namespace gse::bench {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "engine/base/answer_cache.h"
-#include "engine/pipeline/run/recipe.h"
+#include "engine/pipeline/recipe/recipe.h"
 
 namespace gse::pipeline {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "engine/neural/api/model_profile.h"
-#include "engine/pipeline/run/edit_job.h"
+#include "engine/pipeline/recipe/recipe.h"
 
 namespace gse::pipeline {
 

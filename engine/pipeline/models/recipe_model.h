@@ -8,7 +8,7 @@
 
 #include "engine/base/disk_cache.h"
 #include "engine/neural/api/api.h"
-#include "engine/pipeline/run/recipe.h"
+#include "engine/pipeline/recipe/recipe.h"
 
 namespace gse::pipeline {
 

@@ -5,7 +5,7 @@
 
 #include "engine/base/disk_cache.h"
 #include "engine/edit/interfaces/interfaces.h"
-#include "engine/pipeline/run/recipe.h"
+#include "engine/pipeline/recipe/recipe.h"
 
 namespace gse::pipeline {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/base/progress.h"
-#include "engine/pipeline/run/scene_tools.h"
+#include "engine/pipeline/scene/scene_tools.h"
 #include "engine/scene/camera_key.h"
 
 namespace gse::pipeline {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "engine/io/image/image_file.h"
-#include "engine/pipeline/run/recipe.h"
+#include "engine/pipeline/recipe/recipe.h"
 
 namespace gse::pipeline {
 

@@ -15,7 +15,7 @@
 #include "engine/io/project/load_scene.h"
 #include "engine/io/project/project_file.h"
 #include "engine/pipeline/models/model_catalogue.h"
-#include "engine/pipeline/run/scene_loading.h"
+#include "engine/pipeline/scene/scene_loading.h"
 #include "engine/scene/origin/world_offset.h"
 
 namespace gse::pipeline {

@@ -21,7 +21,7 @@
 #include "engine/localize/focus.h"
 #include "engine/pipeline/models/neural_loader.h"
 #include "engine/pipeline/models/probe.h"
-#include "engine/pipeline/run/scene_loading.h"
+#include "engine/pipeline/scene/scene_loading.h"
 #include "engine/pipeline/select/cut_out.h"
 
 namespace gse::pipeline {

@@ -12,8 +12,8 @@
 #include "engine/pipeline/models/model_words.h"
 #include "engine/pipeline/models/recipe_model.h"
 #include "engine/pipeline/models/segmenters.h"
+#include "engine/pipeline/recipe/recipe.h"
 #include "engine/pipeline/run/loop.h"
-#include "engine/pipeline/run/recipe.h"
 #include "engine/pipeline/run/search.h"
 #include "engine/pipeline/run/stage_times.h"
 

@@ -13,7 +13,7 @@
 #include "engine/edit/interfaces/stage_timer.h"
 #include "engine/edit/search/grabcut_segmenter.h"
 #include "engine/pipeline/models/neural_loader.h"
-#include "engine/pipeline/run/scene_loading.h"
+#include "engine/pipeline/scene/scene_loading.h"
 
 namespace gse::pipeline {
 namespace {

@@ -14,8 +14,8 @@
 #include "engine/neural/api/api.h"
 #include "engine/neural/api/network_use.h"
 #include "engine/pipeline/models/segmenters.h"
-#include "engine/pipeline/run/scene_tools.h"
 #include "engine/pipeline/run/views.h"
+#include "engine/pipeline/scene/scene_tools.h"
 
 namespace gse::pipeline {
 

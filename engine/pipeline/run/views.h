@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/pipeline/run/recipe.h"
-#include "engine/pipeline/run/scene_tools.h"
+#include "engine/pipeline/recipe/recipe.h"
+#include "engine/pipeline/scene/scene_tools.h"
 #include "engine/scene/scene.h"
 
 namespace gse::pipeline {

@@ -15,7 +15,7 @@
 #include "engine/edit/search/grabcut_segmenter.h"
 #include "engine/localize/back_projection.h"
 #include "engine/localize/clusters.h"
-#include "engine/pipeline/run/scene_tools.h"
+#include "engine/pipeline/scene/scene_tools.h"
 #include "engine/pipeline/select/cut_out_sides.h"
 
 namespace gse::pipeline {

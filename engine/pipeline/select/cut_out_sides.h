@@ -6,7 +6,7 @@
 
 #include "engine/base/progress.h"
 #include "engine/edit/interfaces/interfaces.h"
-#include "engine/pipeline/run/scene_tools.h"
+#include "engine/pipeline/scene/scene_tools.h"
 
 namespace gse::pipeline {
 

@@ -9,7 +9,7 @@
 #include "engine/io/cameras/cameras.h"
 #include "engine/io/project/load_scene.h"
 #include "engine/io/scene/scene_file.h"
-#include "engine/pipeline/run/scene_tools.h"
+#include "engine/pipeline/scene/scene_tools.h"
 #include "tests/ui/app/session.h"
 
 namespace unsaved_test {

@@ -9,7 +9,7 @@
 #include "engine/base/random.h"
 #include "engine/edit/search/grabcut_segmenter.h"
 #include "engine/laboratory/synth/synth.h"
-#include "engine/pipeline/run/scene_tools.h"
+#include "engine/pipeline/scene/scene_tools.h"
 #include "engine/pipeline/select/cut_out.h"
 #include "engine/pipeline/select/cut_out_sides.h"
 

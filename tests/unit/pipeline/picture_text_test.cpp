@@ -12,7 +12,7 @@
 #include "engine/io/image/image_file.h"
 #include "engine/io/scene/scene_file.h"
 #include "engine/pipeline/report/scene_report.h"
-#include "engine/pipeline/run/scene_tools.h"
+#include "engine/pipeline/scene/scene_tools.h"
 #include "tests/test_paths.h"
 
 namespace picture_text_test {

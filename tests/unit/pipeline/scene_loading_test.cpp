@@ -12,8 +12,8 @@
 #include "engine/io/scene/scene_file.h"
 #include "engine/laboratory/synth/synth.h"
 #include "engine/pipeline/report/scene_report.h"
-#include "engine/pipeline/run/scene_loading.h"
-#include "engine/pipeline/run/scene_tools.h"
+#include "engine/pipeline/scene/scene_loading.h"
+#include "engine/pipeline/scene/scene_tools.h"
 #include "engine/scene/origin/world_offset.h"
 #include "tests/test_paths.h"
 

@@ -11,7 +11,7 @@
 #include "engine/base/thread_pool.h"
 #include "engine/pipeline/models/neural_loader.h"
 #include "engine/pipeline/models/segmenters.h"
-#include "engine/pipeline/run/recipe.h"
+#include "engine/pipeline/recipe/recipe.h"
 #include "tests/test_paths.h"
 
 namespace segmenters_test {

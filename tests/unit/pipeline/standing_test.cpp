@@ -8,8 +8,8 @@
 #include "engine/base/json.h"
 #include "engine/io/project/load_scene.h"
 #include "engine/pipeline/report/scene_report.h"
-#include "engine/pipeline/run/scene_loading.h"
-#include "engine/pipeline/run/scene_tools.h"
+#include "engine/pipeline/scene/scene_loading.h"
+#include "engine/pipeline/scene/scene_tools.h"
 #include "tests/test_paths.h"
 
 namespace standing_test {

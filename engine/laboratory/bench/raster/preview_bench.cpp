@@ -12,7 +12,7 @@
 #include <optional>
 
 #include "engine/base/process_memory.h"
-#include "engine/pipeline/run/scene_tools.h"
+#include "engine/pipeline/scene/scene_tools.h"
 #include "engine/preview/resolve.h"
 #include "engine/preview/splat_renderer.h"
 #include "engine/raster/rasterizer.h"

@@ -15,7 +15,7 @@
 #include "engine/laboratory/bench/raster/turn_timer.h"
 #include "engine/laboratory/synth/timing_scene.h"
 #include "engine/localize/clusters.h"
-#include "engine/pipeline/run/scene_tools.h"
+#include "engine/pipeline/scene/scene_tools.h"
 #include "engine/preview/moving_scale.h"
 #include "engine/preview/resolve.h"
 #include "engine/preview/splat_renderer.h"

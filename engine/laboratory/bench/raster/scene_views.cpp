@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "engine/pipeline/run/scene_loading.h"
-#include "engine/pipeline/run/scene_tools.h"
+#include "engine/pipeline/scene/scene_loading.h"
+#include "engine/pipeline/scene/scene_tools.h"
 
 namespace gse::bench {
 

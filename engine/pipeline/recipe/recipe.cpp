@@ -1,5 +1,5 @@
 // Recipes as JSON, and what their stages depend on.
-#include "engine/pipeline/run/recipe.h"
+#include "engine/pipeline/recipe/recipe.h"
 
 #include <fmt/format.h>
 

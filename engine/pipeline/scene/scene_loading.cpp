@@ -1,5 +1,5 @@
 // Which cameras are a scene's own, and what they say of it.
-#include "engine/pipeline/run/scene_loading.h"
+#include "engine/pipeline/scene/scene_loading.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // Cameras, pictures and turntables for the commands.
-#include "engine/pipeline/run/scene_tools.h"
+#include "engine/pipeline/scene/scene_tools.h"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 #include "engine/io/image/image_file.h"
 #include "engine/io/project/load_scene.h"
 #include "engine/io/project/project_file.h"
-#include "engine/pipeline/run/scene_loading.h"
+#include "engine/pipeline/scene/scene_loading.h"
 #include "engine/scene/framing.h"
 #include "engine/scene/origin/world_offset.h"
 
