@@ -18,6 +18,7 @@
 #include "ui/viewport/viewport.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/splitter.h"
+#include "ui/widgets/tooltips.h"
 
 namespace gse::ui {
 namespace {
@@ -337,6 +338,7 @@ std::vector<Command> Shell::draw(const ViewModel& model, Textures& textures) {
     show_waiting_targets(context);
     handle_keys(context);
     answer_requests(context);
+    keep_controls(context);
     state_->keyboard.stops.clear();  // their names are those of the widgets
     widgets_.clear();
     state_->pick.seen = false;

@@ -9,6 +9,7 @@
 #include "ui/state.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/plot.h"
+#include "ui/widgets/tooltips.h"
 
 namespace gse::ui {
 namespace {
@@ -58,9 +59,9 @@ void draw_gate(Context& context) {
         ImGui::Image(imgui_texture(context.textures.texture(gate.pictures[i])), {side, side});
         note(context, fmt::format("progress.gate.{}", i));
         if (!ImGui::IsItemHovered()) continue;
-        ImGui::BeginTooltip();
-        ImGui::Image(imgui_texture(context.textures.texture(gate.pictures[i])),
-                     {context.em * 14, context.em * 14});
+        const ImVec2 large(context.em * 14, context.em * 14);
+        begin_tooltip(large);
+        ImGui::Image(imgui_texture(context.textures.texture(gate.pictures[i])), large);
         ImGui::EndTooltip();
     }
     if (!gate.verdict.empty()) coloured_text(gate.warns ? palette::Warning : palette::TextDim, gate.verdict);

@@ -8,6 +8,8 @@
 #include "ui/panels/panels.h"
 #include "ui/state.h"
 #include "ui/widgets/controls.h"
+#include "ui/widgets/sheet.h"
+#include "ui/widgets/tooltips.h"
 
 namespace gse::ui {
 namespace {
@@ -60,7 +62,10 @@ void draw_pair(Context& context, const TargetView& target, const std::string& na
     if (ImGui::IsMouseDoubleClicked(0)) return context.emit(command::SetCamera{target.camera});
     if (ImGui::IsAnyMouseDown()) return;
     const float large = std::min(context.em * 15, ImGui::GetIO().DisplaySize.x * 0.3f);
-    ImGui::BeginTooltip();
+    const auto& style = ImGui::GetStyle();
+    constexpr const char* Help = "Left the scene, right what it is fitted to. Double click: look through it.";
+    begin_tooltip({std::max(2 * large + style.ItemSpacing.x, ImGui::CalcTextSize(Help).x),
+                   large + style.ItemSpacing.y + ImGui::GetTextLineHeight()});
     for (const auto* picture : {&target.before, &target.after}) {
         if (picture == &target.after) ImGui::SameLine();
         ImGui::Image(imgui_texture(context.textures.texture(*picture)), {large, large});

@@ -1,0 +1,75 @@
+// Room of the picture, places of tooltips, and panels that stay where they are.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+#include <imgui_internal.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/ui/support/harness.h"
+#include "ui/keys/keys.h"
+#include "ui/state.h"
+
+namespace gse::test::layout_test {
+namespace {
+
+constexpr int TooltipFrames = 40;  // of a mouse that rests: longer than a tooltip's delay
+
+/// The shown tooltip; empty where there is none.
+ui::Rect shown_tooltip() {
+    for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows)
+        if (window->Active && !window->Hidden && (window->Flags & ImGuiWindowFlags_Tooltip) != 0)
+            return {window->Pos.x, window->Pos.y, window->Size.x, window->Size.y, true};
+    return {};
+}
+
+bool overlap(const ui::Rect& a, const ui::Rect& b) {
+    constexpr float Touching = 1;  // px: edges that meet cover nothing
+    return a.x + Touching < b.x + b.width && b.x + Touching < a.x + a.width &&
+           a.y + Touching < b.y + b.height && b.y + Touching < a.y + a.height;
+}
+
+/// Buttons on the screen: those whose text is known.
+std::vector<std::string> buttons_of(const Harness& harness) {
+    std::vector<std::string> names;
+    for (const auto& [name, rect] : harness.shell.widgets())
+        if (rect.visible && (rect.text_width > 0 || name.starts_with("tool."))) names.push_back(name);
+    return names;
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("a tooltip covers no button, whatever it explains") {
+    for (const auto situation : {Situation::Located, Situation::ResultWaiting}) {
+        Harness harness({1280, 720, 1, situation, false});
+        for (const auto panel : {ui::PanelId::Prompt, ui::PanelId::Labels, ui::PanelId::Export,
+                                 ui::PanelId::Progress, ui::PanelId::Attention}) {
+            harness.shell.show(panel);
+            harness.frame(3);
+            int seen = 0;
+            for (const auto& name : buttons_of(harness)) {
+                const auto at = harness.middle(name);
+                harness.move(at.x, at.y);
+                harness.frame(TooltipFrames);
+                const auto tip = shown_tooltip();
+                if (!tip.visible) continue;
+                ++seen;
+                DOCTEST_CAPTURE(name);
+                for (const auto& other : buttons_of(harness)) {
+                    DOCTEST_CAPTURE(other);
+                    DOCTEST_CHECK(!overlap(tip, harness.rect(other)));
+                }
+                DOCTEST_CHECK(tip.x >= 0);
+                DOCTEST_CHECK(tip.y >= 0);
+                DOCTEST_CHECK(tip.x + tip.width <= 1280);
+                DOCTEST_CHECK(tip.y + tip.height <= 720);
+            }
+            DOCTEST_CHECK(seen > 5);
+        }
+    }
+}
+
+}  // namespace gse::test::layout_test
