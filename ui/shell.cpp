@@ -93,6 +93,15 @@ void underline_tab(Context& context) {
     ImGui::GetWindowDrawList()->AddRectFilled({low.x, high.y - width}, high, palette::Accent);
 }
 
+/// A double click on a tab of the bottom area gives it half of the height, another one takes it back.
+void grow_by_double_click(Layout& layout) {
+    constexpr float Large = 0.5f, HardlyMore = 0.05f;
+    tooltip("Double click: half of the window's height, and back");
+    if (!ImGui::IsItemHovered() || !ImGui::IsMouseDoubleClicked(0)) return;
+    const float usual = Layout::standard().bottom_share;
+    layout.bottom_share = layout.bottom_share > usual + HardlyMore ? usual : Large;
+}
+
 struct Box {
     ImVec2 low, high;
     ImVec2 size() const { return {high.x - low.x, high.y - low.y}; }
@@ -261,6 +270,7 @@ void Shell::draw_area(Context& context, Area area) {
         ImGui::PopStyleColor();
         if (shown) underline_tab(context);
         note(context, fmt::format("tab.{}", PanelTable[at].name));
+        if (area == Area::Bottom) grow_by_double_click(layout);
         draw_tab_menu(context, panel);
         if (!shown) continue;
         if (!bring) layout.front[index] = static_cast<int>(at);

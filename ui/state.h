@@ -141,6 +141,7 @@ struct KeysState {
 };
 
 struct ProgressState {
+    bool curves = false, cost = false;  // they are unfolded
     bool logarithmic = true;
     std::array<bool, 3> losses{true, true, true};
     std::array<bool, 2> norms{true, true};

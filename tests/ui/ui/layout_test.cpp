@@ -42,6 +42,47 @@ std::vector<std::string> buttons_of(const Harness& harness) {
 
 }  // namespace
 
+DOCTEST_TEST_CASE("the picture has two thirds of the window's height as it comes") {
+    for (const auto& [width, height] : {std::pair{1280, 720}, {1920, 1080}, {2560, 1440}})
+        for (const auto situation : {Situation::Scene, Situation::Located, Situation::Editing}) {
+            Harness harness({width, height, 1, situation, false});
+            DOCTEST_CAPTURE(height);
+            DOCTEST_CHECK(harness.rect("viewport").height >= 2 * static_cast<float>(height) / 3);
+        }
+}
+
+DOCTEST_TEST_CASE("a double click on a tab below the picture gives its panel half of the height, and back") {
+    Harness harness({1280, 720, 1, Situation::Located, false});
+    const float before = harness.rect("viewport").height;
+    const auto twice = [&] {
+        for (int click = 0; click < 2; ++click) harness.click("tab.Attention");
+        harness.frame(30);  // no third click of it
+    };
+    twice();
+    DOCTEST_CHECK(harness.rect("viewport").height < 0.7f * before);
+    twice();
+    DOCTEST_CHECK(harness.rect("viewport").height == before);
+}
+
+DOCTEST_TEST_CASE("curves and figures of the cost are folded away until they are asked for") {
+    Harness harness({1920, 1080, 1, Situation::Editing, false});
+    harness.shell.show(ui::PanelId::Progress);
+    harness.frame(3);
+    for (const char* hidden : {"progress.losses", "progress.norms", "progress.networks"})
+        DOCTEST_CHECK(harness.find(hidden) == nullptr);
+    // What a running edit is stopped by stays in sight.
+    for (const char* shown : {"progress.pause", "progress.cancel", "progress.snapshot"})
+        DOCTEST_CHECK(harness.rect(shown).visible);
+    harness.click("progress.cost");
+    harness.frame(2);
+    DOCTEST_CHECK(harness.find("progress.networks") != nullptr);
+    harness.click("progress.cost");
+    harness.click("progress.curves");
+    harness.frame(2);
+    DOCTEST_CHECK(harness.find("progress.losses") != nullptr);
+    DOCTEST_CHECK(harness.find("progress.norms") != nullptr);
+}
+
 DOCTEST_TEST_CASE("a tooltip covers no button, whatever it explains") {
     for (const auto situation : {Situation::Located, Situation::ResultWaiting}) {
         Harness harness({1280, 720, 1, situation, false});
