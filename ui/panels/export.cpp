@@ -73,8 +73,14 @@ std::string why_not_write(const Context& context, const std::string& path,
 
 /// Sentence about the coming file, or in amber why there is none.
 void say(const std::string& why, const std::string& what) {
-    if (why.empty()) return dim_text(what);
-    coloured_text(palette::Warning, why.ends_with('.') ? why : fmt::format("{}.", why));
+    const float width = ImGui::GetContentRegionAvail().x, top = ImGui::GetCursorPosY();
+    const auto height = [width](const std::string& text) {
+        return ImGui::CalcTextSize(broken_at_spaces(text, width).c_str()).y + ImGui::GetStyle().ItemSpacing.y;
+    };
+    const float room = std::max(height(what), height(why));
+    if (why.empty()) dim_text(what);
+    else coloured_text(palette::Warning, why.ends_with('.') ? why : fmt::format("{}.", why));
+    if (ImGui::GetCursorPosY() < top + room) ImGui::SetCursorPosY(top + room);
 }
 
 void draw_size(Context& context) {

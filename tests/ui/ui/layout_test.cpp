@@ -113,4 +113,29 @@ DOCTEST_TEST_CASE("a tooltip covers no button, whatever it explains") {
     }
 }
 
+DOCTEST_TEST_CASE("nothing in Export moves while a file is written") {
+    Harness harness({1280, 720, 1, Situation::Scene, false});
+    harness.shell.show(ui::PanelId::Export);
+    harness.frame(3);
+    const auto panel = harness.rect("panel.Export");
+    harness.move(panel.x + panel.width / 2, panel.y + panel.height / 2);
+    harness.wheel(-100);  // to its end
+    std::vector<std::pair<std::string, ui::Rect>> before;
+    for (const auto& [name, rect] : harness.shell.widgets())
+        if (name.starts_with("export.")) before.emplace_back(name, rect);
+    DOCTEST_REQUIRE(before.size() > 10);
+    auto& job = harness.application.model().file_job;
+    for (const bool running : {true, false}) {
+        job.running = running;
+        job.title = "Export edited.ply";
+        harness.frame(10);
+        for (const auto& [name, rect] : before) {
+            const std::string widget = name;
+            DOCTEST_CAPTURE(widget);
+            DOCTEST_CAPTURE(running);
+            DOCTEST_CHECK(harness.rect(widget).y == rect.y);
+        }
+    }
+}
+
 }  // namespace gse::test::layout_test
