@@ -197,6 +197,7 @@ bool use_tool(Context& context, bool hovered) {
         state.tool = Tool::Orbit;
         return true;
     }
+    if (!state.stroke && context.view.show_axes && axis_end_at(context, mouse) >= 0) return false;
     if (!state.stroke && hovered && ImGui::IsMouseClicked(0)) begin_stroke(context, mouse);
     if (!state.stroke) return true;
     if (!ImGui::IsMouseDown(0)) {
