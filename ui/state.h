@@ -40,6 +40,8 @@ struct ViewportState {
     bool camera_known = false;
     double fov_setting = 0;  // last seen, to notice a change in Settings
     OrbitParameters home;    // last seen
+    std::optional<Bounds>
+        labelled_home;  // of the label that Home framed last; none = what stands on the ground
     Tool tool = Tool::Orbit;
     SetOperation operation = SetOperation::Add;  // without keys held
     bool stroke = false;                         // a tool's drag goes on

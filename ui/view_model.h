@@ -319,7 +319,9 @@ struct ViewportPart {
     std::shared_ptr<const Image> viewport_depth;  // [H,W,1] may be null; for front-only selection and picking
     Camera camera;                                // of the picture shown
     OrbitParameters orbit;                        // home: the fitted orbit,
-    Bounds framing;                               // and what is to be seen from there
+    Bounds home;                                  // and what is to be seen from there
+    Bounds framing;                               // of the whole scene
+    SeenColour seen_colour;
     double render_ms = 0;
     std::string renderer;    // "native AVX-512", "Vulkan: llvmpipe"
     std::size_t hidden = 0;  // splats of the scene that the artist does not want to see at present

@@ -8,6 +8,7 @@
 
 #include "app/engine_names.h"
 #include "engine/base/clock.h"
+#include "engine/edit/placement/thing_bounds.h"
 #include "engine/io/cameras/camera_json.h"
 #include "engine/math/framing.h"
 #include "engine/pipeline/run/scene_tools.h"
@@ -33,6 +34,7 @@ void ViewController::take_document() {
     up_shown_ = state().info.up;
     orbit_ = scene_orbit(Scene{state().base, state().info, {}}, RenderParameters{});
     framing_ = framing_bounds(state().current);
+    home_ = edit::thing_bounds(state().current, normalized(state().info.up));
     camera_ = {};
 }
 
@@ -49,12 +51,13 @@ void ViewController::follow_document() {
 void ViewController::stand_up() {
     up_shown_ = state().info.up;
     orbit_ = scene_orbit(Scene{state().base, state().info, {}}, RenderParameters{});
+    home_ = edit::thing_bounds(state().current, normalized(state().info.up));
     go_home();
 }
 
 void ViewController::go_home() {
-    camera_ = home_camera(orbit_, framing_, settings_.fov_degrees * std::numbers::pi / 180,
-                          std::max(width_, 64), std::max(height_, 64));
+    camera_ = home_camera(orbit_, home_, settings_.fov_degrees * std::numbers::pi / 180, std::max(width_, 64),
+                          std::max(height_, 64));
 }
 
 bool ViewController::moving() const { return seconds_since(last_move_) < 2 * MovingSeconds; }
@@ -161,6 +164,7 @@ void ViewController::show(ui::ViewportPart& model) const {
     model.compared_name = compared_.name;
     model.hidden = hidden_.count();
     model.orbit = orbit_;
+    model.home = home_;
     model.framing = framing_;
     model.viewport = shown_.texture;
     if (workspace_.document.empty()) return;

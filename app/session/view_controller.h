@@ -113,7 +113,8 @@ private:
     int width_ = 1, height_ = 1;  // of the viewport
     Clock::time_point last_move_ = Clock::now() - std::chrono::seconds(10);
     OrbitParameters orbit_;  // home: the fitted orbit,
-    Bounds framing_;         // and what is to be seen from there
+    Bounds home_;            // and what is to be seen from there: what stands on the ground
+    Bounds framing_;         // of the whole scene
     Vec3 up_shown_{};        // that the orbit stands on
     ui::Comparison comparison_ = ui::Comparison::None;
     Comparing compared_;

@@ -49,6 +49,8 @@ void take_over(Context& context) {
     const Camera& shown = context.model.camera;
     if (shown.width <= 0 || !(shown.fx > 0)) return;
     if (state.camera_known && !state.sent.is_foreign(shown)) return;
+    state.labelled_home.reset();  // that of another camera
+    state.camera.set_home(context.model.orbit, context.model.home);
     state.camera.adopt(shown);
     state.camera_known = true;
     state.sent.clear();
@@ -170,7 +172,7 @@ void update_camera(Context& context, bool keys_free) {
         state.camera_known = false;
         return;
     }
-    state.camera.set_home(context.model.orbit, context.model.framing);
+    state.camera.set_home(context.model.orbit, state.labelled_home.value_or(context.model.home));
     state.camera.set_size(static_cast<int>(std::lround(state.high.x - state.low.x)),
                           static_cast<int>(std::lround(state.high.y - state.low.y)));
     take_over(context);

@@ -143,7 +143,7 @@ DOCTEST_TEST_CASE("keys fly, frame and go home") {
     harness.key(ui::key::Home);
     harness.frame(90);
     DOCTEST_CHECK(length(harness.shell.state().viewport.camera.pose().pivot -
-                         harness.application.model().framing.centre()) < 1e-6);
+                         framing_bounds(state.current, *state.labels.at(0).bits).centre()) < 1e-6);
     // With Ctrl they are commands, not flight.
     before = camera.centre();
     harness.modifiers(false, true, false);
@@ -392,6 +392,46 @@ DOCTEST_TEST_CASE("a click on an axis looks along it, a second one from the othe
         harness.frame(90);
         DOCTEST_CHECK(dot(camera.forward(), axis) > 0.99);
     }
+}
+
+DOCTEST_TEST_CASE("each end of an axis is a button, with a tool in hand, too") {
+    Harness harness({1280, 720, 1, Situation::Located, false});
+    const auto& camera = harness.application.model().camera;
+    for (const auto& [name, axis] :
+         {std::pair{"viewport.axis.-z", Vec3{0, 0, -1}}, std::pair{"viewport.axis.-x", Vec3{-1, 0, 0}},
+          std::pair{"viewport.axis.-y", Vec3{0, -1, 0}}, std::pair{"viewport.axis.x", Vec3{1, 0, 0}}}) {
+        harness.click(name);
+        harness.frame(90);
+        DOCTEST_CAPTURE(name);
+        DOCTEST_CHECK(dot(camera.forward(), axis) < -0.99);
+    }
+    harness.key('B');
+    harness.application.calls.clear();
+    harness.click("viewport.axis.z");
+    harness.frame(90);
+    DOCTEST_CHECK(dot(camera.forward(), Vec3{0, 0, 1}) < -0.99);
+    DOCTEST_CHECK(!harness.application.asked("select"));
+}
+
+DOCTEST_TEST_CASE("Home frames what is labelled, else what stands on the ground, never the lawn") {
+    Harness harness({1280, 720, 1, Situation::Located, false});
+    auto& model = harness.application.model();
+    const auto& pose = harness.shell.state().viewport.camera.pose();
+    harness.key(key::Home);
+    harness.frame(90);
+    const auto& state = harness.application.document().state();
+    const Bounds labelled = framing_bounds(state.current, *state.labels.at(0).bits);
+    DOCTEST_CHECK(length(pose.pivot - labelled.centre()) < 1e-6);
+    const double near = pose.distance;
+    auto unlabelled = state;
+    unlabelled.active_label = 1;  // empty
+    harness.application.document().apply("Choose a label", unlabelled);
+    model.labelled = 0;
+    harness.key(key::Home);
+    harness.frame(90);
+    DOCTEST_CHECK(length(pose.pivot - model.home.centre()) < 1e-6);
+    DOCTEST_CHECK(pose.distance == doctest::Approx(near).epsilon(0.3));  // the bear, with its hat
+    DOCTEST_CHECK(model.home.radius() < 0.7 * model.framing.radius());
 }
 
 DOCTEST_TEST_CASE("select by property takes a colour from the picture") {
