@@ -138,4 +138,57 @@ DOCTEST_TEST_CASE("nothing in Export moves while a file is written") {
     }
 }
 
+DOCTEST_TEST_CASE("on a large screen the sheets use the room, and all of a search is seen at once") {
+    constexpr float LeastShare = 0.75f;  // of the panel's width, from the first picture to the last
+    Harness harness({2560, 1440, 1, Situation::Editing, true});
+    const auto spread = [&](const char* panel, const std::string& prefix) {
+        const auto place = harness.rect(panel);
+        float low = place.x + place.width, high = place.x;
+        int seen = 0;
+        for (const auto& [name, rect] : harness.shell.widgets()) {
+            if (!name.starts_with(prefix) || !rect.visible) continue;
+            ++seen;
+            low = std::min(low, rect.x);
+            high = std::max(high, rect.x + rect.width);
+        }
+        return std::pair{(high - low) / place.width, seen};
+    };
+    harness.shell.show(ui::PanelId::Attention);
+    harness.frame(3);
+    DOCTEST_CHECK(spread("panel.Attention", "attention.").first > LeastShare);
+    DOCTEST_CHECK(spread("panel.Attention", "attention.view.").second == 24);
+    DOCTEST_CHECK(harness.rect("attention.view.0").width > 60);
+    harness.shell.show(ui::PanelId::Targets);
+    harness.frame(3);
+    const auto [share, shown] = spread("panel.Targets", "targets.");
+    DOCTEST_CHECK(share > LeastShare);
+    DOCTEST_CHECK(harness.rect("targets.0").width > 200);  // a pair, as high as the panel
+    auto layout = ui::Layout::from_json(harness.shell.layout());
+    layout.right_em = 70;
+    harness.shell.set_layout(layout.to_json());
+    harness.shell.show(ui::PanelId::Views);
+    harness.frame(3);
+    DOCTEST_CHECK(harness.rect("views.row.1").y == harness.rect("views.row.0").y);  // beside each other
+    DOCTEST_CHECK(spread("panel.Views", "views.").first > LeastShare);
+}
+
+DOCTEST_TEST_CASE("pictures of edits and results are shown large under the mouse") {
+    constexpr float LeastLarge = 280;  // px: the change of a hat is seen
+    Harness harness({1280, 720, 1, Situation::ResultWaiting, true});
+    auto& model = harness.application.model();
+    const auto picture = harness.application.document().state().stack.at(0).thumbnail;
+    model.results = {{picture, 1}, {picture, 2}};
+    harness.shell.show(ui::PanelId::History);
+    harness.frame(5);
+    for (const char* name : {"history.picture.7", "result.0"}) {
+        DOCTEST_CAPTURE(name);
+        const auto at = harness.middle(name);
+        DOCTEST_CHECK(harness.rect(name).height > 70);
+        harness.move(at.x, at.y);
+        harness.frame(5);
+        DOCTEST_CHECK(shown_tooltip().visible);
+        DOCTEST_CHECK(shown_tooltip().width > LeastLarge);
+    }
+}
+
 }  // namespace gse::test::layout_test
