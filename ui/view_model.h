@@ -275,6 +275,12 @@ struct EditReach {
     bool corrected = false;  // something of it was set by hand
 };
 
+/// Colour of a pixel of the picture, as it is seen.
+struct SeenColour {
+    std::uint64_t number = 0;       // another one for every answer to command::PickColour; 0 = none yet
+    std::array<float, 3> colour{};  // in [0,1]
+};
+
 /// Splats that are chosen by a property, shown before anything is done with them.
 struct PickedRows {
     bool shown = false;    // they take the place of the label's tint
@@ -327,6 +333,8 @@ struct ViewportPart {
     std::size_t hidden = 0;  // splats of the scene that the artist does not want to see at present
     ViewSettings view;
     Comparison comparison = Comparison::None;
+    // Of the document's views; null = not drawn yet (command::DrawView).
+    std::vector<std::shared_ptr<const Image>> view_pictures;
     std::uint64_t compared_revision = 0;  // of the step that comparisons show as before; 0 = the usual
     std::string compared_name;            // of that step
 };

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/engine_names.h"
+#include "app/session/shown_picture.h"
 #include "engine/base/clock.h"
 #include "engine/edit/placement/thing_bounds.h"
 #include "engine/io/cameras/camera_json.h"
@@ -31,6 +32,8 @@ RowValues from_bits(const std::vector<std::uint8_t>& bits) {
 void ViewController::take_document() {
     hidden_.show_all();
     compare_as_usual();
+    wanted_ = {};
+    pictures_.take_document();
     up_shown_ = state().info.up;
     orbit_ = scene_orbit(Scene{state().base, state().info, {}}, RenderParameters{});
     framing_ = framing_bounds(state().current);
@@ -153,7 +156,9 @@ PictureRequest ViewController::request(const Stage& stage) {
 }
 
 void ViewController::draw(PreviewHost& preview, const Stage& stage) {
-    preview.want(request(stage));
+    wanted_ = request(stage);
+    preview.want(wanted_);
+    pictures_.refresh(drawn_.set, wanted_);
     shown_ = preview.state();
 }
 
@@ -173,6 +178,8 @@ void ViewController::show(ui::ViewportPart& model) const {
     model.viewport_width = model.camera.width;
     model.viewport_height = model.camera.height;
     model.viewport_depth = shown_.depth;
+    model.view_pictures = pictures_.of_views();
+    model.seen_colour = seen_colour_;
     model.render_ms = shown_.render_ms;
     model.renderer = shown_.renderer;
 }
@@ -257,6 +264,20 @@ template <> void ViewController::on(const command::DeleteView& one) {
     DocumentState next = state();
     next.views.erase(next.views.begin() + static_cast<std::ptrdiff_t>(one.view));
     workspace_.document.apply("Delete view", std::move(next));
+}
+
+template <> void ViewController::on(const command::RenameView& one) {
+    if (!workspace_.require_scene() || one.view >= state().views.size()) return;
+    DocumentState next = state();
+    next.views[one.view].name = one.name;
+    workspace_.document.apply("Rename view", std::move(next));
+}
+
+template <> void ViewController::on(const command::DrawView& one) { pictures_.want(one.view); }
+
+template <> void ViewController::on(const command::PickColour& one) {
+    if (workspace_.document.empty() || wanted_.camera.width <= 0) return;
+    seen_colour_ = {seen_colour_.number + 1, seen_colour(wanted_, one.x, one.y)};
 }
 
 template <> void ViewController::on(const command::SetViewportSize& one) {

@@ -13,6 +13,7 @@
 #include "app/session/preview_host.h"
 #include "app/session/state/stage.h"
 #include "app/session/state/workspace.h"
+#include "app/session/view_pictures.h"
 
 namespace gse::app {
 
@@ -20,7 +21,8 @@ constexpr double MovingSeconds = 0.25;  // after the last movement of the camera
 
 class ViewController {
 public:
-    explicit ViewController(Workspace& workspace) : workspace_(workspace), hidden_(workspace) {}
+    explicit ViewController(Workspace& workspace)
+        : workspace_(workspace), hidden_(workspace), pictures_(workspace) {}
 
     void run(const ui::ViewCommand& command);
     /// Another document is open: its orbit. Nothing is hidden or compared with.
@@ -71,6 +73,8 @@ public:
     RowValues on_screen(const RowValues& values, const GaussianSet& set, const Stage& stage) const;
     /// The other side of comparisons.
     GaussianSet before_on_screen(const Stage& stage) const;
+    /// The picture as the last frame wanted it.
+    const PictureRequest& wanted() const { return wanted_; }
     /// The splats of the last picture, for thumbnails.
     const GaussianSet& drawn_set() const { return drawn_.set; }
 
@@ -121,6 +125,9 @@ private:
     HiddenSplats hidden_;
     Drawn drawn_;
     PictureState shown_;
+    PictureRequest wanted_;  // of the last frame
+    ui::SeenColour seen_colour_;
+    ViewPictures pictures_;
 };
 
 }  // namespace gse::app

@@ -191,4 +191,29 @@ DOCTEST_TEST_CASE("pictures of edits and results are shown large under the mouse
     }
 }
 
+DOCTEST_TEST_CASE("a saved view is named when it is made, can be renamed, and shows its picture") {
+    Harness harness({1280, 1440, 1, Situation::Located, true});
+    auto state = harness.application.document().state();
+    state.views.resize(3);
+    harness.application.document().apply("Fewer", state);
+    harness.shell.show(ui::PanelId::Views);
+    harness.frame(3);
+    DOCTEST_CHECK(harness.application.asked("draw_view 0"));
+    harness.application.calls.clear();
+    harness.frame(10);
+    DOCTEST_CHECK(!harness.application.asked("draw_view"));  // once is enough
+    harness.click("views.add");
+    harness.frame(3);
+    DOCTEST_REQUIRE(harness.find("views.name") != nullptr);
+    harness.type("from the left");
+    harness.key(ui::key::Enter);
+    DOCTEST_CHECK(harness.application.asked("rename_view 3 from the left"));
+    harness.click("views.rename.1");
+    harness.frame(3);
+    harness.type("back");
+    harness.key(ui::key::Escape);
+    DOCTEST_CHECK(!harness.application.asked("rename_view 1"));
+    DOCTEST_CHECK(harness.find("views.name") == nullptr);
+}
+
 }  // namespace gse::test::layout_test
