@@ -192,6 +192,7 @@ struct RecoveryView {
 /// Settings of a picture or film to be written (Export panel and dialogs).
 struct ExportSettings {
     int width = 1920, height = 1080;
+    bool as_shown = true;  // the screenshot: size, crop, tint and comparison of the viewport
     bool transparent = false;
     std::string picture_path = "screenshot.png";
     std::string film_path = "turntable.mp4";  // .mp4, .webm, or a folder for PNGs
@@ -214,6 +215,8 @@ struct ExportSettings {
     template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         f("width", self.width, "Width in pixels.", Range{16, 16384});
         f("height", self.height, "Height in pixels.", Range{16, 16384});
+        f("as_shown", self.as_shown,
+          "The screenshot has the size, the crop, the tint and the comparison of the viewport.");
         f("transparent", self.transparent, "Transparent background (PNG).");
         f("picture_path", self.picture_path, "File of the screenshot.");
         f("film_path", self.film_path, "File of the turntable: .mp4, .webm, or a folder for PNG frames.");
