@@ -312,11 +312,12 @@ struct DocumentPart {
     const Document* document = nullptr;  // null or empty() = nothing open
     SceneStatistics statistics;
     std::string scene_path, project_path;
-    std::string suggested_project;          // where a first save goes unless the artist says otherwise
-    bool unsaved = false;                   // a running or waiting edit counts
-    std::string saved_at;                   // "saved 14:02 (autosave on)"
-    std::vector<std::string> recent;        // paths, newest first
-    std::vector<RecoveryView> recoverable;  // newest first
+    std::string suggested_project;    // where a first save goes unless the artist says otherwise
+    bool unsaved = false;             // a running or waiting edit counts
+    std::string saved_at;             // "saved 14:02 (autosave on)"
+    std::vector<std::string> recent;  // paths, newest first
+    std::vector<std::shared_ptr<const Image>> recent_pictures;  // of them; null or missing = none
+    std::vector<RecoveryView> recoverable;                      // newest first
 };
 
 /// The viewport and its settings.

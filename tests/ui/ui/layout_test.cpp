@@ -216,4 +216,30 @@ DOCTEST_TEST_CASE("a saved view is named when it is made, can be renamed, and sh
     DOCTEST_CHECK(harness.find("views.name") == nullptr);
 }
 
+DOCTEST_TEST_CASE("recent files are listed with their picture and their folder") {
+    Harness harness({1280, 900, 1, Situation::Nothing, false});
+    auto& model = harness.application.model();
+    model.recoverable.clear();
+    model.recent_pictures = {nullptr, std::make_shared<const Image>(32, 24, 3, 0.5f)};
+    harness.frame(3);
+    DOCTEST_CHECK(harness.find("start.recent.picture.0") == nullptr);
+    DOCTEST_CHECK(harness.rect("start.recent.picture.1").visible);
+    DOCTEST_CHECK(harness.rect("start.recent.1").height > 30);
+    DOCTEST_CHECK(harness.asks("start.recent.2", "open /home/mira/scenes/kitchen.spz"));
+}
+
+DOCTEST_TEST_CASE("a screenshot is what the viewport shows unless the artist says otherwise") {
+    Harness harness({1280, 1440, 1, Situation::Scene, false});
+    harness.shell.show(ui::PanelId::Export);
+    harness.frame(3);
+    DOCTEST_CHECK(harness.application.model().exports.as_shown);
+    const auto turntable = harness.rect("export.turntable").y, size = harness.rect("export.width").y;
+    DOCTEST_CHECK(size > harness.rect("export.screenshot").y);  // that of films
+    DOCTEST_CHECK(size < turntable);
+    harness.click("export.as_shown");
+    harness.frame(3);
+    DOCTEST_CHECK(!harness.application.model().exports.as_shown);
+    DOCTEST_CHECK(harness.rect("export.width").y < harness.rect("export.screenshot").y);
+}
+
 }  // namespace gse::test::layout_test
