@@ -67,13 +67,20 @@ void update_sentence(Context& context) {
     prompt.cut_at = std::move(facts.cut_at);
 }
 
+/// Brings a panel to the front that the artist has to answer, with the room that its pictures need.
+void ask_with(UiState& state, PanelId panel) {
+    show_panel(state, panel);
+    if (state.layout.place(panel).area == Area::Bottom)
+        state.layout.bottom_share = std::max(state.layout.bottom_share, Layout::AskingShare);
+}
+
 /// A search that came to nothing shows why.
 void show_failed_search(Context& context) {
     const auto& search = context.model.search;
     auto& shown = context.state.attention.problem_shown;
     if (search.problem == edit::SearchProblem::None || search.number == shown) return;
     shown = search.number;
-    show_panel(context.state, PanelId::Attention);
+    ask_with(context.state, PanelId::Attention);
 }
 
 /// An edit that waits for the artist's look at the redrawn views shows them.
@@ -82,7 +89,7 @@ void show_waiting_targets(Context& context) {
     const int round = context.model.targets_wait && !context.model.target_rounds.empty()
                           ? context.model.target_rounds.back().round
                           : -1;
-    if (round >= 0 && round != shown) show_panel(context.state, PanelId::Targets);
+    if (round >= 0 && round != shown) ask_with(context.state, PanelId::Targets);
     shown = round;
 }
 
@@ -359,7 +366,7 @@ std::vector<Command> Shell::draw(const ViewModel& model, Textures& textures) {
     if (context.view_changed) context.emit(command::SetViewSettings{context.view});
     if (context.exports_changed) context.emit(command::SetExports{context.exports});
     if (context.model_settings_changed) context.emit(command::SetModelSettings{context.model_settings});
-    state_->animating |= !commands_.empty();
+    state_->animating |= !commands_.empty() || awaits_tooltip();
     return commands_.take();
 }
 

@@ -5,12 +5,11 @@
 
 #include "app/engine_names.h"
 #include "app/session/shown_picture.h"
-#include "engine/scene/viewpoints.h"
 
 namespace gse::app {
 namespace {
 
-constexpr int WidthPx = 320, HeightPx = 160;  // of the cards that show them
+constexpr int WidthPx = 320, LeastPx = 16, MostPx = 640;  // of the whole picture, which the list crops
 
 bool same_viewpoint(const Camera& a, const Camera& b) {
     return a.width == b.width && a.height == b.height && a.fx == b.fx && a.fy == b.fy && a.cx == b.cx &&
@@ -43,7 +42,8 @@ void ViewPictures::refresh(const GaussianSet& set, const PictureRequest& shown) 
     request.antialiased = shown.antialiased;
     request.settings.sh_degree = shown.settings.sh_degree;
     request.settings.background = shown.settings.background;
-    request.camera = fitted(camera, WidthPx, HeightPx);
+    const double shape = static_cast<double>(camera.height) / std::max(1, camera.width);
+    request.camera = camera.resized(WidthPx, std::clamp(static_cast<int>(WidthPx * shape), LeastPx, MostPx));
     auto picture = std::make_shared<std::shared_ptr<const Image>>();
     auto work = [picture, request](const JobControl&) {
         *picture = std::make_shared<const Image>(shown_picture(request));

@@ -121,7 +121,7 @@ void tooltip(std::string_view text) {
     const bool rested = now - storage->GetFloat(seen_id, -10) < TooltipForgets;
     if (!rested) storage->SetFloat(since_id, now);
     storage->SetFloat(seen_id, now);
-    if (now - storage->GetFloat(since_id, now) < TooltipDelay) return;
+    if (now - storage->GetFloat(since_id, now) < TooltipDelay) return await_tooltip();
     const float width = ImGui::GetFontSize() * TooltipEm;
     const Shown shown(text);
     begin_tooltip(ImGui::CalcTextSize(shown.begin(), shown.end(), false, width));

@@ -26,6 +26,11 @@ std::vector<Rect>& kept_controls() {
     return controls;
 }
 
+bool& awaited() {
+    static bool waits = false;
+    return waits;
+}
+
 bool covers(ImVec2 at, ImVec2 size, const Rect& rect) {
     return at.x < rect.x + rect.width && rect.x < at.x + size.x && at.y < rect.y + rect.height &&
            rect.y < at.y + size.y;
@@ -77,6 +82,7 @@ ImVec2 tooltip_place(ImVec2 size, const Rect& item, std::span<const Rect> contro
 }
 
 void keep_controls(Context& context) {
+    awaited() = false;
     auto& controls = kept_controls();
     controls.clear();
     for (const auto& stop : context.state.keyboard.stops) {
@@ -87,6 +93,9 @@ void keep_controls(Context& context) {
     for (const auto& [name, rect] : context.widgets)
         if (rect.visible && (!rect.enabled || name.starts_with("menu."))) controls.push_back(rect);
 }
+
+void await_tooltip() { awaited() = true; }
+bool awaits_tooltip() { return awaited(); }
 
 void begin_tooltip(ImVec2 contents) {
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();

@@ -19,6 +19,10 @@ ImVec2 tooltip_place(ImVec2 size, const Rect& item, std::span<const Rect> contro
 /// stops and the widget map are cleared.
 void keep_controls(Context& context);
 
+/// The mouse rests where a tooltip will come up: frames are to be drawn until then.
+void await_tooltip();
+bool awaits_tooltip();
+
 /// Begins a tooltip of the last item in a free place. `contents`: its size in pixels, without padding.
 void begin_tooltip(ImVec2 contents);
 

@@ -64,6 +64,17 @@ DOCTEST_TEST_CASE("a double click on a tab below the picture gives its panel hal
     DOCTEST_CHECK(harness.rect("viewport").height == before);
 }
 
+DOCTEST_TEST_CASE("what the artist has to answer below the picture is in sight without scrolling") {
+    Harness failed({1280, 720, 1, Situation::Failed, false});
+    for (const char* name : {"attention.anyway", "attention.by_hand"})
+        DOCTEST_CHECK(failed.rect(name).visible);
+    Harness waits({1280, 720, 1, Situation::Editing, false});
+    waits.application.model().targets_wait = true;
+    waits.frame(5);
+    for (const char* name : {"targets.fit", "targets.0.drop", "targets.1.redo"})
+        DOCTEST_CHECK(waits.rect(name).visible);
+}
+
 DOCTEST_TEST_CASE("curves and figures of the cost are folded away until they are asked for") {
     Harness harness({1920, 1080, 1, Situation::Editing, false});
     harness.shell.show(ui::PanelId::Progress);
