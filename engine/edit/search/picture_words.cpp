@@ -112,13 +112,14 @@ WordKinds kinds_of(const std::vector<std::string>& known) {
     return kinds;
 }
 
-WordLead lead_of(VocabularyRanker& recognition, const std::string& word, const std::vector<Image>& pictures) {
+std::optional<WordLead> lead_of(VocabularyRanker& recognition, const std::string& word,
+                                const std::vector<Image>& pictures) {
     GSE_CHECK(recognition.available() && !pictures.empty());
     const WordKinds kinds = kinds_of(recognition.known());
     const auto words = language::words_of(word);
     const std::string name = words.empty() ? word : words.back();  // "red hat"
     const bool worn = holds(kinds.worn, name);
-    if (kinds.things.empty() || (!worn && !holds(kinds.things, name))) return {};
+    if (kinds.things.empty() || (!worn && !holds(kinds.things, name))) return std::nullopt;
     Reader reader(recognition, kinds.things, pictures);
     Description description;
     reader.read(description, &Description::ground, kinds.grounds);

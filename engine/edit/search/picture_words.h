@@ -1,6 +1,7 @@
 // Words of a vocabulary that describe pictures of one thing best, by the model's own picture encoder.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,7 @@ WordKinds kinds_of(const std::vector<std::string>& known);
 struct WordLead {
     double lead = 0;   // mean cosine with the pictures, less that of the best other word
     double fit = 0;    // mean cosine of the best word's sentence: low where pictures are like no trained ones
-    std::string best;  // the word that fits best, which may be the word itself; empty = none of its kind fits
+    std::string best;  // the word that fits best, which may be the word itself; empty = nothing worn
 };
 
 /// Compares a thing's word, or that of something worn, with the others of its kind in one sentence. What else
@@ -27,7 +28,8 @@ struct WordLead {
 /// things the sentence without any is compared too.
 ///
 /// Words that the encoder hardly tells from `word` (glasses, sunglasses) do not count. `recognition` is
-/// available(), `pictures` has an entry. A word of another kind has a lead of 0 and no best one.
-WordLead lead_of(VocabularyRanker& recognition, const std::string& word, const std::vector<Image>& pictures);
+/// available(), `pictures` has an entry. Nothing for a word of another kind.
+std::optional<WordLead> lead_of(VocabularyRanker& recognition, const std::string& word,
+                                const std::vector<Image>& pictures);
 
 }  // namespace gse::edit

@@ -7,6 +7,7 @@
 
 #include "engine/base/log.h"
 #include "engine/edit/placement/upright_bounds.h"
+#include "engine/edit/search/front_reading.h"
 #include "engine/edit/search/picture_words.h"
 #include "engine/language/grammar.h"
 #include "engine/localize/focus.h"
@@ -74,20 +75,36 @@ SecondLook look_along_border(const Finding& finding, ThreadPool* threads) {
     return look;
 }
 
+bool encoder_knows(const Finding& finding, VocabularyRanker& recognition) {
+    const std::size_t count = std::min(finding.evidence.size(), finding.views.size());
+    if (count == 0) return true;
+    const auto from = [&](std::size_t v) { return finding.views[v].camera.centre() - finding.orbit.centre; };
+    const Vec3 up = normalized(finding.orbit.up), side = normalized(cross(up, from(0))),
+               ahead = cross(side, up);
+    std::vector<std::vector<float>> seen;
+    std::vector<double> azimuths;
+    for (std::size_t v = 0; v < count; v += std::max<std::size_t>(1, count / Around)) {
+        seen.push_back(recognition.viewpoint(finding.evidence[v].render));
+        if (seen.back().empty()) return true;
+        azimuths.push_back(std::atan2(dot(from(v), side), dot(from(v), ahead)));
+    }
+    return front_by_viewpoints(seen, azimuths).sure;
+}
+
 SecondLook second_look(const Finding& finding, const SecondLookTools& tools) {
     SecondLook look = look_along_border(finding, tools.threads);
     const auto& bits = *finding.label.bits;
     if (tools.recognition == nullptr || !tools.recognition->available() ||
-        std::find(bits.begin(), bits.end(), std::uint8_t{1}) == bits.end())
+        std::find(bits.begin(), bits.end(), std::uint8_t{1}) == bits.end() ||
+        !encoder_knows(finding, *tools.recognition))
         return look;
-    const WordLead said =
-        lead_of(*tools.recognition, finding.word, pictures_around(finding, tools.rasterizer));
-    if (said.best.empty()) return look;
-    log::debug("\"{}\" leads by {:.3f}; the encoder sees \"{}\" (fit {:.2f})", finding.word, said.lead,
-               said.best, said.fit);
-    look.lead = said.lead;
+    const auto said = lead_of(*tools.recognition, finding.word, pictures_around(finding, tools.rasterizer));
+    if (!said) return look;
+    log::debug("\"{}\" leads by {:.3f}; the encoder sees \"{}\" (fit {:.2f})", finding.word, said->lead,
+               said->best, said->fit);
+    look.lead = said->lead;
     look.worn = language::has_usual_place(finding.word);
-    if (said.lead < 0) look.better = said.best;
+    if (said->lead < 0) look.better = said->best;
     return look;
 }
 

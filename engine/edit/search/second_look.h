@@ -40,6 +40,11 @@ struct SecondLookTools {
 /// How far the edges of the pictures cut the finding off; grounds go on beyond them and are not cut.
 SecondLook look_along_border(const Finding& finding, ThreadPool* threads);
 
+/// Tells whether the encoder knows such pictures: it reads the front off them surely. Scans that are unlike
+/// all that it learned from get confident answers that mean nothing. True for encoders that cannot read a
+/// front.
+bool encoder_knows(const Finding& finding, VocabularyRanker& recognition);
+
 /// Adds to that what the encoder says of pictures around the finding, framed as it knows things.
 SecondLook second_look(const Finding& finding, const SecondLookTools& tools);
 

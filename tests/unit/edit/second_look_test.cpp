@@ -39,6 +39,22 @@ public:
     }
 };
 
+/// Reads a front off views that go once around, each picture one step on; `clearness` 0 = sees no sides.
+class TurningScore : public WordScore {
+public:
+    explicit TurningScore(double clearness) : clearness_(clearness) {}
+    std::vector<float> viewpoint(const Image&) override {
+        constexpr std::size_t Sectors = 12;
+        std::vector<float> shares(Sectors, static_cast<float>((1 - clearness_) / Sectors));
+        shares[next_++ % Sectors] += static_cast<float>(clearness_);
+        return shares;
+    }
+
+private:
+    double clearness_;
+    std::size_t next_ = 0;
+};
+
 Image showing(const std::vector<std::pair<std::string, float>>& shown) {
     Image picture(static_cast<int>(Said.size()), 1, 1);
     for (const auto& [word, much] : shown)
@@ -49,7 +65,7 @@ Image showing(const std::vector<std::pair<std::string, float>>& shown) {
 
 edit::WordLead lead(const std::string& word, const std::vector<std::pair<std::string, float>>& shown) {
     edit::VocabularyRanker recognition(std::make_unique<WordScore>(), Vocabulary);
-    return edit::lead_of(recognition, word, {showing(shown), showing(shown)});
+    return edit::lead_of(recognition, word, {showing(shown), showing(shown)}).value();
 }
 
 edit::SearchVerdict sure(double value) { return {{value, {}}}; }
@@ -79,6 +95,7 @@ struct Seen {
         std::vector<std::uint8_t> in_view(fixture.scene.set.size(), 0);
         for (const auto& view : fixture.views) {
             edit::ViewEvidence one;
+            one.render = Image(1, 1, 3, static_cast<float>(evidence.size()));
             one.mask =
                 test::true_mask(fixture.scene.set, fixture.scene.first, view.camera, *fixture.rasterizer);
             evidence.push_back(std::move(one));
@@ -156,8 +173,9 @@ DOCTEST_TEST_CASE("a word leads where the pictures show it, whatever else they s
             DOCTEST_CHECK(lead("duck", bear).lead < 0);
             DOCTEST_CHECK(lead("duck", bear).best == "bear");
         }
-    DOCTEST_CHECK(lead("grass", {{"bear", 1.0f}}).best.empty());   // no thing
-    DOCTEST_CHECK(lead("guitar", {{"bear", 1.0f}}).best.empty());  // nobody told the encoder
+    edit::VocabularyRanker recognition(std::make_unique<WordScore>(), Vocabulary);
+    DOCTEST_CHECK(!edit::lead_of(recognition, "grass", {showing({{"bear", 1.0f}})}));   // no thing
+    DOCTEST_CHECK(!edit::lead_of(recognition, "guitar", {showing({{"bear", 1.0f}})}));  // nobody told it
 }
 
 DOCTEST_TEST_CASE("something worn is there where the sentence without it fits less") {
@@ -168,6 +186,7 @@ DOCTEST_TEST_CASE("something worn is there where the sentence without it fits le
     DOCTEST_CHECK(lead("hat", worn).lead < 0);
     DOCTEST_CHECK(lead("sunglasses", bare).lead < 0);
     DOCTEST_CHECK(lead("hat", bare).lead < 0);
+    DOCTEST_CHECK(lead("hat", bare).best.empty());
 }
 
 DOCTEST_TEST_CASE("a finding that the pictures' edges cut is seen along its border, a whole one is not") {
@@ -182,6 +201,21 @@ DOCTEST_TEST_CASE("a finding that the pictures' edges cut is seen along its bord
     Seen ground(near);
     ground.word = "grass";  // goes on beyond any picture
     DOCTEST_CHECK(edit::look_along_border(ground.finding(near), nullptr).cut == 0);
+}
+
+DOCTEST_TEST_CASE("an encoder that cannot read the front of what it sees is no witness") {
+    OrbitParameters whole;
+    whole.radius = 3;
+    const Seen all(whole);
+    const auto knows = [&](double clearness) {
+        edit::VocabularyRanker recognition(std::make_unique<TurningScore>(clearness), Vocabulary);
+        return edit::encoder_knows(all.finding(whole), recognition);
+    };
+    DOCTEST_CHECK(knows(1));
+    DOCTEST_CHECK(!knows(0.1));
+    DOCTEST_CHECK(!knows(0));
+    edit::VocabularyRanker blind(std::make_unique<WordScore>(), Vocabulary);
+    DOCTEST_CHECK(edit::encoder_knows(all.finding(whole), blind));  // it never read one
 }
 
 DOCTEST_TEST_CASE("without an encoder a second look tells the border alone") {
