@@ -34,7 +34,7 @@ constexpr ClassList Classes[] = {
     {WordClass::Material,
      "wooden wood stone golden gold silver metal metallic bronze copper iron steel glass marble clay wax "
      "plastic paper leather"},
-    {WordClass::State, "rusty furry shiny old new"},
+    {WordClass::State, "rusty furry shiny old new tiled"},
     {WordClass::Ground,
      "grass sand snow water tiles floor lake ground lawn meadow field beach sea ocean river ice street road "
      "gravel mud soil earth carpet rug desert forest sky pavement asphalt concrete background"}};

@@ -13,6 +13,9 @@
 
 namespace gse::edit {
 
+/// Share of a label's border that the pictures' edges may make (localize::frame_cut). Labels that lie whole
+/// in the views have 0 to 0.01, cut ones 0.05 and more (`gseditpro-lab bench search`).
+constexpr double MostCut = 0.1;
 constexpr int LeastVotingViews = 3;  // fewer voting views cannot tell front from back
 
 /// One figure that a confidence is made of, in [0,1].
@@ -54,6 +57,15 @@ struct SearchVerdict {
     bool sure() const { return problem == SearchProblem::None; }
 };
 
+/// Outcome of a second look at a finding (second_look.h).
+struct SecondLook {
+    std::optional<double> lead;    // WordLead::lead; nothing where no encoder can tell
+    std::string better;            // the word that fits better; empty where none does
+    bool worn = false;             // the word names something worn
+    double cut = 0;                // share of the label's border that the pictures' edges make
+    int cut_views = 0, views = 0;  // views whose mask reaches the picture's edge, and views that vote
+};
+
 /// The refusal of views of which too few found the word; nothing where enough did. Views that are left out
 /// do not count.
 std::optional<SearchVerdict> refuse_views(const std::string& word, const std::vector<ViewEvidence>& views);
@@ -63,6 +75,11 @@ std::optional<SearchVerdict> refuse_label(const std::string& word, const Label& 
 
 /// The confidence, and SearchProblem::Unsure where it is below `least`.
 SearchVerdict judge(const SearchEvidence& evidence, double least);
+
+/// The verdict after a second look, never surer than before. It is unsure where the encoder does not agree
+/// with the word, or where the pictures cut the label off.
+SearchVerdict reconsider(SearchVerdict verdict, const std::string& word, const SecondLook& look,
+                         double least);
 
 /// Pixels of a ground that is no part of the scene (ViewRenders::grounds), over the views that found
 /// something.

@@ -57,6 +57,32 @@ double VocabularyRanker::fit(const std::string& sentence, const std::vector<cons
     return sum / static_cast<double>(pictures.size());
 }
 
+std::vector<float> VocabularyRanker::mean_of(const std::vector<Image>& pictures) {
+    GSE_CHECK(compares() && !pictures.empty());
+    std::vector<float> mean;
+    for (const auto& picture : pictures) {
+        const auto seen = vector_of(picture);
+        const double length = std::sqrt(std::inner_product(seen.begin(), seen.end(), seen.begin(), 0.0));
+        mean.resize(seen.size(), 0.0f);
+        const double share = length > 0 ? 1 / (length * static_cast<double>(pictures.size())) : 0;
+        for (std::size_t i = 0; i < seen.size(); ++i) mean[i] += static_cast<float>(share * seen[i]);
+    }
+    return mean;
+}
+
+double VocabularyRanker::fit(const std::string& sentence, const std::vector<float>& mean) {
+    GSE_CHECK(compares());
+    const auto& words = vector_of(language::normalised_prompt(sentence));
+    const double length = std::sqrt(std::inner_product(words.begin(), words.end(), words.begin(), 0.0));
+    return length > 0 ? std::inner_product(words.begin(), words.end(), mean.begin(), 0.0) / length : 0;
+}
+
+double VocabularyRanker::likeness(const std::string& first, const std::string& second) {
+    GSE_CHECK(compares());
+    return cosine(vector_of(language::normalised_prompt(first)),
+                  vector_of(language::normalised_prompt(second)));
+}
+
 double VocabularyRanker::of(const std::string& sentence, const std::string& word,
                             const std::vector<const Image*>& pictures) {
     if (!available() || pictures.empty()) return -1;

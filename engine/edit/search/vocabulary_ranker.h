@@ -24,6 +24,14 @@ public:
     std::vector<float> viewpoint(const Image& picture);
     /// Mean cosine of the sentence with the pictures, in [-1,1]; needs compares() and a picture.
     double fit(const std::string& sentence, const std::vector<const Image*>& pictures);
+    /// Mean of the unit vectors of the pictures; needs compares() and a picture.
+    std::vector<float> mean_of(const std::vector<Image>& pictures);
+    /// Mean cosine of the sentence with the pictures of mean_of(), in [-1,1]; needs compares().
+    double fit(const std::string& sentence, const std::vector<float>& mean);
+    /// Cosine of two sentences, in [-1,1]; needs compares().
+    double likeness(const std::string& first, const std::string& second);
+    /// Words of the vocabulary that name or describe something.
+    const std::vector<std::string>& known() const { return known_; }
     /// Share of the other words that fit the pictures less in the place that the word (or phrase) has in the
     /// sentence, in [0,1]; negative when nobody can tell.
     double of(const std::string& sentence, const std::string& word,

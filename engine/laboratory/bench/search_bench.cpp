@@ -137,7 +137,8 @@ private:
         const auto& found = job.located();
         const auto& confidence = found.confidence;
         entry["confidence"] = confidence.value;
-        for (const char* key : {"agreement", "attention_inside", "labelled_share", "recognition"})
+        for (const char* key : {"agreement", "attention_inside", "labelled_share", "recognition",
+                                "first_look", "second_witness", "border_cut"})
             entry[key] = confidence.part(key);
         entry["networks"] = job.times().networks_json()["total"];
         if (question.present)

@@ -11,6 +11,7 @@
 #include "engine/base/thread_pool.h"
 #include "engine/edit/search/cached_attention.h"
 #include "engine/edit/search/locate.h"
+#include "engine/edit/search/second_look.h"
 #include "engine/neural/api/api.h"
 #include "engine/neural/api/network_use.h"
 #include "engine/pipeline/models/segmenters.h"
@@ -69,6 +70,8 @@ public:
     /// Needs ask() or ask_anew().
     edit::LocateTools tools(const Views& views, const std::optional<edit::StudioBackground>& ground,
                             const JobControl& control);
+    /// Tools of edit::second_look(). Needs ask() or ask_anew().
+    edit::SecondLookTools second_look() { return {painter_.rasterizer(), recognition_.get(), &threads_}; }
     /// Editor that draws the place of an addition, if the model can
     /// (TextToImage::supports_scene_conditioning()), else null. Its cost is counted. It is not the artist's
     /// guidance, which belongs to the loop.

@@ -23,6 +23,7 @@
 #include "engine/edit/search/front_reading.h"
 #include "engine/edit/search/place_drawing.h"
 #include "engine/edit/search/scene_reading.h"
+#include "engine/edit/search/second_look.h"
 #include "engine/language/grammar.h"
 #include "engine/language/news.h"
 #include "engine/language/vocabulary.h"
@@ -49,6 +50,8 @@ constexpr double SameThing = 0.2;  // IoU of what a glance found and of what is 
                                    // label among what was found
 // Multiple of the distance of a sure glance. Anything that would be framed from farther off is no object.
 constexpr double MostBack = 1.25;
+// Multiple of the distance where the edges of the pictures cut off what was found; a step each.
+constexpr std::array<double, 2> StepsOff{1.5, 2.25};
 constexpr std::size_t FrontViews = 12;  // in which the front of a scene is looked for
 
 /// Room for an addition around the source; beside it more than on it.
@@ -126,9 +129,33 @@ std::string key_of(const Located& located) {
     return hash.key().hex();
 }
 
+edit::Finding finding_of(const RunContext& workplace, const Located& located) {
+    const auto& result = located.result;
+    return {workplace.drawn(),
+            result.word,
+            thing_of(result),
+            located.views.views,
+            result.views,
+            located.views.orbit,
+            located.views.front,
+            render_settings(workplace.scene(), located.recipe.request),
+            result.on_ground ? workplace.ground(located.recipe.request.sentence().before()) : std::nullopt,
+            workplace.traits()};
+}
+
+/// Tells whether the views are those of what the words found, and not of a new thing's place.
+bool shows_finding(const Located& located) {
+    return !located.by_label() && located.found() && located.result.mode != edit::EditMode::Add &&
+           !edit::replaces_accessory(located.recipe.request.sentence(), located.result.mode);
+}
+
 /// Note that an uncertain finding is seen in its views only.
-Located finished(Located located) {
+Located finished(RunContext& workplace, Located located) {
     auto& result = located.result;
+    if (shows_finding(located))
+        edit::take_second_look(result,
+                               edit::second_look(finding_of(workplace, located), workplace.second_look()),
+                               located.recipe.request.least_confidence);
     if (!located.found())
         for (auto* label : {&result.label, &result.source_label})
             *label = make_label(label->name, std::vector<float>(label->bits->size(), 0.0f), 0.5f);
@@ -168,7 +195,7 @@ public:
     }
 
     Located run() {
-        Located located = searched();
+        Located located = shown_whole(searched());
         located.result.room = room_on_wearer(located);
         return located;
     }
@@ -188,6 +215,30 @@ private:
         log::info("{}; the label alone says what may change",
                   located.found() ? "what the words find is not what is labelled" : located.result.message);
         return from_label();
+    }
+
+    double cut_of(const Located& located) {
+        return edit::look_along_border(finding_of(workplace_, located), workplace_.second_look().threads).cut;
+    }
+
+    /// Looks from farther off where the edges of the pictures cut off what was found.
+    Located shown_whole(Located located) {
+        if (!moves() || !shows_finding(located)) return located;
+        CheckedRecipe scan = recipe_;
+        scan.request.views = std::min(scan.request.views, ScanViews);
+        for (const double step : StepsOff) {
+            const double cut = cut_of(located);
+            if (cut <= edit::MostCut) break;
+            log::info("\"{}\" goes on beyond the pictures; it is looked for from farther off",
+                      located.result.word);
+            const Views off = views_on(nearer(located.views.orbit, step), scan);
+            const auto glance = look(scan, off, {});
+            if (glance.problem != edit::SearchProblem::None || !same_thing(glance, located.result)) continue;
+            Located whole = seen_from(
+                faced(views_on(focused_on(thing_of(glance), glance.mode, off.orbit, off.front), recipe_)));
+            if (shows_finding(whole) && cut_of(whole) < cut) located = std::move(whole);
+        }
+        return located;
     }
 
     bool moves() const { return views_.automatic && recipe_.request.reframe_views; }
@@ -514,7 +565,7 @@ Located locate(RunContext& workplace, const CheckedRecipe& recipe, const Views& 
     workplace.ask_anew(recipe.attention);
     CheckedRecipe all = recipe;  // from all views; what is left out is a matter of those that it ends with
     all.request.excluded_views.clear();
-    Located located = finished(Search(workplace, all, views, hints, control).run());
+    Located located = finished(workplace, Search(workplace, all, views, hints, control).run());
     if (recipe.request.excluded_views.empty() || located.by_label()) return located;
     all = located.recipe;
     all.request.excluded_views = recipe.request.excluded_views;
@@ -529,7 +580,7 @@ Located locate_again(RunContext& workplace, const Located& located, const Checke
     again.result = search_from(workplace, again.views, recipe, label, control);
     if (edit::moves_worn_place(recipe.request.sentence(), again.result.mode))
         again.result.room = located.result.room;
-    return finished(std::move(again));
+    return finished(workplace, std::move(again));
 }
 
 Located locate_by_label(RunContext& workplace, const Located& located, std::vector<std::uint8_t> label,
