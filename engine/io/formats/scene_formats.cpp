@@ -69,6 +69,7 @@ std::string kept_text(const io::SceneFormat& format) {
                                                : "the splats, with rounded values"},
         left_out;
     const auto tell = [&](bool keeps, const char* what) { (keeps ? kept : left_out).emplace_back(what); };
+    tell(format.keeps_view_colour, "view-dependent colour");
     tell(format.keeps_labels, "labels");
     tell(format.keeps_columns, "other columns");
     tell(format.keeps_antialiasing, "antialiasing");
