@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/engine_names.h"
+#include "app/session/state/json_values.h"
 #include "engine/base/clock.h"
 #include "engine/io/cameras/camera_json.h"
 #include "engine/math/framing.h"
@@ -30,6 +31,11 @@ RowValues from_bits(const std::vector<std::uint8_t>& bits) {
 void ViewController::take_document() {
     hidden_.show_all();
     compare_as_usual();
+    comparison_ = ui::Comparison::None;
+    settings_ = for_another_scene(settings_);
+    tint_before_.reset();
+    drawn_ = {};
+    shown_ = {};
     up_shown_ = state().info.up;
     orbit_ = scene_orbit(Scene{state().base, state().info, {}}, RenderParameters{});
     framing_ = framing_bounds(state().current);
