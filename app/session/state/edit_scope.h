@@ -47,8 +47,8 @@ std::optional<std::size_t> scope_label(const DocumentState& state, const edit::E
                                        const std::vector<std::string>& known,
                                        const std::optional<ReachChoice>& choice);
 
-/// Name of the thing that an addition puts there, where the scene has one already; empty otherwise. An edit of
-/// the stack added it, or a label is named for it. Or a search saw that only what is said of it is new:
+/// Name of the thing that an addition puts there, where the scene has one already; empty otherwise. An edit
+/// of the stack added it, or a label is named for it. Or a search saw that only what is said of it is new:
 /// `read_target` is "red" of "a red hat".
 std::string present_already(const DocumentState& state, const edit::EditRequest& request,
                             const std::string& read_target = {});
