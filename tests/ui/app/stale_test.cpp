@@ -25,13 +25,14 @@ std::string text_of(const auto& settings) { return fields_to_json(settings).dump
 
 void show(Shown& shown, const ui::DocumentPart& part) {
     const auto& [document, opened, statistics, scene_path, project_path, suggested, unsaved, saved_at, recent,
-                 recoverable] = part;
+                 recoverable, embeds, linked, lost] = part;
     static_cast<void>(opened), static_cast<void>(recent);  // of the window
     shown["document.steps"] = document == nullptr ? "none" : fmt::format("{}", document->names().size());
     shown["document.splats"] = fmt::format("{}", statistics.count);
     shown["document.paths"] = fmt::format("{} {} {}", scene_path, project_path, suggested);
     shown["document.unsaved"] = fmt::format("{}", unsaved);
     shown["document.saved_at"] = saved_at;
+    shown["document.link"] = fmt::format("{} {} {}", embeds, linked, lost.project);
     shown["document.recoverable"] = fmt::format("{}", recoverable.size());
 }
 
@@ -67,7 +68,7 @@ void show(Shown& shown, const ui::SearchPart& part) {
 
 void show(Shown& shown, const ui::EditPart& part) {
     const auto& [running, gate, rounds, targets_wait, cost, losses, snapshots, shown_snapshot, waiting,
-                 splats, changed_outside, psnr, seconds, verdict, results, shown_result] = part;
+                 splats, changed_outside, psnr, seconds, verdict, results, shown_result, variations] = part;
     shown["edit.running"] = fmt::format("{} {} {}", running, targets_wait, waiting);
     shown["edit.gate"] = fmt::format("{} {} {}", gate.pictures.size(), gate.verdict, gate.warns);
     shown["edit.rounds"] = fmt::format("{}", rounds.size());
@@ -76,7 +77,7 @@ void show(Shown& shown, const ui::EditPart& part) {
     shown["edit.snapshots"] = fmt::format("{} {}", snapshots.size(), shown_snapshot);
     shown["edit.result"] = fmt::format("{} {} {} {}", splats, changed_outside, psnr, seconds);
     shown["edit.verdict"] = fmt::format("{} {}", verdict.text, verdict.stopped_at);
-    shown["edit.results"] = fmt::format("{} {}", results.size(), shown_result);
+    shown["edit.results"] = fmt::format("{} {} {}", results.size(), shown_result, variations.size());
 }
 
 void show(Shown& shown, const ui::LabelPart& part) {
