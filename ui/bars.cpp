@@ -7,6 +7,7 @@
 #include "ui/commands/guarded.h"
 #include "ui/menu.h"
 #include "ui/state.h"
+#include "ui/status.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/icons.h"
 
@@ -118,12 +119,7 @@ void draw_idle(Context& context) {
     const auto& verdict = context.model.verdict;
     const bool waits = context.model.result_waiting;
     bullet_dot(waits && verdict.warns ? palette::Warning : waits ? palette::Accent : palette::Good);
-    std::string text = !waits                    ? "Ready"
-                       : verdict.stopped_at >= 0 ? "The edit was stopped: apply or discard what it came to"
-                                                 : "The edit is done: apply or discard it";
-    if (!job.title.empty() && !job.outcome.empty())
-        text = fmt::format("{}: {}{}", job.title, job.outcome,
-                           context.model.result_waiting ? ". Apply or discard it" : "");
+    const std::string text = job_line(context.model);
     ImGui::TextUnformatted(shortened(text, room).c_str());
     note(context, "job.outcome");
     tooltip(text);

@@ -100,7 +100,8 @@ void draw_question(Context& context) {
     const int chosen = draw_answers(context, question.answers);
     const auto act =
         chosen >= 0 ? question.answers[static_cast<std::size_t>(chosen)].act : std::function<void()>();
-    if (done || chosen >= 0) ImGui::CloseCurrentPopup();
+    const bool gone = question.answers.empty();  // its scene was closed
+    if (done || chosen >= 0 || gone) ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
     if (act) act();
 }

@@ -54,6 +54,12 @@ void file_menu(Context& context) {
     if (item(context, {"menu.save", "Save project", keys_of(context, Shortcut::Save), why})) save(context);
     if (item(context, {"menu.save_as", "Save project as...", keys_of(context, Shortcut::SaveAs), why}))
         save_as(context);
+    const auto& model = context.model;
+    const std::string why_embed = !why.empty()                    ? why
+                                  : !model.linked && model.embeds ? "Only the project holds this scene"
+                                                                  : "";
+    if (item(context, {"menu.embed", "Hold the scene in the project", "", why_embed, model.embeds}))
+        context.emit(command::EmbedScene{!model.embeds});
     if (item(context, {"menu.export", "Export...", keys_of(context, Shortcut::Export), why}))
         show_panel(context.state, PanelId::Export);
     ImGui::Separator();

@@ -132,6 +132,22 @@ SentenceFacts facts_of(const edit::EditRequest& request, const SentenceGround& g
     return facts;
 }
 
+edit::EditRequest as_change(edit::EditRequest request, const std::string& thing) {
+    std::string said;
+    for (const auto& phrase : language::Sentence(request.prompt).noun_phrases()) {
+        if (phrase.head != thing) continue;
+        for (const auto& attribute : phrase.attributes) said += (said.empty() ? "" : " ") + attribute;
+    }
+    const bool vowel =
+        !said.empty() && std::string_view("aeiou").find(said.front()) != std::string_view::npos;
+    request.source = thing;
+    request.prompt = said.empty() ? "" : fmt::format("{} {} {}", vowel ? "an" : "a", said, thing);
+    request.target = said;
+    request.instruction.clear();
+    request.mode = "auto";
+    return request;
+}
+
 std::string target_to(const std::string& sentence, const std::string& target, std::size_t index) {
     const auto words = language::words_of(sentence);
     if (index >= words.size()) return target;

@@ -40,4 +40,9 @@ std::string target_to(const std::string& sentence, const std::string& target, st
 /// The sentence with its word number `index` replaced.
 std::string with_word(const std::string& sentence, std::size_t index, const std::string& word);
 
+/// The edit of a thing that the sentence would add: about it alone, with what the sentence says of it. "hat"
+/// of "a bear wearing a red hat" gives "a red hat", target "red". Target and prompt are empty where nothing
+/// is said.
+edit::EditRequest as_change(edit::EditRequest request, const std::string& thing);
+
 }  // namespace gse::ui

@@ -2,6 +2,8 @@
 #include "ui/shell.h"
 
 #include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <cmath>
@@ -221,6 +223,13 @@ void Shell::write_widgets(const std::filesystem::path& path) const {
     write_file(path, json.dump(1));
 }
 
+void Shell::follow_document(std::uint64_t opened) {
+    const std::uint64_t before = std::exchange(state_->document, opened);
+    if (before == opened) return;
+    forget_scene(*state_);
+    if (before != 0) ImGui::ClearActiveID();  // a field would put the last scene's words back
+}
+
 void Shell::answer_requests(Context& context) {
     if (std::exchange(state_->asked.save_as, false))
         save_as(context, std::exchange(state_->asked.after_save, {}));
@@ -344,6 +353,7 @@ std::vector<Command> Shell::draw(const ViewModel& model, Textures& textures) {
                     model.exports,
                     model.model_settings};
     state_->animating = false;
+    follow_document(model.opened);
     set_foreign_glyphs(&glyphs_);
     if (model.keymap != state_->keys.read) {
         state_->keymap = Keymap::parse(model.keymap);

@@ -2,6 +2,7 @@
 // commands that the artist gave.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -63,6 +64,7 @@ private:
     void draw_area(Context& context, Area area);
     void draw_tab_menu(Context& context, PanelId panel);
     void answer_requests(Context& context);
+    void follow_document(std::uint64_t opened);
 
     std::unique_ptr<UiState> state_;
     CommandSink commands_;

@@ -219,7 +219,11 @@ struct UiState {
     ModelsState models;
     std::string focus;  // widget that takes the keyboard next frame
     bool animating = false;
+    std::uint64_t document = 0;  // ViewModel::opened that the rest was of
 };
+
+/// Forgets all that belongs to one scene. Sizes, tools' settings, keys and what was typed for models stay.
+void forget_scene(UiState& state);
 
 /// Brings a panel to the front.
 void show_panel(UiState& state, PanelId panel);

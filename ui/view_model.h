@@ -270,12 +270,14 @@ struct TargetRound {
     std::vector<std::string> warnings = {};
 };
 
-/// Scope of the next edit: the active label, or the result of a search.
+/// Scope of the next edit: a label, or the result of a search.
 struct EditReach {
-    std::string label;       // active, with splats in it; empty = there is none
+    std::string label;       // that it uses or could use, with splats in it; empty = there is none
     std::size_t splats = 0;  // of it
     bool by_label = false;   // it says what may change; else the words are looked for
     bool corrected = false;  // something of it was set by hand
+    std::string shown;       // the active label, where the edit uses another one; else empty
+    std::string present;     // thing that the edit would add although the scene has one; else empty
 };
 
 /// Colour of a pixel of the picture, as it is seen.
@@ -305,11 +307,26 @@ struct ResultView {
     std::uint64_t seed = 0;
 };
 
+/// Project that could not be opened, because its scene is not where it was.
+struct LostScene {
+    std::string project;  // or the work to recover; empty = there is none
+    std::string name;     // of the project: "bear.gsep"
+    std::string scene;    // where it was
+};
+
+/// Results of an applied edit, which can be exchanged for each other.
+struct VariationsView {
+    std::uint64_t edit = 0;  // identity on the stack
+    std::vector<ResultView> results;
+    std::size_t applied = 0;  // index into results
+};
+
 // Parts of the view model: each is assembled by one controller of the application.
 
 /// The document and its files.
 struct DocumentPart {
     const Document* document = nullptr;  // null or empty() = nothing open
+    std::uint64_t opened = 0;            // another number for each document
     SceneStatistics statistics;
     std::string scene_path, project_path;
     std::string suggested_project;    // where a first save goes unless the artist says otherwise
@@ -318,6 +335,9 @@ struct DocumentPart {
     std::vector<std::string> recent;  // paths, newest first
     std::vector<std::shared_ptr<const Image>> recent_pictures;  // of them; null or missing = none
     std::vector<RecoveryView> recoverable;                      // newest first
+    bool embeds = false;  // the project holds its scene, or will with the next save
+    bool linked = false;  // there is a file of the scene that the project may refer to
+    LostScene lost;
 };
 
 /// The viewport and its settings.
@@ -385,8 +405,9 @@ struct EditPart {
     double result_psnr_outside_db = 0;
     double result_seconds = 0;  // that the whole job took
     ResultVerdict verdict;
-    std::vector<ResultView> results;  // of which one waits, the others beside it
-    std::size_t shown_result = 0;     // index into results
+    std::vector<ResultView> results;         // of which one waits, the others beside it
+    std::size_t shown_result = 0;            // index into results
+    std::vector<VariationsView> variations;  // of edits of the stack
 };
 
 /// Labels and splats chosen by a property.

@@ -19,17 +19,6 @@ namespace command = ui::command;
 
 template <class... F> struct Overloaded : F... { using F::operator()...; };
 
-/// Settings of the window that do not belong to one scene or one moment.
-nlohmann::ordered_json lasting(nlohmann::ordered_json fields) {
-    for (auto field = fields.begin(); field != fields.end();) {
-        const std::string& name = field.key();
-        const bool passing = name == "mode" || name == "tint_labels" || name == "wipe" ||
-                             name == "visible_only" || name.ends_with("_path");
-        field = passing ? fields.erase(field) : std::next(field);
-    }
-    return fields;
-}
-
 }  // namespace
 
 Application::Application(ApplicationOptions options)
@@ -101,11 +90,22 @@ void Application::update(PreviewHost& preview) {
 void Application::follow_document() {
     const auto& document = workspace_.document;
     const Seen now{workspace_.opened, document.revision()};
-    if (document.empty() || std::exchange(seen_, now) == now) return;
+    const Seen before = std::exchange(seen_, now);
+    if (document.empty() || before == now) return;
+    if (before.opened == now.opened && now.revision < before.revision) forget_undone();
     view_.follow_document();
     search_.follow_document();
     const NamedLabel* label = workspace_.active_label();
     workspace_.labelled = label != nullptr ? count_labelled(*label) : 0;
+}
+
+/// Drops the words, pictures and figures of an undone step. Evidence of a search comes back with a redo.
+void Application::forget_undone() {
+    const auto done = [this](std::uint64_t step) { return workspace_.document.includes(step); };
+    workspace_.notices.forget_undone(done);
+    if (workspace_.jobs->works() || workspace_.results || done(workspace_.worked_at)) return;
+    workspace_.forget_work();
+    edits_.forget_run();
 }
 
 void Application::show() {
@@ -120,10 +120,11 @@ void Application::show() {
     exports_.show(model_);
     model_.job = workspace_.jobs->work.status();
     model_.file_job = workspace_.jobs->files.status();
-    model_.cannot_edit = workspace_.document.empty() ? "Open a scene first."
-                         : workspace_.jobs->works()  ? "A job is running."
-                         : workspace_.results        ? "Apply or discard the edit first."
-                                                     : "";
+    model_.cannot_edit = workspace_.document.empty()   ? "Open a scene first."
+                         : workspace_.jobs->works()    ? "A job is running."
+                         : workspace_.jobs->reads_work ? "Another scene is being opened."
+                         : workspace_.results          ? "Apply or discard the edit first."
+                                                       : "";
     model_.frames_per_second = frames_per_second_;
     model_.keymap = keymap_;
     model_.ui_scale = ui_scale_;

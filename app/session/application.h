@@ -59,6 +59,7 @@ private:
     template <class C> void on(const C& command);
     void run_window(const ui::WindowCommand& command);
     void follow_document();
+    void forget_undone();
     void show();
     void save_settings();
     void load_settings();

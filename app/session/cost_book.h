@@ -23,6 +23,7 @@ public:
     PlannedMemory memory() const;
 
     void estimate(const edit::EditRequest& request, const PlannedWork& work);
+    void forget_estimate() { estimate_ = {}; }
     void show(ui::SearchPart& model) const { model.estimate = estimate_; }
 
     void settings_to_json(nlohmann::json& json) const;

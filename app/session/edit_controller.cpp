@@ -4,10 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
-#include "engine/base/clock.h"
 #include "engine/base/error.h"
 #include "engine/edit/request/edit_method.h"
 #include "engine/edit/request/unchecked_request.h"
@@ -26,7 +24,7 @@ constexpr std::uint64_t WaitingEdit = std::uint64_t{1} << 63, RunningEdit = std:
 // Runs
 
 template <> void EditController::on(const command::Edit&) {
-    if (!workspace_.require_scene() || workspace_.jobs->works()) return;
+    if (!workspace_.require_scene() || workspace_.jobs->occupied()) return;
     if (workspace_.results) return workspace_.notices.toast("Apply or discard the last edit first.");
     snapshots_.forget();
     view_.forget_tint();
@@ -35,7 +33,21 @@ template <> void EditController::on(const command::Edit&) {
     start(std::nullopt);
 }
 
+/// Inputs of the edit that begins, with the label that is its scope.
+EditStart EditController::start_from(std::optional<edit::EditSnapshot> from) const {
+    EditStart start;
+    if (const NamedLabel* label = search_.scope()) {
+        start.label = *label->bits;
+        start.corrected = !label->found_for.empty() && corrected_by_hand(*label);
+    }
+    start.shows_preview = models_.settings().gate && !from && !edit::method_of(recipe_.request).draws_views();
+    start.reviews = models_.settings().review;
+    start.snapshot = std::move(from);
+    return start;
+}
+
 void EditController::start(std::optional<edit::EditSnapshot> from) {
+    search_.show_scope();
     search_.begin_edit();
     view_.compare_as_usual();
     std::optional<CheckedRecipe> checked;
@@ -47,15 +59,11 @@ void EditController::start(std::optional<edit::EditSnapshot> from) {
     run->job = search_.fitting_job();
     take_known_parts(run->measured, costs_.profile(search_.request()));
     recipe_ = recipe;
-    EditStart start;
-    if (search_.label_drives_edit()) start.label = *workspace_.active_label()->bits;
-    start.shows_preview = models_.settings().gate && !from && !edit::method_of(recipe.request).draws_views();
-    start.reviews = models_.settings().review;
     LiveEdit live;
     live.describe(recipe);
     live.losses = std::move(live_.losses);
     if (from) live.gate = std::move(live_.gate);
-    start.snapshot = std::move(from);
+    const EditStart start = start_from(std::move(from));
     live_ = std::move(live);
     snapshots_.begin(workspace_.document.state().current);
     auto pending = std::make_shared<PendingResult>();
@@ -76,14 +84,14 @@ void EditController::start(std::optional<edit::EditSnapshot> from) {
         run_edit(*run, start, before, *roads, *pending, peak);
         throw_what_ended(run->job->result());
     };
-    auto done = [this, run, pending, begun = std::chrono::steady_clock::now(),
-                 cost_key = costs_.key(search_.request()), ticket = models_.ticket()](const Error* error) {
+    auto done = [this, run, pending, cost_key = costs_.key(search_.request()),
+                 ticket = models_.ticket()](const Error* error) {
         models_.take_back(ticket, run->model, run->loaded, error);
         costs_.remember(cost_key, run->measured);
         refresh();  // what was found last, and the last steps
         if (branch_) return go_on_from_branch();
         if (pending->set.size() > 0) {  // also what a shortage or a failure left
-            pending->seconds = seconds_since(begun);
+            pending->seconds = workspace_.jobs->work.status().seconds;  // the clock of the job's own line
             pending->verdict = live_.gate.verdict;
             pending->warns = live_.gate.warns;
             workspace_.results.add(std::move(*pending));
@@ -123,7 +131,7 @@ template <> void EditController::take(edit_news::Found&& news) {
 
 template <> void EditController::take(edit_news::Preview&& news) {
     live_.gate = std::move(news.gate);
-    if (live_.gate.warns) workspace_.notices.toast(live_.gate.verdict);
+    if (live_.gate.warns) workspace_.notices.toast_of_step(live_.gate.verdict);
 }
 
 template <> void EditController::take(edit_news::Targets&& news) { live_.take(news); }
@@ -209,16 +217,18 @@ template <> void EditController::on(const command::ApplyResult&) {
     if (!before.current.shares_all_with(results->before))
         return workspace_.notices.toast(
             "The scene was changed since: undo that to apply the edit, or discard the edit.", true);
-    const PendingResult result = std::move(*results);
-    results.reset();
-    ++workspace_.content;
+    const PendingResult result = *results;
     EditNode node = node_of(result);
     node.id = workspace_.next_edit_id++;
     node.delta = std::make_shared<const SceneDelta>(
         make_delta(result.before, *before.row_ids, result.set, *result.base_to_new, node.id));
+    workspace_.variations.keep(results, node, before);
+    results.reset();
+    ++workspace_.content;
     DocumentState state = with_result(before, std::move(node), result);
-    if (state.labels.size() > before.labels.size() || !result.renamed.to.empty()) search_.forget_choice();
+    if (!result.renamed.to.empty()) search_.forget_choice();
     workspace_.document.apply(fmt::format("Edit: {}", result.name), std::move(state));
+    workspace_.worked_at = workspace_.document.revision();  // undone, its pictures and its status go
     workspace_.toast_step(fmt::format("The edit \"{}\" is kept.", result.name));
     search_.forget_target();  // it is done: the next sentence has news of its own
     view_.tint(false);        // what was made is to be seen, not where
@@ -234,7 +244,7 @@ template <> void EditController::on(const command::DiscardResult&) { discard_res
 
 template <> void EditController::on(const command::AnotherResult&) {
     auto& results = workspace_.results;
-    if (!results || workspace_.jobs->works()) return;
+    if (!results || workspace_.jobs->occupied()) return;
     search_.set_seed(results.next_seed());
     results.set_aside();
     const auto tint = view_.forget_tint();  // as before the first of them
@@ -253,11 +263,17 @@ template <> void EditController::on(const command::ShowResult& one) {
 }
 
 void EditController::take_document(std::optional<PendingResult> pending) {
+    forget_run();
     workspace_.results.reset(std::move(pending));
     if (workspace_.results) workspace_.results->before = workspace_.document.state().current;
-    snapshots_.forget();
-    snapshots_.look_at_newest();
-    live_.losses.clear();
+}
+
+void EditController::forget_run() {
+    live_ = {};
+    recipe_ = {};
+    snapshots_ = {};
+    branch_.reset();
+    ++workspace_.content;
 }
 
 // Frames
@@ -311,6 +327,17 @@ void EditController::show(ui::EditPart& model) const {
     model.results.clear();
     for (const auto& result : results.all()) model.results.push_back({result.thumbnail, result.seed});
     model.shown_result = results.shown().value_or(0);
+    model.variations.clear();
+    if (workspace_.document.empty()) return;
+    const auto& stack = workspace_.document.state().stack;
+    for (const auto& kept : workspace_.variations.all()) {
+        const auto applied = kept.applied(stack);
+        if (!applied) continue;
+        ui::VariationsView view{kept.edit, {}, *applied};
+        for (std::size_t i = 0; i < kept.nodes.size(); ++i)
+            view.results.push_back({kept.nodes[i].thumbnail, kept.seeds[i]});
+        model.variations.push_back(std::move(view));
+    }
 }
 
 // The recovery folder

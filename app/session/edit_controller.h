@@ -31,6 +31,8 @@ public:
     void show(ui::EditPart& model) const;
     /// Another document is open, with a result that waits to be applied where its work was kept.
     void take_document(std::optional<PendingResult> pending);
+    /// Forgets what the last run showed: its pictures, curves, states and redrawn views.
+    void forget_run();
 
     bool runs() const { return workspace_.jobs->works_at(JobKind::Edit); }
     void discard_result();
@@ -52,6 +54,7 @@ public:
 private:
     template <class C> void on(const C& command);
     template <class N> void take(N&& news);
+    EditStart start_from(std::optional<edit::EditSnapshot> from) const;
     void start(std::optional<edit::EditSnapshot> from);
     void end(const Error* error);
     bool shows_states() const;

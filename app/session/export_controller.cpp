@@ -9,6 +9,7 @@
 
 #include "app/engine_names.h"
 #include "app/session/shown_picture.h"
+#include "app/session/state/json_values.h"
 #include "engine/base/desktop.h"
 #include "engine/base/error.h"
 #include "engine/io/cameras/camera_json.h"
@@ -128,7 +129,10 @@ void ExportController::start(const char* what, const std::filesystem::path& path
                              bool can_pause) {
     auto& notices = workspace_.notices;
     auto done = [this, &notices, path, said](const Error* error) {
-        if (error != nullptr) return workspace_.report_end(*error);
+        if (error != nullptr) {
+            if (error->code() != ErrorCode::Cancelled) notices.report(*error);
+            return;
+        }
         notices.toast(fmt::format("Wrote {}{}", path.string(), said), false, "Show", [&notices, path] {
             try {
                 show_folder_of(path);
@@ -321,6 +325,7 @@ void ExportController::show(ui::ExportPart& model) const {
 }
 
 void ExportController::take_document() {
+    settings_ = for_another_scene(settings_);
     keys_.clear();
     hidden_seen_ = view_.hidden().number();
     ++keys_number_;

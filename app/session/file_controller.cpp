@@ -51,30 +51,36 @@ void FileController::open(const std::filesystem::path& path, const ReadingOption
     const auto absolute = std::filesystem::absolute(path).lexically_normal();
     if (names_png(absolute)) return open_recipe(absolute);
     if (only_cameras(absolute)) return open_cameras(absolute);
-    start_reading(
-        fmt::format("Open {}", absolute.filename().string()),
-        [absolute, options](const JobControl& control) { return open_work(absolute, options, control); },
-        false);
+    start_reading(fmt::format("Open {}", absolute.filename().string()), {absolute, {}, false, options});
 }
 
 template <> void FileController::on(const command::Recover& one) {
     if (workspace_.jobs->works()) return workspace_.notices.toast("Cancel the running job first.");
-    start_reading(
-        "Recover",
-        [file = std::filesystem::path(one.project)](const JobControl& control) {
-            return recover_work(file, control);
-        },
-        true);
+    start_reading("Recover", {one.project, {}, true});
 }
 
-void FileController::start_reading(const std::string& title,
-                                   std::function<OpenedWork(const JobControl&)> read, bool recovers) {
+template <> void FileController::on(const command::FindScene& one) {
+    if (lost_.path.empty()) return;
+    if (workspace_.jobs->works()) return workspace_.notices.toast("Cancel the running job first.");
+    WorkToOpen work = lost_;
+    work.scene = std::filesystem::absolute(one.path).lexically_normal();
+    start_reading(fmt::format("Open {}", lost_view_.name), std::move(work));
+}
+
+template <> void FileController::on(const command::ForgetLostScene&) {
+    lost_ = {};
+    lost_view_ = {};
+}
+
+void FileController::start_reading(const std::string& title, WorkToOpen to_open) {
     auto opened = std::make_shared<OpenedWork>();
-    auto work = [opened, read = std::move(read)](const JobControl& control) { *opened = read(control); };
-    auto done = [this, opened, recovers](const Error* error) {
+    auto work = [opened, to_open](const JobControl& control) { *opened = open_work(to_open, control); };
+    auto done = [this, opened, to_open, recovers = to_open.recovers](const Error* error) {
+        workspace_.jobs->reads_work = false;
         if (error != nullptr) recovery_.keep(false);  // what is open stays open
         if (error != nullptr) return workspace_.report_end(*error);
         if (opened->choices.size() > 1) return ask_which(opened->path, opened->choices);
+        if (!opened->lost.empty()) return take_lost(to_open, *opened);
         const bool waits = opened->pending.has_value();
         take(std::move(*opened));
         if (recovers)
@@ -82,9 +88,21 @@ void FileController::start_reading(const std::string& title,
                 waits ? "The work is back, with the edit that was not applied. Save it to keep it."
                       : "The work of the last session is back. Save it to keep it.");
     };
-    if (workspace_.jobs->files.start({title, work, done})) return;
-    if (!recovers) recovery_.keep(false);
+    if (workspace_.jobs->files.start({title, work, done})) {
+        workspace_.jobs->reads_work = true;
+        return workspace_.notices.begin_reading();
+    }
+    if (!to_open.recovers) recovery_.keep(false);
     workspace_.notices.toast(FilesBusy);
+}
+
+/// A bar asks where the scene is now; what is open stays open.
+void FileController::take_lost(const WorkToOpen& work, const OpenedWork& opened) {
+    recovery_.keep(false);
+    lost_ = work;
+    const auto& project = opened.project_path;
+    lost_view_ = {work.path.string(), project.empty() ? "unsaved work" : project.filename().string(),
+                  opened.lost.string()};
 }
 
 void FileController::ask_which(const std::filesystem::path& folder,
@@ -103,9 +121,9 @@ void FileController::ask_which(const std::filesystem::path& folder,
 
 void FileController::take(OpenedWork opened) {
     recovery_.let_go();
-    ++workspace_.opened;
-    kept_edit_ = {};
+    forget_document();
     source_ = opened.data.source;
+    embeds_ = opened.project && source_.path.empty();
     unknown_ = opened.data.unknown;
     workspace_.scene_path = source_.path.string();
     workspace_.project_path = opened.project_path.string();
@@ -113,18 +131,15 @@ void FileController::take(OpenedWork opened) {
     const auto& state = workspace_.document.state();
     for (const auto& node : state.stack)
         workspace_.next_edit_id = std::max(workspace_.next_edit_id, node.id + 1);
-    parts_.search.take_document();
-    parts_.edits.take_document(std::move(opened.pending));
-    parts_.view.take_document();
-    parts_.labels.drop_picked();
-    parts_.exports.take_document();
+    take_parts(std::move(opened.pending));
     counter_.take(state.current, opened.statistics);
     if (opened.project) parts_from_json(opened.data.ui);
     parts_.view.settle();
     if (!opened.recovered) recent_.add(opened.path, picture_of(state.current));
     const auto now = moment();
     using Moment = Recovery::Moment;
-    const auto holds = opened.recovered ? std::nullopt : std::optional(Moment{now.revision, 0, now.keys});
+    const bool as_saved = !opened.recovered && !opened.found_elsewhere;
+    const auto holds = as_saved ? std::optional(Moment{now.revision, 0, now.keys}) : std::nullopt;
     const bool alone = project_.begin(opened.project_path, holds);
     recovery_.begin(now, std::move(opened.recovered));
     if (!alone)
@@ -136,6 +151,25 @@ void FileController::take(OpenedWork opened) {
         workspace_.notices.toast(note);
     }
     if (!opened.project && state.info.looks_activated) offer_activated(opened.path);
+}
+
+/// Forgets all that belongs to the document that goes. Every state of a scene is reset here or in
+/// take_parts().
+void FileController::forget_document() {
+    workspace_.take_document();
+    on(command::ForgetLostScene{});
+    kept_edit_ = {};
+    leaving_.reset();
+}
+
+/// Each part forgets what belongs to the last document, and takes over the one that is open now.
+void FileController::take_parts(std::optional<PendingResult> pending) {
+    parts_.view.take_document();
+    parts_.models.take_document();
+    parts_.search.take_document();
+    parts_.edits.take_document(std::move(pending));
+    parts_.labels.take_document();
+    parts_.exports.take_document();
 }
 
 /// Adds what to press to the warning that such a scene was read with.
@@ -156,7 +190,7 @@ void FileController::open_recipe(const std::filesystem::path& picture) {
         const bool here =
             !workspace_.document.empty() && std::filesystem::path(recipe.job.scene) == workspace_.scene_path;
         // As the command line takes --recipe, but for the files that are open already.
-        parts_.search.set_request(recipe.request);
+        parts_.search.set_request(recipe.request, !here);
         parts_.models.take_recipe(recipe);
         if (here && json.contains("camera")) parts_.view.look_from(camera_from_json(json["camera"]));
         notices.toast(here ? "The prompt, its settings and the camera come from the picture."
@@ -228,6 +262,7 @@ std::filesystem::path FileController::default_project_path() const {
 std::shared_ptr<ProjectData> FileController::project_data() const {
     auto data = std::make_shared<ProjectData>();
     data->source = source_;
+    data->embeds = embeds_;
     data->unknown = unknown_;
     parts_.view.to_json(data->ui);
     parts_.exports.to_json(data->ui);
@@ -246,12 +281,33 @@ template <> void FileController::on(const command::SaveProject& one) {
     const auto data = project_data();
     data->state = workspace_.document.state();
     const auto now = moment();
-    project_.save(target, data, {now.revision, 0, now.keys}, [this, target, then = one.then] {
+    const bool first = target != std::filesystem::path(workspace_.project_path);
+    project_.save(target, data, {now.revision, 0, now.keys}, [this, target, first, then = one.then] {
+        if (first) tell_link(target);
         recovery_.outdate();  // what is still unsaved is written anew
         if (!unsaved()) recovery_.forget_recovered();
         recent_.add(target, thumbnail());
         if (then) then();
     });
+}
+
+/// Says once what the project does not hold, and offers to hold it.
+void FileController::tell_link(const std::filesystem::path& project) {
+    if (embeds_ || source_.path.empty()) return;
+    workspace_.notices.toast(
+        fmt::format("{} refers to {} and does not hold it: keep that file, or put the scene into the project "
+                    "(about {} MB more).",
+                    project.filename().string(), source_.path.filename().string(),
+                    std::max<std::uint64_t>(1, source_.bytes / 1000000)),
+        false, "Put it in", [this, opened = workspace_.opened] {
+            if (opened == workspace_.opened) run(ui::FileCommand(command::EmbedScene{}));
+        });
+}
+
+template <> void FileController::on(const command::EmbedScene& one) {
+    if (!workspace_.require_scene()) return;
+    embeds_ = one.on || source_.path.empty();  // without a file only the project has it
+    if (!workspace_.project_path.empty()) run(ui::FileCommand(command::SaveProject{}));
 }
 
 template <> void FileController::on(const command::CancelFileJob&) { workspace_.jobs->files.cancel(); }
@@ -388,10 +444,14 @@ void FileController::show(ui::DocumentPart& model) const {
     const auto& document = workspace_.document;
     model.document = document.empty() ? nullptr : &document;
     model.statistics = counter_.statistics();
+    model.opened = workspace_.opened;
     model.scene_path = workspace_.scene_path;
     model.project_path = workspace_.project_path;
     model.suggested_project = document.empty() ? std::string() : default_project_path().string();
     model.unsaved = unsaved();
+    model.embeds = embeds_;
+    model.linked = !source_.path.empty();
+    model.lost = lost_view_;
     model.saved_at = project_.saved_at();
     recent_.show(model);
     recovery_.show(model);

@@ -57,9 +57,12 @@ private:
     void open_cameras(const std::filesystem::path& path);
     void take_cameras(const std::string& name, std::vector<View> views,
                       const std::vector<std::string>& notes);
-    void start_reading(const std::string& title, std::function<OpenedWork(const JobControl&)> read,
-                       bool recovers);
+    void start_reading(const std::string& title, WorkToOpen work);
+    void tell_link(const std::filesystem::path& project);
     void take(OpenedWork opened);
+    void take_lost(const WorkToOpen& work, const OpenedWork& opened);
+    void forget_document();
+    void take_parts(std::optional<PendingResult> pending);
     void ask_which(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& files);
     std::filesystem::path default_project_path() const;
     std::shared_ptr<ProjectData> project_data() const;
@@ -81,6 +84,9 @@ private:
     RecentFiles recent_;
     nlohmann::json kept_edit_;        // of an edit that was stopped before its first step
     std::optional<Leaving> leaving_;  // waits for the edit to stop
+    bool embeds_ = false;             // the project holds its scene
+    WorkToOpen lost_;                 // whose scene is to be found; no path = none is
+    ui::LostScene lost_view_;
 };
 
 }  // namespace gse::app

@@ -54,13 +54,13 @@ NamedLabel marked(NamedLabel label, const std::vector<std::uint8_t>& rows, ui::S
 
 void LabelController::change_label(const std::string& name,
                                    const std::function<NamedLabel(NamedLabel)>& change,
-                                   const std::string& merge_key) {
+                                   const std::string& merge_key, const std::string& new_name) {
     if (!workspace_.require_scene()) return;
     if (workspace_.jobs->works() && !edits_.runs())
         return workspace_.notices.toast("The label can be changed when the job is done.");
     DocumentState next = state();
     if (next.active_label < 0 || next.active_label >= static_cast<int>(next.labels.size())) {
-        next.labels.push_back(empty_label("selection", next.current.size()));
+        next.labels.push_back(empty_label(free_label_name(next.labels, new_name), next.current.size()));
         next.active_label = static_cast<int>(next.labels.size()) - 1;
     }
     auto& label = next.labels[static_cast<std::size_t>(next.active_label)];
@@ -153,7 +153,7 @@ template <> void LabelController::on(const command::Select& one) {
 
 template <> void LabelController::on(const command::CutOut& one) {
     if (!workspace_.require_scene()) return;
-    if (workspace_.jobs->works())
+    if (workspace_.jobs->occupied())
         return workspace_.notices.toast("Things can be cut out when the job is done.");
     const auto recipe = search_.recipe();
     CutOutRequest request{view_.shown_camera(),
@@ -167,7 +167,7 @@ template <> void LabelController::on(const command::CutOut& one) {
     auto job = recipe.job;
     job.text_segmenter.clear();  // no word is looked for
     workspace_.jobs->start_work(
-        JobKind::Other,
+        JobKind::CutOut,
         {"Cut out",
          [=, set = view_.seen_document(), cache = models_.cache()](const JobControl& control) {
              control.report("cutting out what is in the box", 0, 0);
@@ -183,8 +183,9 @@ template <> void LabelController::on(const command::CutOut& one) {
 void LabelController::take_cut_out(const std::vector<std::uint8_t>& rows, ui::SetOperation operation,
                                    const Camera& camera, const Vec3& up) {
     if (rows.size() != state().current.size()) return;  // another scene meanwhile
-    change_label("Cut out",
-                 [&](NamedLabel label) { return marked(std::move(label), rows, operation, camera, up); });
+    change_label(
+        "Cut out", [&](NamedLabel label) { return marked(std::move(label), rows, operation, camera, up); },
+        {}, "cut out");
 }
 
 template <> void LabelController::on(const command::GrowLabel& one) {
@@ -208,6 +209,12 @@ void LabelController::drop_picked() {
     picking_.reset();
     picked_ = {};
     ++workspace_.content;
+}
+
+void LabelController::take_document() {
+    drop_picked();
+    adjusted_.reset();
+    hidden_seen_ = view_.hidden().number();
 }
 
 void LabelController::dress(Stage& stage) const {
@@ -286,13 +293,19 @@ template <> void LabelController::on(const command::GoTo& one) {
 
 // The edit stack
 
+/// False, and said, while the stack cannot be changed.
+bool LabelController::stack_is_free() {
+    if (!workspace_.require_scene()) return false;
+    if (!workspace_.results && !workspace_.jobs->works()) return true;
+    workspace_.notices.toast(workspace_.results ? "Apply or discard the edit first."
+                                                : "The edit stack can be changed when the job is done.");
+    return false;
+}
+
 void LabelController::change_stack(const std::string& name,
                                    const std::function<void(std::vector<EditNode>&)>& change,
                                    const std::string& merge_key) {
-    if (!workspace_.require_scene()) return;
-    if (workspace_.results) return workspace_.notices.toast("Apply or discard the edit first.");
-    if (workspace_.jobs->works())
-        return workspace_.notices.toast("The edit stack can be changed when the job is done.");
+    if (!stack_is_free()) return;
     auto stack = state().stack;
     change(stack);
     workspace_.document.apply(name, with_stack(state(), std::move(stack)), merge_key);
@@ -352,6 +365,16 @@ template <> void LabelController::on(const command::SetEditStrength& one) {
         },
         fmt::format("strength{}.{}", one.id, workspace_.stroke));
     if (one.drag_ends) ++workspace_.stroke;
+}
+
+template <> void LabelController::on(const command::ExchangeVariation& one) {
+    const Variations* kept = workspace_.variations.of(one.id);
+    if (kept == nullptr || one.index >= kept->nodes.size() || !stack_is_free()) return;
+    if (kept->applied(state().stack) == one.index) return;
+    const EditNode& node = kept->nodes[one.index];
+    workspace_.document.apply(
+        fmt::format("Variation {} of {}: {}", one.index + 1, kept->nodes.size(), node.name),
+        with_variation(state(), node));
 }
 
 template <> void LabelController::on(const command::DeleteEdit& one) {

@@ -26,6 +26,8 @@ public:
     /// Follows the splats that are chosen by a property. Once per frame.
     void refresh();
     void show(ui::LabelPart& model) const;
+    /// Another document is open: nothing is chosen or adjusted in it.
+    void take_document();
     /// Nothing is chosen by a property any more.
     void drop_picked();
     /// Adds what splats are chosen by a property.
@@ -43,11 +45,13 @@ private:
     };
     template <class C> void on(const C& command);
     const DocumentState& state() const { return workspace_.document.state(); }
+    /// Changes the active label; where there is none, a new one with that name or a number behind it.
     void change_label(const std::string& name, const std::function<NamedLabel(NamedLabel)>& change,
-                      const std::string& merge_key = {});
+                      const std::string& merge_key = {}, const std::string& new_name = "selection");
     void add_label(NamedLabel label, const std::string& step);
     void take_cut_out(const std::vector<std::uint8_t>& rows, ui::SetOperation operation, const Camera& camera,
                       const Vec3& up);
+    bool stack_is_free();
     void delete_rows(const std::vector<std::uint8_t>& rows);
     void measure_picked();
 

@@ -69,6 +69,8 @@ public:
     void settings_from_json(const nlohmann::json& json);
     void to_json(nlohmann::json& json) const;  // of a project
     void from_json(const nlohmann::json& json);
+    /// Another document is open: the direction of its front is not that of the last one.
+    void take_document() { settings_.front = settings_defaults_.front; }
     /// The settings of a recipe, its model and its LoRAs.
     void take_recipe(const EditRecipe& recipe);
 

@@ -37,6 +37,17 @@ bool contains_word(const std::vector<std::string>& words, const std::string& wor
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
+/// The settings of a request, without what was typed for a scene.
+edit::EditRequest without_words(edit::EditRequest request) {
+    request.source.clear();
+    request.prompt.clear();
+    request.target.clear();
+    request.instruction.clear();
+    request.excluded_views.clear();
+    request.mode = edit::EditRequest{}.mode;
+    return request;
+}
+
 Error problem_of(const EditJob& job) {
     return Error(ErrorCode::NotFound, job.located().message, job.located().remedy);
 }
@@ -51,7 +62,8 @@ SearchController::SearchController(Workspace& workspace, ViewController& view, M
 
 // The request
 
-void SearchController::set_request(const edit::EditRequest& request) {
+void SearchController::set_request(const edit::EditRequest& request, bool waits) {
+    words_wait_ |= waits;
     const bool told_else = request.source != request_.source || request.prompt != request_.prompt;
     request_ = request;
     if (told_else) request_.excluded_views.clear();  // they were views of another search
@@ -72,12 +84,13 @@ void SearchController::refresh_reading() {
 }
 
 void SearchController::follow_document() {
+    last_.set_undone(!workspace_.document.includes(last_.step()));
     said_words_ = language::words_said(applied_sentences(workspace_.document.state().stack));
 }
 
 EditRecipe SearchController::recipe() const {
-    EditRecipe recipe =
-        models_.recipe(request_, label_drives_edit() ? workspace_.active_label()->looked_from : looked_from_);
+    const NamedLabel* label = scope();
+    EditRecipe recipe = models_.recipe(request_, label != nullptr ? label->looked_from : looked_from_);
     recipe.request = edit::with_target(std::move(recipe.request), {said_words_, read_target()});
     return recipe;
 }
@@ -108,8 +121,17 @@ void SearchController::from_json(const nlohmann::json& json) {
 
 void SearchController::take_document() {
     last_.forget();
-    reach_key_ = {};
+    looked_from_.clear();
+    wanted_vote_.reset();
+    arriving_ = std::make_shared<ArrivingViews>();
     choice_.reset();
+    reach_key_ = {};
+    reach_ = {};
+    labelled_by_hand_ = attention_corrected_ = false;
+    last_estimate_ = {};
+    costs_.forget_estimate();
+    if (!std::exchange(words_wait_, false)) set_request(without_words(request_));
+    follow_document();
 }
 
 std::shared_ptr<EditJob> SearchController::fitting_job() const {
@@ -122,6 +144,7 @@ void SearchController::begin_edit() {
     const bool fits = fitting_job() != nullptr;
     if (last_.job() && !fits) request_.excluded_views.clear();  // they were views of another search
     if (!fitting_job()) looked_from_ = view_.direction();
+    if (fits) last_.set_step(workspace_.document.revision());  // an undone search counts again
 }
 
 std::shared_ptr<MeasuredRun> SearchController::begin_run() {
@@ -136,7 +159,7 @@ SearchGround SearchController::ground(const EditRecipe& recipe) const {
 }
 
 template <> void SearchController::on(const command::Locate& locate) {
-    if (!workspace_.require_scene() || workspace_.jobs->works()) return;
+    if (!workspace_.require_scene() || workspace_.jobs->occupied()) return;
     if (workspace_.results) return workspace_.notices.toast("Apply or discard the edit first.");
     const auto run = begin_run();
     request_.excluded_views.clear();  // of the search before
@@ -174,7 +197,7 @@ void SearchController::take_found(const std::shared_ptr<EditJob>& job, std::vect
                                   EditRecipe recipe, bool relabel) {
     last_.remember(job, recipe);
     take_located(job, std::move(attention));
-    if (!job->found()) workspace_.notices.report(problem_of(*job));
+    if (!job->found()) workspace_.notices.report_of_step(problem_of(*job));
     else if (relabel) label_located(*job, {}, {});
 }
 
@@ -183,6 +206,7 @@ void SearchController::take_located(const std::shared_ptr<EditJob>& job, std::ve
     arriving_->take(arrived);  // all of them are in what the job holds
     last_.take_attention(job->scene().gaussians, std::move(attention));
     last_.show_evidence(*job);
+    last_.set_step(workspace_.document.revision());
     ++workspace_.content;
 }
 
@@ -197,6 +221,7 @@ void SearchController::label_located(const EditJob& job, const std::string& step
     if (!edits) view_.tint(true);  // where it landed is to be seen
     document.apply(step.empty() ? fmt::format("Locate \"{}\"", label.found_for) : step, std::move(state),
                    merge_key);
+    if (step.empty()) last_.set_step(document.revision());
     if (merge_key.empty() && !edits)
         workspace_.toast_step(fmt::format("\"{}\": {} splats are labelled.", label.name,
                                           ui::count_text(count_labelled(label))));
@@ -204,7 +229,7 @@ void SearchController::label_located(const EditJob& job, const std::string& step
 
 template <> void SearchController::on(const command::LabelAnyway&) {
     const auto job = last_.job();
-    if (!job || workspace_.jobs->works() || workspace_.results || job->found()) return;
+    if (!job || workspace_.jobs->occupied() || workspace_.results || job->found()) return;
     auto attention = std::make_shared<std::vector<float>>();
     auto work = [job, attention](const JobControl& control) {
         job->set_control(control);
@@ -243,7 +268,7 @@ template <> void SearchController::on(const command::LeaveOutView& one) {
 
 /// Tells the last search what its views are to vote with; values that come while it works replace each other.
 void SearchController::vote_if_wanted() {
-    if (!wanted_vote_ || workspace_.jobs->works() || workspace_.results) return;  // taken up by refresh()
+    if (!wanted_vote_ || workspace_.jobs->occupied() || workspace_.results) return;  // taken up by refresh()
     const Vote wanted = *std::exchange(wanted_vote_, std::nullopt);
     const auto job = last_.job();
     if (!job || !last_.of(workspace_.document.state().current) || same_vote(wanted.with, last_.voted_with()))
@@ -261,7 +286,7 @@ void SearchController::end_vote(const std::shared_ptr<EditJob>& job, const Vote&
     if (error != nullptr) return workspace_.report_end(*error);
     last_.show_evidence(*job);
     ++workspace_.content;
-    if (!job->found()) return workspace_.notices.report(problem_of(*job));
+    if (!job->found()) return workspace_.notices.report_of_step(problem_of(*job));
     if (!vote.step.empty()) label_located(*job, vote.step, vote.merge_key);
 }
 
@@ -281,13 +306,24 @@ void SearchController::travel(const std::function<void()>& move) {
 
 // Label or search
 
-bool SearchController::label_drives_edit() const {
-    const NamedLabel* label = workspace_.active_label();
-    return label != nullptr && label_says(*label, request_, models_.list().known_words(), choice_);
+const NamedLabel* SearchController::scope() const {
+    if (workspace_.document.empty()) return nullptr;
+    const auto& state = workspace_.document.state();
+    const auto index = scope_label(state, request_, models_.list().known_words(), choice_);
+    return index ? &state.labels[*index] : nullptr;
+}
+
+void SearchController::show_scope() {
+    const NamedLabel* label = scope();
+    if (label == nullptr || label == workspace_.active_label()) return;
+    DocumentState next = workspace_.document.state();
+    next.active_label = static_cast<int>(label - workspace_.document.state().labels.data());
+    workspace_.document.apply("Choose label", std::move(next), "choose-label");
 }
 
 void SearchController::set_reach(bool by_label) {
-    if (const NamedLabel* label = workspace_.active_label())
+    const NamedLabel* used = by_label ? nullptr : scope();
+    if (const NamedLabel* label = used != nullptr ? used : workspace_.active_label())
         choice_ = ReachChoice{by_label, label->name, language::normalised_prompt(request_.source)};
 }
 
@@ -298,7 +334,7 @@ void SearchController::choose_label_by_hand() {
 }
 
 void SearchController::choose_for_source() {
-    if (choice_) choice_->source = language::normalised_prompt(request_.source);
+    if (choice_ && choice_->source.empty()) choice_->source = language::normalised_prompt(request_.source);
 }
 
 void SearchController::rename_label(const std::string& from, const std::string& to) {
@@ -309,7 +345,7 @@ void SearchController::rename_label(const std::string& from, const std::string& 
 void SearchController::refresh_reach() {
     ContentHash hash;
     hash.numbers(workspace_.document.revision(), last_.number(), choice_.has_value());
-    hash.texts({request_.source, request_.target, models_.path()});
+    hash.texts({request_.source, request_.target, request_.prompt, request_.mode, models_.path()});
     if (choice_) {
         hash.numbers(choice_->by_label);
         hash.texts({choice_->label, choice_->source});
@@ -321,10 +357,15 @@ void SearchController::refresh_reach() {
                            corrected_after_search(workspace_.document.state().labels, {last_.word(), source});
     reach_ = {};
     labelled_by_hand_ = false;
-    const NamedLabel* label = workspace_.active_label();
+    reach_.present = present_already(workspace_.document.state(), recipe().request, read_target());
+    const NamedLabel *active = workspace_.active_label(), *used = scope();
+    const NamedLabel* label = used != nullptr ? used : active;
     if (label == nullptr || count_labelled(*label) == 0) return;
-    reach_ = {label->name, count_labelled(*label), label_drives_edit(),
-              !label->found_for.empty() && corrected_by_hand(*label)};
+    reach_.label = label->name;
+    reach_.splats = count_labelled(*label);
+    reach_.by_label = used != nullptr;
+    reach_.corrected = !label->found_for.empty() && corrected_by_hand(*label);
+    if (used != nullptr && active != nullptr && active != used) reach_.shown = active->name;
     labelled_by_hand_ = reach_.by_label && stands_alone(*label, request_, models_.list().known_words());
 }
 

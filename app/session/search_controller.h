@@ -48,7 +48,8 @@ public:
     void follow_document();
 
     const edit::EditRequest& request() const { return request_; }
-    void set_request(const edit::EditRequest& request);
+    /// `waits`: the words are those of a scene that will be opened, and stay when it is.
+    void set_request(const edit::EditRequest& request, bool waits = false);
     void set_seed(std::uint64_t seed) { request_.seed = seed; }
     void set_label_threshold(double threshold) {
         request_.label_threshold = threshold;
@@ -73,14 +74,16 @@ public:
                     bool relabel);
     const LastSearch& last() const { return last_; }
 
-    /// True when the active label, and not a search, says what an edit may change.
-    bool label_drives_edit() const;
+    /// The label that says what an edit may change; null = a search does.
+    const NamedLabel* scope() const;
+    /// Makes that label the active one, which is shown and corrected.
+    void show_scope();
     /// Who makes, corrects or picks a label by hand means it to be edited.
     void choose_label_by_hand();
     void rename_label(const std::string& from, const std::string& to);
     /// Nobody has chosen the label that is active now.
     void forget_choice() { choice_.reset(); }
-    /// The choice is of the source as it is now, too.
+    /// A choice of any source is of the source as it is now.
     void choose_for_source();
     /// Moves through the undo steps; what labels were found with goes with them, into request and evidence.
     void travel(const std::function<void()>& move);
@@ -114,6 +117,7 @@ private:
     edit::EditRequest request_;
     std::vector<std::string> said_words_;  // by the edits applied: no news any more
     std::size_t words_read_ = 0;           // of the sentence, by the text encoder; 0 = all, or not known
+    bool words_wait_ = true;               // for a scene that is not open yet
     LastSearch last_;
     std::string looked_from_;  // where the camera was turned to when it began; empty = nowhere
     std::optional<Vote> wanted_vote_;

@@ -8,6 +8,7 @@
 
 #include "app/engine_names.h"
 #include "app/session/shown_picture.h"
+#include "app/session/state/json_values.h"
 #include "engine/base/clock.h"
 #include "engine/edit/placement/thing_bounds.h"
 #include "engine/io/cameras/camera_json.h"
@@ -34,6 +35,11 @@ void ViewController::take_document() {
     compare_as_usual();
     wanted_ = {};
     pictures_.take_document();
+    comparison_ = ui::Comparison::None;
+    settings_ = for_another_scene(settings_);
+    tint_before_.reset();
+    drawn_ = {};
+    shown_ = {};
     up_shown_ = state().info.up;
     orbit_ = scene_orbit(Scene{state().base, state().info, {}}, RenderParameters{});
     framing_ = framing_bounds(state().current);

@@ -199,6 +199,11 @@ private:
         state["scene"] = model.scene_path;
         state["project"] = model.project_path;
         state["unsaved"] = model.unsaved;
+        state["saved_at"] = model.saved_at;
+        state["embeds"] = model.embeds;
+        state["lost_scene"] = model.lost.scene;
+        state["export_scene"] = model.exports.scene_path;
+        state["question"] = model.question.title;
         state["labelled"] = model.labelled;
         state["splats"] = app_.document().empty() ? 0 : app_.document().state().current.size();
         state["stack"] = app_.document().empty() ? 0 : app_.document().state().stack.size();

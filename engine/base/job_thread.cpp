@@ -113,6 +113,11 @@ JobStatus JobThread::status() const {
     return status;
 }
 
+void JobThread::forget() {
+    const std::lock_guard lock(mutex_);
+    if (!status_.running && !*handing_over_) status_ = {};
+}
+
 void JobThread::report(std::string_view stage, int step, int total) {
     std::unique_lock lock(mutex_);
     if (stage != status_.stage || step < status_.step) {
@@ -166,7 +171,7 @@ void JobThread::run(Job job, const std::stop_token& stop) {
         const double seconds = std::chrono::duration<double>(Clock::now() - start_ - paused_time_).count();
         status_.running = status_.paused = false;
         status_.seconds = seconds;
-        if (!failure) status_.outcome = fmt::format("done in {:.1f} s", seconds);
+        if (!failure) status_.outcome = "done";
         else if (failure->code() == ErrorCode::Cancelled) status_.outcome = "stopped";
         else status_.outcome = "failed", status_.error = failure->what();
         *handing_over_ = true;

@@ -62,6 +62,8 @@ public:
     /// True until the job's result has been handed to the main thread, which ends in MainQueue::run().
     bool running() const;
     JobStatus status() const;
+    /// Empties the status of the last job, unless one is running.
+    void forget();
 
 private:
     using Clock = std::chrono::steady_clock;

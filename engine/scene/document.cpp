@@ -387,6 +387,13 @@ std::uint64_t Document::revision_at(std::size_t position) const {
     return states_[position].revision;
 }
 
+bool Document::includes(std::uint64_t revision) const {
+    if (states_.empty()) return false;
+    const auto end = states_.begin() + static_cast<std::ptrdiff_t>(position_) + 1;
+    return revision < states_.front().revision ||
+           std::any_of(states_.begin(), end, [&](const Step& step) { return step.revision == revision; });
+}
+
 std::size_t Document::undo_bytes() const {
     Ledger all, current;
     for (const Step& step : states_) all.add(step.state);

@@ -154,6 +154,9 @@ public:
     /// Number of the current state, new for every applied one. Work is unsaved when it differs from the
     /// number at the last save. Undo back to the saved state restores the number.
     std::uint64_t revision() const { return revision_; }
+    /// True when the step with that number is not undone: it led to the current state, or to one before it.
+    /// Steps older than all that are kept count as done.
+    bool includes(std::uint64_t revision) const;
 
 private:
     struct Step {

@@ -272,6 +272,16 @@ std::vector<std::uint8_t> rows_in_area(const GaussianSet& set, const Camera& cam
     return rows;
 }
 
+std::string free_label_name(const std::vector<NamedLabel>& labels, const std::string& name) {
+    const auto taken = [&](const std::string& wanted) {
+        return std::any_of(labels.begin(), labels.end(),
+                           [&](const NamedLabel& label) { return label.name == wanted; });
+    };
+    std::string free = name;
+    for (int number = 2; taken(free); ++number) free = name + " " + std::to_string(number);
+    return free;
+}
+
 NamedLabel empty_label(std::string name, std::size_t count) {
     NamedLabel label;
     label.name = std::move(name);

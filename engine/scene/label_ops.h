@@ -41,6 +41,9 @@ std::vector<std::uint8_t> rows_in_area(const GaussianSet& set, const Camera& cam
 
 enum class LabelOperation { Add, Remove, Intersect, Replace };
 
+/// The name, or the first of "name 2", "name 3", ... that no label has.
+std::string free_label_name(const std::vector<NamedLabel>& labels, const std::string& name);
+
 /// Empty label of `count` rows.
 NamedLabel empty_label(std::string name, std::size_t count);
 

@@ -55,7 +55,7 @@ DocumentState with_edit(const DocumentState& before, EditNode node, const std::s
         added[row] = ((*state.row_ids)[row] >> EditIdShift) == id ? 1 : 0;
     if (std::find(added.begin(), added.end(), std::uint8_t{1}) == added.end()) return state;
     if (beside || state.active_label < 0) {
-        state.labels.push_back(empty_label(target, added.size()));
+        state.labels.push_back(empty_label(free_label_name(state.labels, target), added.size()));
         state.active_label = static_cast<int>(state.labels.size()) - 1;
     }
     auto& label = state.labels[static_cast<std::size_t>(state.active_label)];

@@ -21,7 +21,8 @@ DocumentState with_adjustment(const DocumentState& before, std::span<const std::
                               const ColourAdjustment& adjustment, std::uint64_t id);
 
 /// The state with `node` (with its delta) on top of the stack. Added rows join a label, so that they can be
-/// edited further. A new label named `target` takes them if the edit put something beside the scene
+/// edited further. A new label named `target` (with a number where that is taken) takes them if the edit put
+/// something beside the scene
 /// (`beside`) or no label is active. Otherwise the active one does.
 DocumentState with_edit(const DocumentState& state, EditNode node, const std::string& target, bool beside);
 

@@ -59,6 +59,16 @@ struct DiscardRecovery {
 struct PostponeRecovery {
     std::string project;
 };
+/// Opens the project whose scene was not there, with that file as its scene.
+struct FindScene {
+    std::filesystem::path path;
+};
+/// Leaves that project alone.
+struct ForgetLostScene {};
+/// Puts the scene into the project and saves it, or leaves it out of the next save.
+struct EmbedScene {
+    bool on = true;
+};
 struct SetUpAxis {
     std::string up;  // "y", "-y", "auto", ...
 };
@@ -192,6 +202,11 @@ struct SetEditStrength {
     double strength = 1;
     bool drag_ends = true;
 };
+/// Puts another result of an applied edit in its place.
+struct ExchangeVariation {
+    std::uint64_t id = 0;
+    std::size_t index = 0;  // of VariationsView::results
+};
 struct DeleteEdit {
     std::uint64_t id = 0;
 };
@@ -311,6 +326,7 @@ struct Quit {};
 
 using FileCommand = std::variant<command::Open, command::OpenSample, command::SaveProject, command::LeaveEdit,
                                  command::Recover, command::DiscardRecovery, command::PostponeRecovery,
+                                 command::FindScene, command::ForgetLostScene, command::EmbedScene,
                                  command::SetUpAxis, command::RepairScene, command::CancelFileJob>;
 using SearchCommand =
     std::variant<command::SetRequest, command::Locate, command::LabelAnyway, command::SetAttentionThreshold,
@@ -325,7 +341,8 @@ using LabelCommand =
                  command::InvertLabel, command::ClearLabel, command::DeleteLabelledSplats,
                  command::AdjustColours, command::PickRows, command::DropPicked, command::UsePicked,
                  command::Undo, command::Redo, command::GoTo, command::SetEditEnabled,
-                 command::SetEditStrength, command::DeleteEdit, command::MoveEdit>;
+                 command::SetEditStrength, command::ExchangeVariation, command::DeleteEdit,
+                 command::MoveEdit>;
 using ViewCommand =
     std::variant<command::HideLabel, command::IsolateLabel, command::ShowHidden, command::SetCamera,
                  command::SetViewSettings, command::SetComparison, command::CompareWith, command::LookThrough,

@@ -10,6 +10,7 @@
 #include "engine/io/cameras/cameras.h"
 #include "engine/io/formats/scene_formats.h"
 #include "engine/scene/framing.h"
+#include "engine/scene/label_ops.h"
 #include "engine/scene/viewpoints.h"
 #include "ui/sentence.h"
 #include "ui/state.h"
@@ -204,10 +205,42 @@ void run_locate(Context& context) {
     show_panel(context.state, PanelId::Attention);
 }
 
+namespace {
+
+/// Asks whether what the scene has already is changed, or one more is added.
+void ask_second(Context& context, const std::string& thing) {
+    auto& commands = context.commands;
+    auto& question = context.state.question;
+    const edit::EditRequest change = as_change(context.request, thing);
+    question.title = fmt::format("\"{}\" is there already", thing);
+    question.text = fmt::format(
+        "\"{}\" adds one more. To change the one that is there, the edit has to be about the {} alone.",
+        context.request.prompt, thing);
+    question.answers = {{fmt::format("Change the {}", thing), false,
+                         [&commands, state = &context.state, change] {
+                             commands.push(command::SetRequest{change});
+                             if (!change.target.empty()) commands.push(command::Edit{});
+                             show_panel(*state, change.target.empty() ? PanelId::Prompt : PanelId::Progress);
+                             if (change.target.empty())
+                                 state->focus = "prompt.sentence";  // nothing is said of it yet
+                         }},
+                        {"Add another", false,
+                         [&commands, state = &context.state] {
+                             commands.push(command::Edit{});
+                             show_panel(*state, PanelId::Progress);
+                         }},
+                        {"Cancel", false, {}}};
+    question.pending = true;
+}
+
+}  // namespace
+
 void run_edit(Context& context) {
     if (!why_not_edit(context).empty()) return;
+    const auto& present = context.model.reach.present;
     if (!context.state.prompt.seed_locked) roll_seed(context);
     send_request(context);
+    if (!present.empty()) return ask_second(context, present);
     context.emit(command::Edit{});
     show_panel(context.state, PanelId::Progress);
 }
@@ -273,6 +306,26 @@ void ask_open(Context& context) {
          .answer = [state](const std::filesystem::path& path) { state->asked.open = {utf8_of(path)}; }});
 }
 
+void ask_lost_scene(Context& context) {
+    auto& commands = context.commands;
+    const auto& lost = context.model.lost;
+    const auto folder = path_of(lost.project).parent_path();
+    const auto find = [&commands](const std::filesystem::path& path) {
+        commands.push(command::FindScene{path});
+    };
+    auto* state = &context.state;
+    context.state.files.ask(
+        {.title = fmt::format("Where is {} now?", utf8_of(path_of(lost.scene).filename())),
+         .confirm = "This is it",
+         .extensions = scene_extensions(),
+         .saves = false,
+         .folder_allowed = true,
+         .start = utf8_of(folder),
+         .answer = [state, find](const std::filesystem::path& path) {
+             state->asked.leave = {"Another project is to be opened.", [find, path] { find(path); }};
+         }});
+}
+
 void recover(Context& context, const std::string& file) {
     auto& commands = context.commands;
     with_unsaved_work(context, "The work of another session is to be opened.",
@@ -334,11 +387,7 @@ void quit(Context& context) {
 void add_label(Context& context) {
     if (!context.scene_open()) return;
     const auto& labels = context.document().labels;
-    std::string name = "label";
-    for (int number = 2; std::any_of(labels.begin(), labels.end(),
-                                     [&name](const NamedLabel& label) { return label.name == name; });
-         ++number)
-        name = fmt::format("label {}", number);
+    const std::string name = free_label_name(labels, "label");
     context.emit(command::AddLabel{name});
     context.state.labels.renamed = static_cast<int>(labels.size());
     context.state.labels.name = name;

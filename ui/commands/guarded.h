@@ -43,6 +43,8 @@ void run_edit(Context& context);
 void cancel_job(Context& context);
 
 void ask_open(Context& context);
+/// Asks where the scene of the project is that could not be opened.
+void ask_lost_scene(Context& context);
 /// Opens. Asks first when there is unsaved work.
 void open_path(Context& context, const std::string& path);
 /// Opens the path; of several, asks which.

@@ -251,8 +251,40 @@ std::string titles_that_keep(bool io::SceneFormat::*keeps) {
     return in_words(titles, "or");
 }
 
+/// "PLY (.ply)"
+std::string format_name(const io::SceneFormat& format) {
+    const auto& ending = format.extensions.front();
+    return format.title == ending ? format.title : fmt::format("{} ({})", format.title, ending);
+}
+
+/// Menu of the formats, each with what it keeps. The file's name follows.
+void draw_formats(Context& context) {
+    auto& path = context.exports.scene_path;
+    const io::SceneFormat* now = format_written_to(path_of(path));
+    row_label(context, "Format", "The file's name follows: its ending says the format.");
+    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
+    const bool open = ImGui::BeginCombo("##export.format", now != nullptr ? format_name(*now).c_str() : "",
+                                        ImGuiComboFlags_HeightLargest);
+    note(context, "export.format");
+    for (const io::SceneFormat& format : scene_formats()) {
+        if (!open || !format.writable()) continue;
+        const bool chosen = ImGui::Selectable(fmt::format("{}##{}", format_name(format), format.name).c_str(),
+                                              &format == now);
+        note(context, fmt::format("export.format.{}", format.name));
+        ImGui::TextDisabled("    %s", kept_text(format).c_str());
+        if (!chosen || &format == now) continue;
+        path = utf8_of(with_ending(path_of(path), format));
+        context.exports_changed = true;
+    }
+    if (open) ImGui::EndCombo();
+    if (now == nullptr) return;
+    dim_text(kept_text(*now));
+    note(context, "export.kept");
+}
+
 void draw_scene_file(Context& context) {
     heading(context, "Scene");
+    draw_formats(context);
     path_row(context, "export.scene_path", &ExportSettings::scene_path, writable_extensions());
     const io::SceneFormat* format = format_written_to(path_of(context.exports.scene_path));
     const bool exact = format != nullptr && format->exact;
@@ -269,9 +301,7 @@ void draw_scene_file(Context& context) {
             fmt::format("{}, {} splats", context.model.result_waiting ? " with the result that waits" : "",
                         count_text(context.model.result_waiting ? context.model.result_splats
                                                                 : context.document().current.size()));
-    if (!exact)
-        what += fmt::format(". This format rounds values; {} keeps every bit",
-                            titles_that_keep(&io::SceneFormat::exact));
+    if (!exact) what += fmt::format(". {} keeps every bit", titles_that_keep(&io::SceneFormat::exact));
     if (context.exports.with_labels && !labels) what += "; labels are left out";
     say(why, what + ".");
     if (button(context,

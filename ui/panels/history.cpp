@@ -16,6 +16,7 @@ namespace gse::ui {
 namespace {
 
 constexpr float EditPictureEm = 5.2f;  // as high as the controls beside it
+constexpr float VariationEm = 4.5f;    // side of a variation's picture
 
 /// `where`: "outside", or in more words.
 std::string proof_text(const EditNode& edit, const char* where) {
@@ -73,6 +74,35 @@ void draw_strength(Context& context, const EditNode& edit) {
     if (changed || ends) context.emit(command::SetEditStrength{edit.id, strength, ends});
 }
 
+/// Results of the edit beside each other. A click puts one in the place of the applied one.
+void draw_variations(Context& context, std::uint64_t id) {
+    const auto& all = context.model.variations;
+    const auto kept = std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.edit == id; });
+    if (kept == all.end()) return;
+    dim_text("Its variations: click one to exchange it");
+    const float side = context.em * VariationEm, round = context.em * 0.2f;
+    for (std::size_t i = 0; i < kept->results.size(); ++i) {
+        if (i > 0) flow(side);
+        ImGui::PushID(static_cast<int>(i));
+        const ImVec2 low = ImGui::GetCursorScreenPos(), high(low.x + side, low.y + side);
+        const bool applied = i == kept->applied;
+        if (ImGui::InvisibleButton("variation", {side, side}) && !applied)
+            context.emit(command::ExchangeVariation{id, i});
+        note(context, fmt::format("history.variation.{}.{}", id, i));
+        tooltip(fmt::format("Variation {} of {}, seed {}{}", i + 1, kept->results.size(),
+                            kept->results[i].seed, applied ? ": this one is applied" : ""));
+        ImDrawList* list = ImGui::GetWindowDrawList();
+        list->AddRectFilled(low, high, palette::Sunken, round);
+        if (kept->results[i].thumbnail != nullptr)
+            list->AddImageRounded(imgui_texture(context.textures.texture(kept->results[i].thumbnail)), low,
+                                  high, {0, 0}, {1, 1}, IM_COL32_WHITE, round);
+        if (applied || ImGui::IsItemHovered() || ImGui::IsItemFocused())
+            list->AddRect(low, high, applied ? palette::Accent : palette::TextDim, round, 0,
+                          std::max(2.0f, context.em * 0.14f));
+        ImGui::PopID();
+    }
+}
+
 void draw_edit(Context& context, std::size_t place, std::size_t count) {
     const EditNode& edit = context.document().stack[place];
     ImGui::PushID(static_cast<int>(edit.id));
@@ -107,6 +137,7 @@ void draw_edit(Context& context, std::size_t place, std::size_t count) {
         ImGui::SameLine();
         dim_text(duration_text(edit.seconds));
     }
+    draw_variations(context, edit.id);
     ImGui::EndGroup();
     ImGui::PopID();
 }

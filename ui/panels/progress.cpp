@@ -7,6 +7,7 @@
 #include "ui/commands/guarded.h"
 #include "ui/panels/panels.h"
 #include "ui/state.h"
+#include "ui/status.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/plot.h"
 #include "ui/widgets/tooltips.h"
@@ -25,7 +26,7 @@ void draw_job(Context& context) {
     if (!job.error.empty()) {
         coloured_text(palette::Bad, job.error);
     } else if (!job.running) {
-        coloured_text(palette::TextDim, job.outcome);
+        coloured_text(palette::TextDim, outcome_text(job));
         return;
     }
     if (!job.running) return;

@@ -17,6 +17,7 @@
 #include "ui/panels/panels.h"
 #include "ui/sentence.h"
 #include "ui/state.h"
+#include "ui/status.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/fields.h"
 #include "ui/widgets/icons.h"
@@ -328,13 +329,16 @@ std::string reach_text(const Context& context) {
     const auto planned = as_planned(context);
     const auto word = language::normalised_prompt(planned.source.empty() ? planned.target : planned.source);
     if (!context.scene_open() || word.empty() || context.model.job.running) return {};
-    if (!reach.by_label && !context.state.prompt.source_known) return {};
+    if (!reach.by_label && !context.state.prompt.source_known)
+        return reach.label.empty() ? std::string() : fmt::format("No label is named \"{}\".", word);
     if (edit::planned_mode(planned) == edit::EditMode::Add)
         return fmt::format(
             "Adds \"{}\" where a search places it.{}", language::normalised_prompt(planned.target),
             reach.corrected ? " What was set by hand in the label does not count for that." : "");
     if (reach.by_label)
-        return fmt::format("May change: label \"{}\", {} splats.", reach.label, count_text(reach.splats));
+        return fmt::format(
+            "May change: label \"{}\", {} splats{}.", reach.label, count_text(reach.splats),
+            reach.shown.empty() ? std::string() : fmt::format("; label \"{}\" stays", reach.shown));
     return fmt::format("Will search for \"{}\" first.", word);
 }
 
@@ -564,7 +568,7 @@ void draw_result_notice(Context& context, const char* prefix) {
     begin_notice(context, fmt::format("{}.result", prefix),
                  verdict.warns ? palette::Warning : palette::Accent);
     wrapped_text(fmt::format("{} Look at it: V wipes between before and after, hold ` to flip.",
-                             verdict.stopped_at < 0 ? "The edit is done." : "The edit was stopped."));
+                             result_sentence(verdict)));
     if (verdict.warns) coloured_text(palette::Warning, verdict.text);
     if (button(context, {.name = fmt::format("{}.apply", prefix),
                          .text = verdict.warns ? "Apply anyway" : "Apply",

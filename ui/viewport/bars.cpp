@@ -8,6 +8,7 @@
 
 #include "ui/commands/guarded.h"
 #include "ui/state.h"
+#include "ui/status.h"
 #include "ui/viewport/viewport.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/icons.h"
@@ -131,11 +132,7 @@ void draw_result_bar(Context& context) {
                    true);
     const auto& model = context.model;
     const std::size_t changed = model.result_changed_outside;
-    const auto took = duration_text(model.result_seconds);
-    const auto time = model.verdict.stopped_at < 0
-                          ? fmt::format("Edit done in {}", took)
-                          : fmt::format("Stopped at step {} of {}, after {}", model.verdict.stopped_at,
-                                        model.verdict.steps, took);
+    const auto time = result_line(model);
     const auto proof =
         fmt::format("{} splat{} outside the label changed", count_text(changed), changed == 1 ? "" : "s");
     const float words =
@@ -257,6 +254,28 @@ void draw_up_bar(Context& context, ImVec2 at) {
     end_floating(context);
 }
 
+/// Note that the scene of a project is not where it was, with the way to it.
+void draw_lost_bar(Context& context, ImVec2 at) {
+    const auto& lost = context.model.lost;
+    begin_floating("lost bar", at);
+    bullet_dot(palette::Warning);
+    ImGui::TextUnformatted(
+        fmt::format("{} cannot be opened: its scene is not there any more.", lost.name).c_str());
+    note(context, "lost.note");
+    dim_text(shortened(lost.scene, context.em * 30));
+    tooltip(lost.scene);
+    if (button(context, {.name = "lost.find",
+                         .text = "Find it...",
+                         .why_off = context.model.file_job.running ? "A file is being read" : "",
+                         .tooltip = "Choose the file where it is now. The edits are kept.",
+                         .look = Look::Primary}))
+        ask_lost_scene(context);
+    ImGui::SameLine();
+    if (button(context, {.name = "lost.close", .text = "Close", .tooltip = "The project stays as it is"}))
+        context.emit(command::ForgetLostScene{});
+    end_floating(context);
+}
+
 void draw_thumbnail(Context& context, const Image& picture, TextureId texture) {
     const float width = context.em * PictureEm;
     const float height = std::min(
@@ -303,6 +322,7 @@ void draw_bars(Context& context) {
     const float top = state.low.y + context.em * 2.6f, middle = (state.low.x + state.high.x) * 0.5f;
     state.bars_bottom = state.low.y;
     state.foot_low = state.high;
+    if (!context.model.lost.project.empty()) draw_lost_bar(context, {middle, top});
     if (!context.scene_open()) return;
     if (context.model.result_waiting) draw_result_bar(context);
     if (context.model.hidden > 0) draw_hidden_bar(context, {middle, std::max(top, state.bars_bottom)});

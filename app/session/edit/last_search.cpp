@@ -26,17 +26,9 @@ void LastSearch::remember(std::shared_ptr<EditJob> job, const EditRecipe& recipe
 }
 
 void LastSearch::forget() {
-    job_.reset();
-    splats_ = {};
-    words_ = {};
-    target_read_ = false;
-    tuning_key_.clear();
-    key_.clear();
-    tuned_.reset();
-    views_.clear();
-    const auto searches = std::exchange(outcome_, {}).number;
+    const auto searches = outcome_.number;
+    *this = {};
     outcome_.number = searches;
-    attention_.reset();
 }
 
 void LastSearch::take_attention(const GaussianSet& splats, std::vector<float> attention) {
@@ -88,7 +80,7 @@ std::optional<neural::TunedModel> LastSearch::tuning(const EditRecipe& recipe) c
 }
 
 RowValues LastSearch::attention_of(const GaussianSet& splats) const {
-    return attention_ && attention_of_.shares_all_with(splats) ? attention_ : nullptr;
+    return attention_ && !undone_ && attention_of_.shares_all_with(splats) ? attention_ : nullptr;
 }
 
 void LastSearch::leave_out(std::size_t view, bool out) {
@@ -97,12 +89,14 @@ void LastSearch::leave_out(std::size_t view, bool out) {
 }
 
 void LastSearch::show(ui::SearchPart& model) const {
-    model.attention = views_;
-    model.attention_word = word_;
-    model.attention_mode = mode_;
-    model.attention_threshold = threshold_;
+    model.attention = views();
     model.attention_arriving = arriving_;
-    model.search = outcome_;
+    const bool hidden = undone_ && !arriving_;
+    model.attention_threshold = hidden ? LastSearch().threshold_ : threshold_;
+    model.attention_word = hidden ? std::string() : word_;
+    model.attention_mode = hidden ? std::string() : mode_;
+    model.search = hidden ? ui::SearchView{} : outcome_;
+    model.search.number = outcome_.number;
 }
 
 }  // namespace gse::app

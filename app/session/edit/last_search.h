@@ -27,6 +27,11 @@ public:
     /// True when the viewport shows something else now.
     bool take_arriving(ArrivingViews& arriving, bool working);
     void forget();
+    /// The step of undo that it led to, or came after.
+    std::uint64_t step() const { return step_; }
+    void set_step(std::uint64_t step) { step_ = step, undone_ = false; }
+    /// Hides the evidence of a search that is undone; redone, it is shown again.
+    void set_undone(bool undone) { undone_ = undone; }
 
     const std::shared_ptr<EditJob>& job() const { return job_; }
     const edit::EditWords& words() const { return words_; }
@@ -39,7 +44,8 @@ public:
     const edit::LabelThresholds& voted_with() const { return voted_with_; }
     void set_voted_with(const edit::LabelThresholds& with) { voted_with_ = with; }
     RowValues attention_of(const GaussianSet& splats) const;
-    const std::vector<ui::AttentionView>& views() const { return views_; }
+    /// None of an undone search.
+    const std::vector<ui::AttentionView>& views() const { return undone_ && !arriving_ ? none_ : views_; }
     const std::string& word() const { return word_; }
     bool arriving() const { return arriving_; }
     std::uint64_t number() const { return outcome_.number; }
@@ -59,10 +65,12 @@ private:
     GaussianSet splats_;
     edit::LabelThresholds voted_with_;
     // Evidence
-    std::vector<ui::AttentionView> views_;
+    std::vector<ui::AttentionView> views_, none_;
     std::string word_, mode_;  // "bear", "modify: ..."
     double threshold_ = 0.5;
     bool arriving_ = false;  // a search is under way: views come in as they are attended
+    bool undone_ = false;
+    std::uint64_t step_ = 0;
     ui::SearchView outcome_;
     RowValues attention_;
     GaussianSet attention_of_;

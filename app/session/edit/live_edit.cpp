@@ -129,7 +129,7 @@ void run_located(MeasuredRun& run, const EditStart& start, Teller& teller, EditR
     const bool adds = job.located().mode == edit::EditMode::Add;
     const auto& label = start.label;
     if (!adds && !label.empty() && label != *job.located().label.bits) job.correct_label(label);
-    if (adds && !label.empty() && label != *job.located().source_label.bits)
+    if (adds && start.corrected && label != *job.located().source_label.bits)
         log::warning("{}", AddsElsewhere);  // a notice, too
     teller.tell(edit_news::Located{adds, renamed_by(job)});
     if (!run.attention.empty()) teller.tell(edit_news::Found{run.job, run.attention, label.empty()});

@@ -22,11 +22,18 @@ std::vector<std::filesystem::path> files_of_folder(const std::filesystem::path& 
     return files;
 }
 
-void read_project(OpenedWork& opened) {
+/// False where the scene is not there any more.
+bool read_project(OpenedWork& opened, const std::filesystem::path& scene) {
     opened.project = true;
-    opened.data = gse::load_project(opened.path);
+    if (scene.empty()) {
+        const ProjectSummary summary = read_project_summary(opened.path);
+        if (!summary.scene_found) return opened.lost = summary.scene, false;
+    }
+    opened.data = gse::load_project(opened.path, scene);
+    opened.found_elsewhere = !scene.empty();
     opened.state = opened.data.state;
     opened.notes = opened.data.warnings;
+    return true;
 }
 
 void read_scene(OpenedWork& opened, const ReadingOptions& options) {
@@ -37,10 +44,27 @@ void read_scene(OpenedWork& opened, const ReadingOptions& options) {
     opened.state = initial_state(scene, std::move(views));
 }
 
+OpenedWork recover_work(const WorkToOpen& work, const JobControl& control) {
+    OpenedWork opened;
+    opened.path = work.path;
+    control.report("recovering", 0, 0);
+    for (const auto& found : find_recoverable())
+        if (found.file == work.path) opened.recovered = found;
+    if (!opened.recovered)
+        throw Error(ErrorCode::NotFound, "the unsaved work is not there any more",
+                    "it was recovered or discarded elsewhere", work.path);
+    opened.project_path = opened.recovered->project;
+    if (!read_project(opened, work.scene)) return opened;
+    opened.pending = take_back_edit(opened.state, opened.data.jobs);
+    opened.statistics = compute_statistics(opened.state.current);
+    return opened;
+}
+
 }  // namespace
 
-OpenedWork open_work(const std::filesystem::path& path, const ReadingOptions& options,
-                     const JobControl& control) {
+OpenedWork open_work(const WorkToOpen& work, const JobControl& control) {
+    if (work.recovers) return recover_work(work, control);
+    const auto& path = work.path;
     OpenedWork opened;
     opened.path = path;
     control.report("reading", 0, 0);
@@ -48,33 +72,17 @@ OpenedWork open_work(const std::filesystem::path& path, const ReadingOptions& op
         throw Error(ErrorCode::NotFound, "there is no such file", "check the name", path);
     if (std::filesystem::is_regular_file(path) && is_project_file(path)) {
         opened.project_path = path;
-        read_project(opened);
+        if (!read_project(opened, work.scene)) return opened;
     } else {
         if (std::filesystem::is_directory(path)) opened.choices = files_of_folder(path);
         if (opened.choices.size() > 1) return opened;
         if (opened.choices.size() == 1) opened.path = opened.choices.front();
-        read_scene(opened, options);
+        read_scene(opened, work.options);
     }
     control.report("looking", 0, 0);
     opened.statistics = compute_statistics(opened.state.current);
     if (auto note = surroundings_note(opened.statistics); !note.empty() && !opened.project)
         opened.notes.push_back(std::move(note));
-    return opened;
-}
-
-OpenedWork recover_work(const std::filesystem::path& file, const JobControl& control) {
-    OpenedWork opened;
-    opened.path = file;
-    control.report("recovering", 0, 0);
-    for (const auto& found : find_recoverable())
-        if (found.file == file) opened.recovered = found;
-    if (!opened.recovered)
-        throw Error(ErrorCode::NotFound, "the unsaved work is not there any more",
-                    "it was recovered or discarded elsewhere", file);
-    opened.project_path = opened.recovered->project;
-    read_project(opened);
-    opened.pending = take_back_edit(opened.state, opened.data.jobs);
-    opened.statistics = compute_statistics(opened.state.current);
     return opened;
 }
 

@@ -27,12 +27,19 @@ struct OpenedWork {
     ProjectData data;
     SceneStatistics statistics;
     std::vector<std::string> notes;
+    bool found_elsewhere = false;  // the artist said where the scene is: the project does not know it yet
+    std::filesystem::path lost;    // scene of the project that is not there any more: nothing was read
 };
 
-/// Reads a scene, a project or the one scene of a folder. Throws Error.
-OpenedWork open_work(const std::filesystem::path& path, const ReadingOptions& options,
-                     const JobControl& control);
-/// Reads the autosave in `file`. Throws Error.
-OpenedWork recover_work(const std::filesystem::path& file, const JobControl& control);
+/// File to read, and how.
+struct WorkToOpen {
+    std::filesystem::path path;   // scene, project or folder; the autosave of recovered work
+    std::filesystem::path scene;  // of the project, where it moved; empty = where the project says
+    bool recovers = false;
+    ReadingOptions options = {};
+};
+
+/// Reads a scene, a project, the one scene of a folder, or an autosave. Throws Error.
+OpenedWork open_work(const WorkToOpen& work, const JobControl& control);
 
 }  // namespace gse::app

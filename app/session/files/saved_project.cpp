@@ -13,6 +13,7 @@ namespace gse::app {
 
 bool SavedProject::begin(const std::filesystem::path& file, std::optional<Recovery::Moment> holds) {
     holds_ = holds;
+    saved_at_.clear();
     return follow(file);
 }
 

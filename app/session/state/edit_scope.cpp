@@ -90,4 +90,98 @@ bool label_says(const NamedLabel& label, const edit::EditRequest& request,
     return made_by_hand(label) && !language::vocabulary_contains(known, source.empty() ? target : source);
 }
 
+bool is_addition(const NamedLabel& label, const std::vector<RowId>& row_ids) {
+    if (!label.bits || label.bits->size() != row_ids.size()) return false;
+    bool any = false;
+    for (std::size_t row = 0; row < row_ids.size(); ++row) {
+        if ((*label.bits)[row] == 0) continue;
+        if (row_ids[row] >> EditIdShift == 0) return false;
+        any = true;
+    }
+    return any;
+}
+
+namespace {
+
+/// The artist's word about a label for this source; nothing = none was said.
+std::optional<bool> chosen(const NamedLabel& label, const std::string& source,
+                           const std::optional<ReachChoice>& choice, bool any_source) {
+    if (!choice || choice->label != label.name) return std::nullopt;
+    const bool fits = choice->source.empty() ? any_source : choice->source == source;
+    return fits ? std::optional(choice->by_label) : std::nullopt;
+}
+
+/// Tells whether the active label stands for a thing that is neither its own nor another label's.
+bool stands_in(const NamedLabel& label, const DocumentState& state, const std::string& source,
+               const std::optional<ReachChoice>& choice) {
+    const bool of_another = choice && choice->label == label.name && !choice->source.empty() &&
+                            !source.empty() && choice->source != source;
+    return !of_another && !(state.row_ids && is_addition(label, *state.row_ids));
+}
+
+}  // namespace
+
+std::optional<std::size_t> scope_label(const DocumentState& state, const edit::EditRequest& request,
+                                       const std::vector<std::string>& known,
+                                       const std::optional<ReachChoice>& choice) {
+    const auto source = language::normalised_prompt(request.source),
+               target = language::normalised_prompt(request.target);
+    const auto& labels = state.labels;
+    const auto active = static_cast<std::size_t>(std::max(state.active_label, 0));
+    const bool some = state.active_label >= 0 && active < labels.size() && count_labelled(labels[active]) > 0;
+    if (some) {
+        const auto& label = labels[active];
+        if (const auto said = chosen(label, source, choice, true))
+            return *said ? std::optional(active) : std::nullopt;
+        if (is_label_of(label, source) || is_label_of(label, target)) return active;
+    }
+    for (std::size_t index = 0; index < labels.size(); ++index) {
+        const auto& label = labels[index];
+        if ((some && index == active) || count_labelled(label) == 0) continue;
+        const auto said = chosen(label, source, choice, false);
+        if (said.value_or(is_label_of(label, source.empty() ? target : source))) return index;
+    }
+    return some && stands_in(labels[active], state, source, choice) &&
+                   label_says(labels[active], request, known, {})
+               ? std::optional(active)
+               : std::nullopt;
+}
+
+namespace {
+
+/// The thing that a request adds, without what is said of it: "hat" of "a red hat". Empty for other requests.
+std::string added_thing(const edit::EditRequest& request) {
+    if (edit::planned_mode(request) != edit::EditMode::Add) return {};
+    const auto words = edit::unchecked_sentence(request);
+    for (const auto& phrase : words.sentence().noun_phrases()) {
+        const auto says = [&](const std::string& word) { return language::has_phrase(words.target(), word); };
+        if (says(phrase.head) || std::any_of(phrase.attributes.begin(), phrase.attributes.end(), says))
+            return phrase.head;
+    }
+    return {};
+}
+
+bool added_by(const EditNode& node, const std::string& thing) {
+    try {
+        const auto request = recorded_request(node);
+        return request && added_thing(*request) == thing;
+    } catch (const Error&) { return false; }  // of another version: what it said is not known
+}
+
+}  // namespace
+
+std::string present_already(const DocumentState& state, const edit::EditRequest& request,
+                            const std::string& read_target) {
+    const std::string thing = added_thing(request);
+    if (thing.empty()) return {};
+    if (!read_target.empty() && !language::has_phrase(read_target, thing)) return thing;
+    const bool added = std::any_of(state.stack.begin(), state.stack.end(), [&](const EditNode& node) {
+        return node.enabled && added_by(node, thing);
+    });
+    const bool labelled = std::any_of(state.labels.begin(), state.labels.end(), [&](const NamedLabel& label) {
+        return is_label_of(label, thing) && count_labelled(label) > 0;
+    });
+    return added || labelled ? thing : std::string();
+}
+
 }  // namespace gse::app

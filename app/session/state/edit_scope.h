@@ -36,6 +36,23 @@ bool is_label_of(const NamedLabel& label, const std::string& word);
 bool label_says(const NamedLabel& label, const edit::EditRequest& request,
                 const std::vector<std::string>& known, const std::optional<ReachChoice>& choice);
 
+/// Tells whether all that is labelled was added by edits. `row_ids`: identity of each row.
+bool is_addition(const NamedLabel& label, const std::vector<RowId>& row_ids);
+
+/// Index of the label that is the scope of the request, else nothing: a search is. The active label goes
+/// first, as label_says() has it, then the one that the artist chose for this source or that is named for its
+/// thing. What an edit added is no scope for another thing, nor is a label that was chosen for another
+/// source.
+std::optional<std::size_t> scope_label(const DocumentState& state, const edit::EditRequest& request,
+                                       const std::vector<std::string>& known,
+                                       const std::optional<ReachChoice>& choice);
+
+/// Name of the thing that an addition puts there, where the scene has one already; empty otherwise. An edit
+/// of the stack added it, or a label is named for it. Or a search saw that only what is said of it is new:
+/// `read_target` is "red" of "a red hat".
+std::string present_already(const DocumentState& state, const edit::EditRequest& request,
+                            const std::string& read_target = {});
+
 /// True when nothing has to be found for a request whose scope is the label. It was made by hand, or its
 /// object is one that the model cannot find (for example one that it drew).
 bool stands_alone(const NamedLabel& label, const edit::EditRequest& request,

@@ -37,20 +37,44 @@ Notices::Notices(std::function<void()> wake) {
 
 Notices::~Notices() { log::set_sink({}); }
 
-void Notices::toast(std::string text, bool is_error, std::string button, std::function<void()> action) {
+void Notices::add(ToastState state) {
     // Repeated news, or news told at more length: one of them is enough.
+    const auto& text = state.toast.text;
     std::erase_if(toasts_,
                   [&](const ToastState& old) { return text.find(old.toast.text) != std::string::npos; });
     if (std::any_of(toasts_.begin(), toasts_.end(),
                     [&](auto& old) { return old.toast.text.find(text) != std::string::npos; }))
         return;
     if (toasts_.size() >= MostToasts) toasts_.erase(toasts_.begin());
-    toasts_.push_back({{std::move(text), is_error, 0, std::move(button)}, Clock::now(), std::move(action)});
+    toasts_.push_back(std::move(state));
+}
+
+void Notices::toast(std::string text, bool is_error, std::string button, std::function<void()> action) {
+    add({{std::move(text), is_error, 0, std::move(button)}, Clock::now(), std::move(action)});
+}
+
+void Notices::toast_of_step(std::string text, std::string button, std::function<void()> action) {
+    add({{std::move(text), false, 0, std::move(button)}, Clock::now(), std::move(action), step_now_()});
 }
 
 void Notices::report(const Error& error) {
     toast(error.what(), true);
     log_.push_back(line_now(log::Level::Error, error.what()));
+}
+
+void Notices::report_of_step(const Error& error) {
+    add({{error.what(), true, 0, {}}, Clock::now(), {}, step_now_()});
+    log_.push_back(line_now(log::Level::Error, error.what()));
+}
+
+void Notices::forget_undone(const std::function<bool(std::uint64_t)>& done) {
+    std::erase_if(toasts_, [&](const ToastState& old) { return old.step != 0 && !done(old.step); });
+}
+
+void Notices::forget() {
+    std::erase_if(toasts_, [this](const ToastState& old) { return old.born < reading_began_; });
+    answers_.clear();
+    question_.title.clear(), question_.text.clear(), question_.answers.clear();
 }
 
 void Notices::ask(std::string title, std::string text, std::vector<AskedAnswer> answers) {

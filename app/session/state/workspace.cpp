@@ -11,6 +11,10 @@ Jobs::Jobs(MainQueue& queue)
       counter(queue, JobThread::Priority::Patient) {}
 
 bool Jobs::start_work(JobKind kind, JobThread::Job job) {
+    job.done = [this, kind, done = std::move(job.done)](const Error* error) {
+        if (done) done(error);
+        if (on_end && kind != JobKind::Other) on_end();
+    };
     if (!work.start(std::move(job))) return false;
     kind_ = kind;
     return true;
@@ -19,6 +23,8 @@ bool Jobs::start_work(JobKind kind, JobThread::Job job) {
 Workspace::Workspace(ApplicationOptions chosen)
     : options(std::move(chosen)), notices(options.wake), jobs(std::make_unique<Jobs>(queue)) {
     queue.set_wake(options.wake);
+    notices.follow([this] { return document.revision(); });
+    jobs->on_end = [this] { worked_at = document.revision(); };
 }
 
 bool Workspace::require_scene() {
@@ -43,14 +49,29 @@ Scene Workspace::scene() const {
 }
 
 void Workspace::toast_step(std::string text) {
-    notices.toast(std::move(text), false, "Undo", [this, revision = document.revision()] {
+    notices.toast_of_step(std::move(text), "Undo", [this, revision = document.revision()] {
         if (document.revision() == revision) return run(ui::command::Undo{});
         notices.toast("More was done since: History leads back to any step.");
     });
 }
 
 void Workspace::report_end(const Error& error) {
-    if (error.code() != ErrorCode::Cancelled) notices.report(error);
+    if (error.code() != ErrorCode::Cancelled) notices.report_of_step(error);
+}
+
+void Workspace::forget_work() {
+    jobs->forget_work();
+    cost = {};
+    worked_at = 0;
+}
+
+void Workspace::take_document() {
+    ++opened;
+    next_edit_id = 1;
+    labelled = 0;
+    variations.forget();
+    forget_work();
+    notices.forget();
 }
 
 }  // namespace gse::app

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "app/session/state/notices.h"
+#include "app/session/state/variations.h"
 #include "app/session/state/waiting_results.h"
 #include "engine/base/job_thread.h"
 #include "engine/scene/document.h"
@@ -28,7 +29,8 @@ struct ApplicationOptions {
 
 /// Kinds of jobs on the work thread.
 enum class JobKind : std::uint8_t {
-    Other,   // checks of models, cutting out
+    Other,   // checks of models
+    CutOut,  // a thing in a box
     Search,  // looks for words
     Vote,    // votes of the last search's views once more
     Edit     // search and loop
@@ -41,12 +43,20 @@ public:
     /// Starts a job on the work thread; false when one is running.
     bool start_work(JobKind kind, JobThread::Job job);
     bool works() const { return work.running(); }
+    /// True when no search or edit may begin: one works, or another document is being read.
+    bool occupied() const { return works() || reads_work; }
+    /// Forgets the status of the last job, where that was about the scene.
+    void forget_work() {
+        if (kind_ != JobKind::Other) work.forget();
+    }
     bool works_at(JobKind kind) const { return kind_ == kind && work.running(); }
 
-    JobThread work;     // networks: searches, edits, checks of models
-    JobThread files;    // what the artist reads and writes
-    JobThread saver;    // autosaves
-    JobThread counter;  // counts and measures beside the frames
+    JobThread work;                // networks: searches, edits, checks of models
+    JobThread files;               // what the artist reads and writes
+    JobThread saver;               // autosaves
+    JobThread counter;             // counts and measures beside the frames
+    bool reads_work = false;       // `files` reads the document that takes the place of the open one
+    std::function<void()> on_end;  // called when a job about the scene has left its result
 
 private:
     JobKind kind_ = JobKind::Other;
@@ -65,9 +75,11 @@ struct Workspace {
     std::uint64_t content = 1;                    // rises with what the viewport shows
     std::uint64_t stroke = 0;                     // drags so far: those of one drag are one step of undo
     std::uint64_t next_edit_id = 1;               // of the edit stack
+    std::uint64_t worked_at = 0;                  // step that the last search or edit led to; 0 = none
     std::size_t labelled = 0;                     // rows of the active label
     ui::NetworkCost cost;                         // of the running or last search or edit
     WaitingResults results;                       // of edits, to be applied or discarded
+    KeptVariations variations;                    // of applied edits
     std::string layout;                           // places of the panels; part of settings and project
     bool layout_loaded = false;                   // the window has not taken it over yet
     bool settings_changed = false;                // to be written before the next frame
@@ -84,6 +96,10 @@ struct Workspace {
     void toast_step(std::string text);
     /// Shows an error that ended a job; a cancelled job is no error.
     void report_end(const Error& error);
+    /// Forgets the status and the cost of the last search or edit.
+    void forget_work();
+    /// Another document is open: forgets all that belongs to the last one but its results.
+    void take_document();
 };
 
 }  // namespace gse::app

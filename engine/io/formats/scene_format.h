@@ -85,6 +85,7 @@ struct SceneFormat {
     bool keeps_antialiasing = false;  // says whether the scene was trained with antialiasing
     bool keeps_up = false;            // says which way is up
     bool keeps_columns = false;       // has room for the columns of Scene::extra
+    bool keeps_view_colour = true;    // has colour that depends on the direction it is seen from
     bool keeps_offset = false;        // holds the coordinates of the world, or says what is off them
     std::vector<FormatOption> options = {};
 

@@ -53,6 +53,33 @@ const io::SceneFormat* format_written_to(const std::filesystem::path& path) {
     return best;
 }
 
+std::filesystem::path with_ending(const std::filesystem::path& path, const io::SceneFormat& format) {
+    std::string name = path.filename().string();
+    const std::string lower = io::lower_case(name);
+    if (format_written_to(path) == &format || name.empty()) return path;
+    std::string ending = path.extension().string();
+    for (const auto& known : readable_extensions())
+        if (lower.ends_with(known) && known.size() > ending.size()) ending = known;
+    name.resize(name.size() - ending.size());
+    return path.parent_path() / (name + format.extensions.front());
+}
+
+std::string kept_text(const io::SceneFormat& format) {
+    std::vector<std::string> kept{format.exact ? "every bit of the splats"
+                                               : "the splats, with rounded values"},
+        left_out;
+    const auto tell = [&](bool keeps, const char* what) { (keeps ? kept : left_out).emplace_back(what); };
+    tell(format.keeps_view_colour, "view-dependent colour");
+    tell(format.keeps_labels, "labels");
+    tell(format.keeps_columns, "other columns");
+    tell(format.keeps_antialiasing, "antialiasing");
+    tell(format.keeps_up, "which way is up");
+    tell(format.keeps_offset, "the place in the world");
+    std::string text = "Keeps " + in_words(kept, "and") + ".";
+    if (!left_out.empty()) text += " Leaves out " + in_words(left_out, "and") + ".";
+    return text;
+}
+
 std::vector<std::string> writable_formats() {
     std::vector<std::string> names;
     for (const io::SceneFormat& format : scene_formats())

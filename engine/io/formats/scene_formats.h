@@ -18,6 +18,12 @@ const io::SceneFormat* find_format(std::string_view name);
 /// Format that is written to a file of that name (longest ending, any case), or null.
 const io::SceneFormat* format_written_to(const std::filesystem::path& path);
 
+/// The path with the format's ending in the place of its own: that of a format, else what follows its last
+/// dot. A path that ends in one of the format's endings stays as it is.
+std::filesystem::path with_ending(const std::filesystem::path& path, const io::SceneFormat& format);
+/// Sentences about what a file of the format keeps of a scene, and what it leaves out.
+std::string kept_text(const io::SceneFormat& format);
+
 /// Names of the formats that can be written: values of SaveOptions::format.
 std::vector<std::string> writable_formats();
 /// Endings of files that can be read or written: ".ply", ".compressed.ply", ...

@@ -86,7 +86,8 @@ SceneFormat splat_format() {
             .extensions = {".splat"},
             .mime = {.type = "model/x-splat", .comment = "Gaussian splats (.splat)"},
             .read = parse_splat,
-            .write = write_splat};
+            .write = write_splat,
+            .keeps_view_colour = false};
 }
 
 }  // namespace gse::io

@@ -32,6 +32,7 @@ SceneSource scene_source(const std::filesystem::path& path, GaussianSet loaded);
 struct ProjectData {
     DocumentState state;
     SceneSource source;
+    bool embeds = false;                                // the project holds its scene, whatever `source` is
     std::shared_ptr<const Image> thumbnail;             // a small picture of the scene; may be null
     nlohmann::json ui = nlohmann::json::object();       // of the window; not looked into
     nlohmann::json jobs = nlohmann::json::object();     // what ran or waits; not looked into
@@ -81,9 +82,9 @@ private:
 void save_project(const std::filesystem::path& path, const ProjectData& project);
 
 /// Reads a project and its scene. The scene is looked for beside the project (by its relative path), at its
-/// old place, and by name in the project's folder. `warnings` tell unusual findings. Throws Error with one
-/// sentence.
-ProjectData load_project(const std::filesystem::path& path);
+/// old place, and by name in the project's folder. With `scene`, it is that file, which must be the one that
+/// the project was saved with. `warnings` tell unusual findings. Throws Error with one sentence.
+ProjectData load_project(const std::filesystem::path& path, const std::filesystem::path& scene = {});
 
 /// Reads a project from memory. It must hold its base, or its base is `base` (as its file gives it).
 ProjectData parse_project(std::span<const std::byte> bytes, const GaussianSet* base = nullptr);

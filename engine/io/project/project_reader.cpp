@@ -263,6 +263,21 @@ FoundScene require_scene(const io::ProjectDescription& description, const std::f
                 description.scene_path);
 }
 
+/// The scene that somebody says is the project's.
+FoundScene same_scene(const io::ProjectDescription& description, const std::filesystem::path& scene) {
+    const auto print = io::fingerprint(scene);
+    if (!print) throw Error(ErrorCode::NotFound, "there is no scene", "check the name", scene);
+    if (print->bytes == description.scene_bytes && print->value == description.scene_fingerprint)
+        return {scene.lexically_normal(), *print, true};
+    throw Error(
+        ErrorCode::InvalidArgument,
+        fmt::format("this is not the scene that the project was made with, \"{}\" of {} bytes",
+                    std::filesystem::path(description.scene_path).filename().string(),
+                    description.scene_bytes),
+        "choose that one; a changed scene is taken when it lies beside the project under its old name",
+        scene);
+}
+
 void warn(ProjectData& project, std::string sentence) {
     log::warning("{}", sentence);
     project.warnings.push_back(std::move(sentence));
@@ -313,7 +328,7 @@ SceneSource scene_source(const std::filesystem::path& path, GaussianSet loaded) 
     return source;
 }
 
-ProjectData load_project(const std::filesystem::path& path) {
+ProjectData load_project(const std::filesystem::path& path, const std::filesystem::path& scene_path) {
     return with_path(path, [&] {
         const FileBytes file(path);
         OpenProject open(file.bytes());
@@ -321,7 +336,8 @@ ProjectData load_project(const std::filesystem::path& path) {
         ProjectData project;
         Scene scene;
         if (description.base != io::BaseKind::Whole) {
-            const FoundScene found = require_scene(description, path);
+            const FoundScene found =
+                scene_path.empty() ? require_scene(description, path) : same_scene(description, scene_path);
             const bool is_file = !is_project_file(found.path);  // another project knows it itself
             scene = load_scene(found.path, {.activated = description.info.activated && is_file});
             project.source = {found.path, found.fingerprint.bytes, found.fingerprint.value, {}};

@@ -35,7 +35,7 @@ public:
         description_.unknown = project.unknown;
         description_.active_label = state.active_label;
         description_.current_rows = state.current.size();
-        add_scene(state.base, project.source);
+        add_scene(state.base, project.source, project.embeds);
         if (description_.base == io::BaseKind::Whole) add_extra(state.extra);
         for (const EditNode& edit : state.stack) add_edit(edit);
         for (std::size_t i = 0; i < state.labels.size(); ++i) add_label(state.labels[i], i);
@@ -124,7 +124,7 @@ private:
         description_.labels.push_back(std::move(entry));
     }
 
-    void add_scene(const GaussianSet& base, const SceneSource& source) {
+    void add_scene(const GaussianSet& base, const SceneSource& source, bool embeds) {
         description_.base_rows = base.size();
         description_.file_rows = source.loaded.size();
         description_.scene_bytes = source.bytes;
@@ -135,7 +135,7 @@ private:
             const auto folder = std::filesystem::absolute(path_, failure).parent_path().lexically_normal();
             description_.scene_relative = source.path.lexically_relative(folder).string();
         }
-        const bool on_disk = !source.path.empty() && still_there(source);
+        const bool on_disk = !embeds && !source.path.empty() && still_there(source);
         if (on_disk && base.shares_all_with(source.loaded)) return;
         description_.base_member = on_disk ? add_kept_rows(base, source.loaded) : "";
         if (!description_.base_member.empty()) return;

@@ -2,9 +2,14 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
+#include <fmt/format.h>
+
+#include <cmath>
+
 #include "app/session/application.h"
 #include "engine/io/image/image_file.h"
 #include "engine/io/project/load_scene.h"
+#include "engine/scene/framing.h"
 #include "engine/scene/label_ops.h"
 #include "tests/ui/app/session.h"
 
@@ -159,6 +164,50 @@ DOCTEST_TEST_CASE("the camera path is work of the project: saved, loaded, and no
     app.run(command::OpenSample{});
     DOCTEST_REQUIRE(again.until([&] { return app.model().project_path.empty(); }));
     DOCTEST_CHECK(app.model().camera_keys.empty());
+    app.shut_down();
+}
+
+DOCTEST_TEST_CASE("a turntable begins where the artist looks, and a label does not change what it shows") {
+    const Place place;
+    Session session;
+    session.open_bear();
+    auto& app = session.app;
+    constexpr int frames = 4, quarter = 1;
+    auto exports = app.model().exports;
+    exports.width = exports.height = 48;
+    exports.frames = frames;
+    const auto film = [&](const char* name, double azimuth) {
+        app.run(command::SetCamera{orbit_camera(app.model().orbit, azimuth, 320, 240)});
+        app.update(session.preview);
+        exports.film_path = (place.folder / name).string();
+        app.run(command::SetExports{exports});
+        app.run(command::ExportTurntable{});
+        DOCTEST_REQUIRE(session.idle());
+        std::vector<Image> pictures;
+        for (int frame = 0; frame < frames; ++frame)
+            pictures.push_back(read_image(place.folder / name / fmt::format("frame_{:04}.png", frame)));
+        return pictures;
+    };
+    const auto difference = [](const Image& a, const Image& b) {
+        double sum = 0;
+        for (std::size_t i = 0; i < a.data.size(); ++i) sum += std::abs(a.data[i] - b.data[i]);
+        return sum / static_cast<double>(a.data.size());
+    };
+    constexpr double start = 0.3, right_angle = 1.5707963267948966;
+    const auto turn = film("turn", start), later = film("later", start + quarter * right_angle);
+    // The second begins a quarter later in the same round: at the frame after the first, or before it.
+    const double same =
+        std::min(difference(later[0], turn[quarter]), difference(later[0], turn[frames - quarter]));
+    DOCTEST_CHECK(same < 0.25 * difference(later[0], turn[0]));
+    ui::ScreenRegion stroke;
+    stroke.circles = {{160, 120}};
+    stroke.radius_px = 8;
+    app.run(command::Select{stroke, ui::SetOperation::Add, true});
+    const auto labelled = film("labelled", start);
+    for (int frame = 0; frame < frames; ++frame) {
+        const auto at = static_cast<std::size_t>(frame);
+        DOCTEST_CHECK(difference(labelled[at], turn[at]) == 0);
+    }
     app.shut_down();
 }
 

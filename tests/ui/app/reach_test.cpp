@@ -62,8 +62,9 @@ DOCTEST_TEST_CASE("what an addition left behind is not what the next edit of ano
     request.prompt = "a golden bear";
     app.run(command::SetRequest{request});
     app.update(session.preview);
-    DOCTEST_CHECK_FALSE(app.model().reach.by_label);
-    DOCTEST_CHECK(app.model().reach.label == "hat");  // offered
+    DOCTEST_CHECK(app.model().reach.by_label);
+    DOCTEST_CHECK(app.model().reach.label == "bear");  // its own thing's label is used,
+    DOCTEST_CHECK(app.model().reach.shown == "hat");   // not the one that is shown
     const auto hat = *active(app).bits;
     app.run(command::Edit{});
     DOCTEST_REQUIRE(session.idle());
@@ -73,6 +74,94 @@ DOCTEST_TEST_CASE("what an addition left behind is not what the next edit of ano
         in_hat += hat[row] != 0 && (*active(app).bits)[row] != 0 ? 1 : 0;
     DOCTEST_CHECK(count_labelled(active(app)) > 100);
     DOCTEST_CHECK(in_hat < count_labelled(active(app)) / 2);
+    app.shut_down();
+}
+
+DOCTEST_TEST_CASE("an addition beside a thing that the model does not know is not taken for that thing") {
+    if (!networks()) return;
+    const Place place;
+    Session session;
+    session.open_bear();
+    auto& app = session.app;
+    auto request = app.model().request;
+    request.source = "panda";  // a thing that the starter model cannot find
+    request.prompt = "a panda wearing a blue hat";
+    request.target = "hat";
+    request.mode = "add";
+    request.iterations = 2;
+    request.place_views = 4;
+    app.run(command::SetRequest{request});
+    app.run(command::Select{stroke_over_bear(30), ui::SetOperation::Add, true});
+    const auto name = active(app).name;
+    app.run(command::Edit{});
+    DOCTEST_REQUIRE(session.idle());
+    for (const auto& line : app.model().log) DOCTEST_CHECK(line.text != app::AddsElsewhere);
+    DOCTEST_REQUIRE(app.model().result_waiting);
+    app.run(command::ApplyResult{});
+    DOCTEST_REQUIRE(active(app).name == "hat");
+    request.prompt = "a golden panda";
+    request.target = "golden";
+    request.mode = "auto";
+    app.run(command::SetRequest{request});
+    app.update(session.preview);
+    DOCTEST_CHECK(app.model().reach.by_label);
+    DOCTEST_CHECK(app.model().reach.label == name);
+    DOCTEST_CHECK(app.model().reach.shown == "hat");
+    request.source = "hat";  // a follow-up about the addition
+    app.run(command::SetRequest{request});
+    app.update(session.preview);
+    DOCTEST_CHECK(app.model().reach.by_label);
+    DOCTEST_CHECK(app.model().reach.label == "hat");
+    DOCTEST_CHECK(app.model().reach.shown.empty());
+    request.source = "panda";
+    request.prompt = "a panda wearing a red hat";
+    request.target = "hat";
+    app.run(command::SetRequest{request});
+    app.update(session.preview);
+    DOCTEST_CHECK(app.model().reach.present == "hat");  // a second one is asked about
+    app.run(command::Undo{});
+    app.update(session.preview);
+    DOCTEST_CHECK(app.model().reach.present.empty());
+    app.shut_down();
+}
+
+DOCTEST_TEST_CASE("the panel's word counts when Edit is pressed: another source is searched for") {
+    if (!networks()) return;
+    const Place place;
+    Session session;
+    session.open_bear();
+    auto& app = session.app;
+    app.run(command::Select{stroke_over_bear(5), ui::SetOperation::Add, true});
+    const auto painted = active(app).name;
+    auto request = app.model().request;
+    request.source = "grass";
+    request.prompt = "a bear on the snow";
+    request.target = "snow";
+    request.iterations = 2;
+    app.run(command::SetRequest{request});
+    app.update(session.preview);
+    DOCTEST_REQUIRE_FALSE(app.model().reach.by_label);
+    app.run(command::Edit{});
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_CHECK(active(app).name == "grass");
+    DOCTEST_CHECK(app.document().state().labels.front().name == painted);
+    app.shut_down();
+}
+
+DOCTEST_TEST_CASE("a thing that is cut out without a label gets one of its own name") {
+    const Place place;
+    Session session;
+    session.open_bear();
+    auto& app = session.app;
+    ui::ScreenRegion box;
+    box.polygon = {{130, 80}, {190, 80}, {190, 160}, {130, 160}};
+    app.run(command::CutOut{box, ui::SetOperation::Add});
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_CHECK(active(app).name == "cut out");
+    app.run(command::SetActiveLabel{-1});
+    app.run(command::CutOut{box, ui::SetOperation::Add});
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_CHECK(active(app).name == "cut out 2");
     app.shut_down();
 }
 

@@ -87,4 +87,75 @@ DOCTEST_TEST_CASE(
     DOCTEST_CHECK(app.document().state().current.shares_all_with(base));
 }
 
+DOCTEST_TEST_CASE("variations stay after Apply, and one is exchanged for the applied one; each is one step") {
+    if (!networks()) return;
+    const Place place;
+    Session session;
+    auto& app = opened(session);
+    app.run(command::Edit{});
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_REQUIRE(app.model().result_waiting);
+    const auto first = session.preview.last.set;
+    app.run(command::AnotherResult{});
+    DOCTEST_REQUIRE(session.idle());
+    const auto second = session.preview.last.set;
+    app.run(command::ApplyResult{});
+    app.update(session.preview);
+    const auto colours = [](const GaussianSet& set) {
+        return std::vector<float>(set.sh().begin(), set.sh().end());
+    };
+    const auto shown = [&] { return colours(app.document().state().current); };
+    DOCTEST_REQUIRE(app.model().variations.size() == 1);
+    const auto edit = app.model().variations[0].edit;
+    DOCTEST_CHECK(app.model().variations[0].results.size() == 2);
+    DOCTEST_CHECK(app.model().variations[0].applied == 1);
+    DOCTEST_REQUIRE(shown() == colours(second));
+    const auto position = app.document().position();
+    app.run(command::ExchangeVariation{edit, 0});
+    app.update(session.preview);
+    DOCTEST_CHECK(shown() == colours(first));
+    DOCTEST_CHECK(app.model().variations[0].applied == 0);
+    DOCTEST_CHECK(app.document().state().stack.size() == 1);
+    DOCTEST_CHECK(app.document().position() == position + 1);
+    app.run(command::ExchangeVariation{edit, 0});  // it is the applied one already
+    app.run(command::ExchangeVariation{edit, 9});
+    DOCTEST_CHECK(app.document().position() == position + 1);
+    app.run(command::Undo{});
+    app.update(session.preview);
+    DOCTEST_CHECK(shown() == colours(second));
+    DOCTEST_CHECK(app.model().variations[0].applied == 1);
+    app.run(command::Undo{});  // the edit itself
+    app.update(session.preview);
+    DOCTEST_CHECK(app.model().variations.empty());
+    app.run(command::Redo{});
+    app.update(session.preview);
+    DOCTEST_CHECK(app.model().variations.size() == 1);
+    app.run(command::SetEditStrength{edit, 0.5, true});
+    app.run(command::ExchangeVariation{edit, 0});
+    DOCTEST_CHECK(app.document().state().stack[0].strength == 0.5);  // the artist's
+    app.shut_down();
+}
+
+DOCTEST_TEST_CASE("an edit that Esc stopped tells so, with the time of its own line") {
+    if (!networks()) return;
+    const Place place;
+    Session session;
+    session.open_bear();
+    auto& app = session.app;
+    auto request = app.model().request;
+    request.iterations = 5000;
+    app.run(command::SetRequest{request});
+    app.run(command::Edit{});
+    DOCTEST_REQUIRE(session.until([&] { return app.model().losses.size() > 3; }));
+    app.run(command::Pause{true});
+    session.until([] { return false; }, 0.5);  // a pause is no work
+    app.run(command::Cancel{});
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_REQUIRE(app.model().result_waiting);
+    DOCTEST_CHECK(app.model().verdict.stopped_at >= 0);
+    DOCTEST_CHECK(app.model().job.outcome == "stopped");
+    DOCTEST_CHECK(app.model().result_seconds == app.model().job.seconds);
+    app.shut_down();
+}
+
 }  // namespace results_test

@@ -229,7 +229,8 @@ void FakeApplication::make_attention() {
     model_.attention_mode = "modify: the scene shows a bear";
     model_.attention_threshold = 0.35;
     model_.job.title = "Locate";
-    model_.job.outcome = "done in 8.4 s";
+    model_.job.outcome = "done";
+    model_.job.seconds = 8.4;
 }
 
 void FakeApplication::make_work(bool running) {
@@ -270,10 +271,10 @@ void FakeApplication::make_work(bool running) {
         model_.file_job.eta_seconds = 40;
         return;
     }
-    model_.job.outcome = "done in 61 s";
+    model_.job.outcome = "done";
+    model_.job.seconds = model_.result_seconds = 61;
     model_.result_waiting = true;
     model_.result_splats = 8550;
-    model_.result_seconds = 41;
 }
 
 /// Two rounds of eight views in blue; one of the last is dropped, one redrawn.

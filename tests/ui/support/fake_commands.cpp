@@ -73,6 +73,7 @@ template <class C> std::string fields_of(const C& wanted) {
                    text(static_cast<int>(one.operation)) + end_of(one.stroke_ends);
         },
         [&](const command::CutOut& one) { return text(one.box.polygon.size()); },
+        [&](const command::ExchangeVariation& one) { return two(one.id, one.index); },
         [&](const command::GrowLabel& one) { return text(one.steps); },
         [&](const command::AdjustColours& one) { return text(adjustment_text(one.adjustment)); },
         [&](const command::PickRows& one) {

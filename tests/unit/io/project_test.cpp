@@ -68,6 +68,37 @@ DOCTEST_TEST_CASE("a project comes back bit for bit") {
     }
 }
 
+DOCTEST_TEST_CASE(
+    "a project that holds its scene needs no file of it, one that does not can be told where it is") {
+    const Quiet quiet;
+    const ScratchFolder folder;
+    namespace fs = std::filesystem;
+    const auto place = folder.path() / "scenes" / "scene.ply", moved = folder.path() / "moved" / "other.ply";
+    ProjectData project = random_project(saved_source(place, 80, 5), 5);
+    const auto linked = folder.path() / "linked.gsep", whole = folder.path() / "whole.gsep";
+    save_project(linked, project);
+    project.embeds = true;
+    save_project(whole, project);
+    fs::create_directories(moved.parent_path());
+    fs::rename(place, moved);
+    const ProjectData held = load_project(whole);
+    DOCTEST_CHECK(difference(project.state, held.state) == "");
+    DOCTEST_CHECK(held.source.path.empty());
+    DOCTEST_CHECK(error_of([&] { load_project(linked); }));
+    const ProjectData found = load_project(linked, moved);
+    DOCTEST_CHECK(difference(project.state, found.state) == "");
+    DOCTEST_CHECK(found.source.path == moved);
+    const auto other = folder.path() / "third.ply";
+    save_scene(other, random_scene(80, 1, 6));  // as many splats, and another scene
+    const auto refused = error_of([&] { load_project(linked, other); });
+    DOCTEST_REQUIRE(refused);
+    DOCTEST_CHECK(refused->code() == ErrorCode::InvalidArgument);
+    DOCTEST_CHECK(refused->message().find("scene.ply") != std::string::npos);
+    const auto none = error_of([&] { load_project(linked, folder.path() / "none.ply"); });
+    DOCTEST_REQUIRE(none);
+    DOCTEST_CHECK(none->code() == ErrorCode::NotFound);
+}
+
 DOCTEST_TEST_CASE("a writer that knows the arrays writes the same bytes as a new one") {
     const ScratchFolder folder;
     ProjectData project = random_project(saved_source(folder.path() / "scene.ply", 200, 1), 1);

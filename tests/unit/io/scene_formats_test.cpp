@@ -44,6 +44,25 @@ std::string without_comment(const std::string& line) { return line.substr(0, lin
 
 }  // namespace
 
+DOCTEST_TEST_CASE("a name takes the ending of another format, and each format says what it keeps") {
+    std::set<std::string> said;
+    for (const io::SceneFormat& format : scene_formats()) {
+        if (!format.writable()) continue;
+        const auto& ending = format.extensions.front();
+        for (const char* name : {"a/bear", "a/bear.ply", "a/bear.compressed.ply", "a/bear.SPZ", "a/bear.obj"})
+            DOCTEST_CHECK(
+                with_ending(name, format) ==
+                std::filesystem::path(format_written_to(name) == &format ? name : "a/bear" + ending));
+        DOCTEST_CHECK(with_ending("my.bear.ply", format) == std::filesystem::path("my.bear" + ending));
+        DOCTEST_CHECK(format_written_to(with_ending("bear.ksplat", format)) == &format);
+        const auto text = kept_text(format);
+        DOCTEST_CHECK((text.find("every bit") != std::string::npos) == format.exact);
+        DOCTEST_CHECK((text.find("labels") < text.find("Leaves out")) == format.keeps_labels);
+        said.insert(text);
+    }
+    DOCTEST_CHECK(said.size() > 1);
+}
+
 DOCTEST_TEST_CASE(
     "every scene format is whole: names, an ending, a reader, and options with values in order") {
     std::set<std::string> seen;

@@ -219,6 +219,27 @@ DOCTEST_TEST_CASE("undo is bounded in entries and bytes, and labels alone cost l
     DOCTEST_CHECK(tight.state().stack.size() == 5);
 }
 
+DOCTEST_TEST_CASE("a step is part of the document until it is undone, and again when it is redone") {
+    Document document(fresh_state(20, 3), {.entries = 4});
+    std::vector<std::uint64_t> steps{document.revision()};
+    for (int step = 0; step < 3; ++step) {
+        document.apply("step", document.state());
+        steps.push_back(document.revision());
+    }
+    for (std::size_t position = 0; position < steps.size(); ++position) {
+        document.go_to(position);
+        for (std::size_t step = 0; step < steps.size(); ++step)
+            DOCTEST_CHECK(document.includes(steps[step]) == (step <= position));
+    }
+    document.go_to(1);
+    document.apply("another way", document.state());
+    DOCTEST_CHECK(document.includes(steps[1]));
+    DOCTEST_CHECK_FALSE(document.includes(steps[2]));  // it cannot be had back
+    for (int step = 0; step < 6; ++step) document.apply("more", document.state());
+    DOCTEST_CHECK(document.includes(steps[0]));  // forgotten, not undone
+    DOCTEST_CHECK_FALSE(Document().includes(1));
+}
+
 DOCTEST_TEST_CASE("steps of one stroke become one; revisions tell what is unsaved") {
     Document document(fresh_state(10, 1));
     const auto saved = document.revision();

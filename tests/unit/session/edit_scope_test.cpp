@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "app/session/state/edit_scope.h"
+#include "engine/base/fields.h"
 #include "engine/scene/label_ops.h"
 
 namespace reach_test {
@@ -57,6 +58,66 @@ DOCTEST_TEST_CASE("the artist's word goes first, for the source it was given for
     DOCTEST_CHECK_FALSE(label_says(painted("other"), about("bear", "golden"), Known, label));
     DOCTEST_CHECK_FALSE(label_says(found("bear", "bear"), about("bear", "golden"), Known, search));
     DOCTEST_CHECK(label_says(painted("label"), about("grass", "golden"), Known, any));
+}
+
+DOCTEST_TEST_CASE(
+    "the label of an edit is the one that is named for its thing, not what an addition left active") {
+    using app::scope_label;
+    DocumentState state;
+    std::vector<RowId> ids{0, 1, 2, (RowId{5} << EditIdShift) + 1};  // the last row is of edit 5
+    state.row_ids = std::make_shared<const std::vector<RowId>>(ids);
+    const auto hat =
+        combine(empty_label("hat", 4), std::vector<std::uint8_t>{0, 0, 0, 1}, LabelOperation::Add);
+    DOCTEST_CHECK(app::is_addition(hat, ids));
+    DOCTEST_CHECK_FALSE(app::is_addition(painted("hat"), ids));
+    state.labels = {found("Bruno", "bear"), painted("cut out"), hat};
+    state.active_label = 2;
+    const auto index = [&](const edit::EditRequest& request, const std::optional<ReachChoice>& choice) {
+        return static_cast<int>(scope_label(state, request, Known, choice).value_or(99));
+    };
+    constexpr int searched = 99;
+    const ReachChoice for_crane{true, "cut out", "crane"}, never{false, "Bruno", "bear"};
+    DOCTEST_CHECK(index(about("bear", "golden"), {}) == 0);
+    DOCTEST_CHECK(index(about("bear", "golden"), never) == searched);
+    DOCTEST_CHECK(index(about("hat", "blue"), {}) == 2);
+    DOCTEST_CHECK(index(about("", "hat"), {}) == 2);
+    DOCTEST_CHECK(index(about("grass", "snow"), {}) == searched);
+    DOCTEST_CHECK(index(about("crane", "golden"), {}) == searched);  // the addition is no crane
+    DOCTEST_CHECK(index(about("crane", "golden"), for_crane) == 1);
+    state.active_label = 1;
+    DOCTEST_CHECK(index(about("crane", "golden"), {}) == 1);  // made by hand, and of no other thing
+    DOCTEST_CHECK(index(about("scarf", "golden"), for_crane) == searched);
+    DOCTEST_CHECK(index(about("bear", "golden"), for_crane) == 0);
+    state.active_label = -1;
+    DOCTEST_CHECK(index(about("bear", "golden"), {}) == 0);
+    DOCTEST_CHECK(index(about("crane", "golden"), {}) == searched);
+}
+
+DOCTEST_TEST_CASE("a thing that is there already is known by what added it, and by its label") {
+    using app::present_already;
+    DocumentState state;
+    edit::EditRequest request = about("bear", "hat");
+    request.prompt = "a bear wearing a red hat";
+    DOCTEST_CHECK(present_already(state, request) == "");
+    EditNode node;
+    node.recipe = nlohmann::json{{"request", fields_to_json(request)}}.dump();
+    state.stack = {node};
+    DOCTEST_CHECK(present_already(state, request) == "hat");
+    edit::EditRequest other = request;
+    other.prompt = "a bear wearing a crown";
+    other.target = "crown";
+    DOCTEST_CHECK(present_already(state, other) == "");
+    edit::EditRequest change = about("hat", "red");
+    change.prompt = "a red hat";
+    DOCTEST_CHECK(present_already(state, change) == "");
+    state.stack[0].enabled = false;
+    DOCTEST_CHECK(present_already(state, request) == "");
+    edit::EditRequest seen = request;
+    seen.target = "red";  // that much is new, as a search saw it
+    DOCTEST_CHECK(present_already(state, seen, "red") == "hat");
+    DOCTEST_CHECK(present_already(state, request, "hat") == "");
+    state.labels = {painted("hat")};
+    DOCTEST_CHECK(present_already(state, request) == "hat");
 }
 
 DOCTEST_TEST_CASE("a label that was found belongs to its word under any name") {
