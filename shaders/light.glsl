@@ -46,7 +46,8 @@ void store_light(uvec2 corner) {
         if (corner.y >= frame.size.y || corner.x + k >= frame.size.x) continue;
         const uint pixel = corner.y * frame.size.x + corner.x + k;
         const vec3 rgb = vec3(red[k], green[k], blue[k]);
-        const vec4 shown = resolve(rgb, covered[k], depth[k], value[k], Mode);
+        const vec4 shown = resolve(rgb, covered[k], depth[k], value[k], Mode,
+                                   uvec2(corner.x + k, corner.y));
         imageStore(picture, ivec2(corner.x + k, corner.y), shown);
         if (StoreDepth != 0) depths[pixel] = covered[k] > LeastSolid ? depth[k] / covered[k] : 0.0;
         if (StoreLight != 0) {

@@ -9,7 +9,7 @@ vec3 map_colour(float t) {
     return mix(stops[int(stop)], stops[int(stop) + 1], place - stop);
 }
 
-/// Tint over a colour: the frame's, or its complement where the colour has the same hue.
+/// Line of the hatching: the frame's tint, or its complement where the colour has the same hue.
 vec3 tint_over(vec3 solid) {
     const vec3 tint = frame.tint.rgb;
     const vec3 hue = solid - vec3((solid.r + solid.g + solid.b) / 3.0);
@@ -21,7 +21,7 @@ vec3 tint_over(vec3 solid) {
 }
 
 /// rgb with alpha, not premultiplied; alpha is 1 unless the background is transparent.
-vec4 resolve(vec3 rgb, float alpha, float depth, float value, uint mode) {
+vec4 resolve(vec3 rgb, float alpha, float depth, float value, uint mode, uvec2 pixel) {
     const vec3 background = frame.background.rgb;
     const bool transparent = frame.background.w > 0.5;
     const float inverse = alpha > 0.0 ? 1.0 / alpha : 0.0;
@@ -40,7 +40,8 @@ vec4 resolve(vec3 rgb, float alpha, float depth, float value, uint mode) {
         const float grey = dot(solid, vec3(0.299, 0.587, 0.114)) * DimmedBeauty;
         shown = mix(vec3(grey), map_colour(share), MapCoverage * (0.25 + 0.75 * share));
     } else {
-        shown = mix(solid, tint_over(solid), share * frame.tint.w);
+        const bool line = (pixel.x + pixel.y) % HatchPeriod < HatchWidth;
+        shown = mix(solid, line ? tint_over(solid) : frame.tint.rgb, share * frame.tint.w);
     }
     if (transparent) return vec4(shown, cover);
     return vec4(shown * cover + background * (1.0 - cover), 1.0);

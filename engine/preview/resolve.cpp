@@ -39,7 +39,7 @@ Rgb hue_of(const Rgb& colour) {
 
 float dot(const Rgb& a, const Rgb& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// Tint over a colour: its own, or its complement where the colour has the same hue.
+/// Line of the hatching: the tint, or its complement where the colour has the same hue.
 Rgb tint_over(const Rgb& solid, const Rgb& tint) {
     const Rgb hue = hue_of(solid), own = hue_of(tint);
     const float chroma = std::sqrt(dot(hue, hue));
@@ -81,7 +81,8 @@ Rgb map_colour(float t) {
     return result;
 }
 
-std::array<float, 4> resolve_pixel(const PixelSums& sums, const Display& display, float depth_scale) {
+std::array<float, 4> resolve_pixel(const PixelSums& sums, const Display& display, float depth_scale,
+                                   bool hatched) {
     const float inverse = sums.alpha > 0.0f ? 1.0f / sums.alpha : 0.0f;
     const Rgb solid{sums.red * inverse, sums.green * inverse, sums.blue * inverse};
     const float share = std::clamp(sums.value * inverse, 0.0f, 1.0f);
@@ -100,7 +101,7 @@ std::array<float, 4> resolve_pixel(const PixelSums& sums, const Display& display
         for (std::size_t k = 0; k < 3; ++k)
             shown[k] = mix(grey, map[k], shaders::MapCoverage * (0.25f + 0.75f * share));
     } else if (tints(display)) {
-        const Rgb tint = tint_over(solid, display.tint);
+        const Rgb tint = hatched ? tint_over(solid, display.tint) : display.tint;
         for (std::size_t k = 0; k < 3; ++k) shown[k] = mix(solid[k], tint[k], share * display.tint_strength);
     }
     if (display.transparent) return {shown[0], shown[1], shown[2], cover};
@@ -130,7 +131,9 @@ void resolve(const LightSums& sums, const Display& display, float depth_scale, T
                                   alpha[i],
                                   sums.depth != nullptr ? sums.depth->data[first + i] : 0.0f,
                                   sums.value != nullptr ? sums.value->data[first + i] : 0.0f};
-            const auto shown = resolve_pixel(pixel, display, depth_scale);
+            const std::size_t x = i % width, y = begin + i / width;
+            const bool hatched = (x + y) % shaders::HatchPeriod < shaders::HatchWidth;
+            const auto shown = resolve_pixel(pixel, display, depth_scale, hatched);
             for (std::size_t k = 0; k < 4; ++k) out[i * 4 + k] = to_byte(shown[k]);
         }
     });

@@ -25,11 +25,13 @@ struct LightSums {
 bool needs_value(const Display& display);
 bool needs_depth(const Display& display);
 
-/// Colour 0..1 with alpha, not premultiplied. `depth_scale` as in Display, > 0.
+/// Colour 0..1 with alpha, not premultiplied. `depth_scale` as in Display, > 0. `hatched`: the pixel is on a
+/// line of the hatching.
 struct PixelSums {
     float red = 0, green = 0, blue = 0, alpha = 0, depth = 0, value = 0;
 };
-std::array<float, 4> resolve_pixel(const PixelSums& sums, const Display& display, float depth_scale);
+std::array<float, 4> resolve_pixel(const PixelSums& sums, const Display& display, float depth_scale,
+                                   bool hatched = false);
 
 /// False colour of t in 0..1.
 std::array<float, 3> map_colour(float t);

@@ -61,10 +61,12 @@ DOCTEST_TEST_CASE(
     Session session;
     session.open_bear();
     auto& app = session.app;
-    ui::ScreenRegion box;  // around the bear, which is small in the home view
+    constexpr float Half = 105;  // px, of 240: the home view frames the bear
+    ui::ScreenRegion box;
     const auto camera = app.model().camera;
     const auto cx = static_cast<float>(camera.width) / 2, cy = static_cast<float>(camera.height) / 2;
-    box.polygon = {{cx - 40, cy - 40}, {cx + 40, cy - 40}, {cx + 40, cy + 40}, {cx - 40, cy + 40}};
+    box.polygon = {
+        {cx - Half, cy - Half}, {cx + Half, cy - Half}, {cx + Half, cy + Half}, {cx - Half, cy + Half}};
     app.run(command::CutOut{box, ui::SetOperation::Replace});
     DOCTEST_REQUIRE(session.settled());
     DOCTEST_CHECK(app.model().job.error.empty());

@@ -93,6 +93,28 @@ DOCTEST_TEST_CASE("labels tint in proportion, and what is transparent keeps its 
     DOCTEST_CHECK(none[3] == doctest::Approx(0.8));
 }
 
+DOCTEST_TEST_CASE("a labelled red thing is hatched, a grey one is not") {
+    constexpr int Side = 20, Seen = 50;  // of 255
+    preview::Display display;
+    display.mode = preview::Mode::Labels;
+    display.tint_strength = 0.6f;
+    ThreadPool pool(1);
+    const auto spread = [&](const std::array<float, 3>& colour) {  // between the pixels, of any channel
+        Image picture(Side, Side, 3), ones(Side, Side, 1, 1.0f);
+        for (std::size_t i = 0; i < picture.data.size(); ++i) picture.data[i] = colour[i % 3];
+        std::vector<std::uint8_t> rgba;
+        preview::resolve({&picture, &ones, nullptr, &ones}, display, 1, pool, rgba);
+        int most = 0;
+        for (std::size_t i = 0; i < rgba.size(); ++i)
+            most = std::max(most, std::abs(static_cast<int>(rgba[i]) - static_cast<int>(rgba[i % 4])));
+        return most;
+    };
+    DOCTEST_CHECK(spread({0.8f, 0.1f, 0.1f}) > Seen);
+    DOCTEST_CHECK(spread({1.0f, 0.45f, 0.1f}) > Seen);
+    DOCTEST_CHECK(spread({0.5f, 0.5f, 0.5f}) == 0);
+    DOCTEST_CHECK(spread({0.2f, 0.3f, 0.9f}) == 0);
+}
+
 DOCTEST_TEST_CASE("the tint shows on things of every colour, its own hue among them") {
     constexpr float LeastSeen = 0.25f;  // of a channel: an eye sees a tenth at once, on a textured thing too
     preview::Display display;
@@ -106,7 +128,7 @@ DOCTEST_TEST_CASE("the tint shows on things of every colour, its own hue among t
         preview::PixelSums sums{colour[0], colour[1], colour[2], 1, 0, 0};
         const auto plain = preview::resolve_pixel(sums, display, 1);
         sums.value = 1;
-        const auto tinted = preview::resolve_pixel(sums, display, 1);
+        const auto tinted = preview::resolve_pixel(sums, display, 1, true);
         float change = 0, before = 0, after = 0;
         for (std::size_t k = 0; k < 3; ++k) change = std::max(change, std::abs(tinted[k] - plain[k]));
         DOCTEST_CAPTURE(colour[0]);
