@@ -99,10 +99,11 @@ const std::regex& code_pattern() {
 }
 
 /// Marks that a prompt has for programs that draw, and their plain form.
-const std::array<Rule, 16>& noise_rules() {
-    static const std::array<Rule, 16> Rules = {{
+const std::array<Rule, 17>& noise_rules() {
+    static const std::array<Rule, 17> Rules = {{
         {std::regex(R"(<(lora|lyco|hypernet|embedding|ti)[^>]*>)"), " "},
         {std::regex(R"(\bembedding:\S+)"), " "},
+        {std::regex(R"(\bf/[0-9.]+|\b[0-9]+ ?mm\b|\biso ?[0-9]+\b)"), " "},
         {std::regex(R"((^|\s)--?[a-z]{1,10}(\s+[0-9][0-9.:]*)?(?=\s*($|--)))"), " "},
         {std::regex(R"((^|\s)--[a-z]+(\s+[0-9][0-9.:]*|\s+[a-z]+(?=\s+--|\s*$))?)"), " "},
         {std::regex(R"(:\s*[0-9]+(\.[0-9]+)?\s*\))"), ")"},
@@ -129,9 +130,11 @@ bool has_picture_word(const std::string& text) {
 
 }  // namespace
 
-CleanText clean_text(std::string_view text) {
+CleanText clean_text(std::string_view raw) {
     CleanText clean;
-    if (text.size() > LongestText) return {"", reason::NotASentence, true};
+    if (raw.size() > LongestText) return {"", reason::NotASentence, true};
+    static const std::regex Break(R"(\bBREAK\b)");
+    const auto text = std::regex_replace(std::string(raw), Break, ",");
     const auto characters = characters_of(text);
     clean.has_letters = characters.has_letters;
     characters.text.toUTF8String(clean.text);

@@ -181,7 +181,96 @@ constexpr std::string_view ClassNames[] = {"spelling",
                                            "irregular",
                                            "irregular_verb",
                                            "foreign",
-                                           "foreign_weak"};
+                                           "foreign_weak",
+                                           "empty",
+                                           "except",
+                                           "what_stands",
+                                           "shade_of",
+                                           "contrast_change",
+                                           "dressed_as",
+                                           "only",
+                                           "unwanted",
+                                           "verb_around",
+                                           "verb_fill",
+                                           "word_a",
+                                           "word_against",
+                                           "word_all",
+                                           "word_and",
+                                           "word_around",
+                                           "word_as",
+                                           "word_at",
+                                           "word_away",
+                                           "word_by",
+                                           "word_chop",
+                                           "word_clear",
+                                           "word_cut",
+                                           "word_dark",
+                                           "word_down",
+                                           "word_during",
+                                           "word_except",
+                                           "word_facing",
+                                           "word_factor",
+                                           "word_fall",
+                                           "word_for",
+                                           "word_from",
+                                           "word_get",
+                                           "word_give",
+                                           "word_half",
+                                           "word_has",
+                                           "word_have",
+                                           "word_here",
+                                           "word_horizontally",
+                                           "word_in",
+                                           "word_it",
+                                           "word_its",
+                                           "word_leave",
+                                           "word_like",
+                                           "word_made",
+                                           "word_make",
+                                           "word_moon",
+                                           "word_neither",
+                                           "word_nor",
+                                           "word_not",
+                                           "word_nothing",
+                                           "word_now",
+                                           "word_of",
+                                           "word_off",
+                                           "word_on",
+                                           "word_one",
+                                           "word_ones",
+                                           "word_out",
+                                           "word_place",
+                                           "word_places",
+                                           "word_position",
+                                           "word_positions",
+                                           "word_put",
+                                           "word_rainbow",
+                                           "word_remain",
+                                           "word_remains",
+                                           "word_same",
+                                           "word_sideways",
+                                           "word_sky",
+                                           "word_stars",
+                                           "word_stay",
+                                           "word_stays",
+                                           "word_substitute",
+                                           "word_sun",
+                                           "word_take",
+                                           "word_there",
+                                           "word_throw",
+                                           "word_times",
+                                           "word_to",
+                                           "word_try",
+                                           "word_unchanged",
+                                           "word_untouched",
+                                           "word_up",
+                                           "word_use",
+                                           "word_vertically",
+                                           "word_want",
+                                           "word_wide",
+                                           "word_wipe",
+                                           "word_with",
+                                           "word_x"};
 static_assert(std::size(ClassNames) == ClassCount);
 
 struct Entry {
@@ -229,7 +318,7 @@ public:
 
     std::array<ClassTable, ClassCount> classes;
     std::unordered_map<std::string_view, std::uint32_t> kinds;
-    std::unordered_set<std::string_view> english;
+    std::unordered_set<std::string_view> english, verbs;
     std::vector<std::string_view> spellable;
     std::vector<std::vector<std::string_view>> synonyms;
 
@@ -269,6 +358,7 @@ private:
         table.is_verb = ClassNames[number].starts_with("verb_") || kind == Class::emerging ||
                         kind == Class::fire_verb || kind == Class::meta_verb || kind == Class::holding;
         table.values.emplace(entry.phrase, entry.value);
+        if (table.is_verb) verbs.insert(entry.words.front());
         if (kind != Class::foreign && kind != Class::foreign_weak) {
             for (const auto& word : entry.words) {
                 english.insert(word);
@@ -289,7 +379,14 @@ private:
             case Class::narrative:
             case Class::meta_noun:
             case Class::meta_verb:
-            case Class::irregular: return false;
+            case Class::irregular:
+            case Class::request:
+            case Class::courtesy:
+            case Class::caption:
+            case Class::never_mind:
+            case Class::subordinate:
+            case Class::as_well:
+            case Class::correction: return false;
             default: return true;
         }
     }
@@ -335,6 +432,15 @@ bool fits(const Entry& entry, std::span<const Word> words, bool is_verb) {
         return false;
     }
     return true;
+}
+
+/// Tells whether it is a noun or a verb that takes endings.
+bool takes_ending(std::string_view word, bool verb) {
+    const auto& data = tables();
+    const auto found = data.kinds.find(word);
+    const auto kinds = found == data.kinds.end() ? 0u : found->second;
+    if (verb) return (kinds & Kind::Verb) != 0 || data.verbs.contains(word);
+    return (kinds & (Concrete | Perhaps | Other)) != 0 || (data.english.contains(word) && kinds == 0);
 }
 
 bool in_tables(std::string_view word) {
@@ -411,13 +517,30 @@ std::optional<std::string_view> meaning(Class word_class, std::string_view phras
     return found == values.end() ? std::nullopt : std::optional(found->second);
 }
 
+bool is_grammatical(std::string_view word) {
+    const auto of = [&](Class kind) {
+        const auto& values = tables().classes[static_cast<std::size_t>(kind)].values;
+        return values.contains(word) || values.contains(base_of(word));
+    };
+    for (auto kind = static_cast<std::size_t>(Class::article);
+         kind <= static_cast<std::size_t>(Class::verb_keep); ++kind)
+        if (of(static_cast<Class>(kind))) return true;
+    for (const auto kind : {Class::colour, Class::material, Class::size, Class::pattern, Class::colour_word,
+                            Class::side, Class::direction, Class::except})
+        if (of(kind)) return true;
+    return false;
+}
+
 std::uint32_t kinds_of(std::string_view word) {
     const auto found = tables().kinds.find(word);
     return found == tables().kinds.end() ? 0 : found->second;
 }
 
 bool is_word(std::string_view word) {
-    if (in_tables(word) || in_tables(singular_of(word)) || in_tables(base_of(word))) return true;
+    if (in_tables(word)) return true;
+    const auto singular = singular_of(word), base = base_of(word);
+    if (singular != word && takes_ending(singular, false)) return true;
+    if (base != word && takes_ending(base, true)) return true;
     if (word.ends_with("er") && (in_tables(cut(word, 1)) || in_tables(cut(word, 2)))) return true;
     if (word.ends_with("est") && (in_tables(cut(word, 2)) || in_tables(cut(word, 3)))) return true;
     if (word.ends_with("ly") && in_tables(cut(word, 2))) return true;

@@ -10,7 +10,7 @@
 namespace gse::language::plan {
 
 /// Classes of words and phrases; lexicon.txt names them in the same spelling, ClassNames in the same order.
-enum class Class : std::uint8_t {
+enum class Class : std::uint16_t {
     // clang-format off
     spelling, article, definite, possessive, another, all, none, some, number, pronoun_it, pronoun_person,
     pronoun_all, everything, everything_else, something, nobody, relation, inverse_relation, wearing,
@@ -30,6 +30,17 @@ enum class Class : std::uint8_t {
     container, floating, covering, compound, masculine, feminine, person, animal, thing, fire_words,
     fire_verb, meta_verb, meta_noun, meta, question, question_word, injection, narrative, subordinate,
     do_not, whatever, never_mind, correction, same_noise, irregular, irregular_verb, foreign, foreign_weak,
+    empty, except, what_stands, shade_of, contrast_change, dressed_as, only, unwanted, verb_around,
+    verb_fill, word_a, word_against, word_all, word_and, word_around, word_as, word_at, word_away, word_by,
+    word_chop, word_clear, word_cut, word_dark, word_down, word_during, word_except, word_facing,
+    word_factor, word_fall, word_for, word_from, word_get, word_give, word_half, word_has, word_have,
+    word_here, word_horizontally, word_in, word_it, word_its, word_leave, word_like, word_made, word_make,
+    word_moon, word_neither, word_nor, word_not, word_nothing, word_now, word_of, word_off, word_on,
+    word_one, word_ones, word_out, word_place, word_places, word_position, word_positions, word_put,
+    word_rainbow, word_remain, word_remains, word_same, word_sideways, word_sky, word_stars, word_stay,
+    word_stays, word_substitute, word_sun, word_take, word_there, word_throw, word_times, word_to, word_try,
+    word_unchanged, word_untouched, word_up, word_use, word_vertically, word_want, word_wide, word_wipe,
+    word_with, word_x,
     Count
     // clang-format on
 };
@@ -73,6 +84,10 @@ Match match(Class word_class, std::span<const Word> words);
 /// Tells whether the phrase is of the class; its meaning.
 bool has(Class word_class, std::string_view phrase);
 std::optional<std::string_view> meaning(Class word_class, std::string_view phrase);
+
+/// Tells whether the word serves the grammar (articles, prepositions, verbs) or describes; no slip is looked
+/// for in it.
+bool is_grammatical(std::string_view word);
 
 /// Bits of Kind of one word; 0 for a word that is in no list.
 std::uint32_t kinds_of(std::string_view word);

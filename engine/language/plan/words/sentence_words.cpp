@@ -10,6 +10,8 @@
 namespace gse::language::plan {
 namespace {
 
+constexpr std::size_t LongestWord = 20;  // letters of a word that may be mended
+
 bool is_letter(char letter) {
     const auto byte = static_cast<unsigned char>(letter);
     return std::isalnum(byte) != 0 || byte >= 0x80 || letter == '\'' || letter == '-';
@@ -127,26 +129,28 @@ bool is_spellable(const std::string& word) {
 
 }  // namespace
 
-std::string mended(std::string_view typed, std::span<const std::string> needed, bool needed_only) {
-    std::string best;
-    int best_cost = 1000;
-    if (typed.size() < 2 || typed.size() > 20) return best;
-    const auto consider = [&](const std::string& word, int cost) {
+std::vector<std::string> slips_of(std::string_view typed, std::span<const std::string> needed,
+                                  std::size_t most) {
+    std::vector<std::pair<int, std::string>> found;
+    if (typed.size() < 2 || typed.size() > LongestWord) return {};
+    for_slips(typed, [&](const std::string& word, int cost) {
         if (word.size() < 3) return;
         const bool is_needed = std::find(needed.begin(), needed.end(), word) != needed.end();
-        if (!is_needed && needed_only) return;
+        if (!is_needed && typed.size() < 3 && !has(Class::worn, word)) return;
         if (!is_needed && !is_spellable(word)) {
             if (typed.size() < 5 || !is_word(word)) return;
             cost += 10;
         }
         if (is_needed) cost -= 2;
-        if (cost < best_cost) {
-            best_cost = cost;
-            best = word;
-        }
-    };
-    for_slips(typed, consider);
-    return best;
+        if (std::none_of(found.begin(), found.end(), [&](const auto& each) { return each.second == word; }))
+            found.emplace_back(cost, word);
+    });
+    std::stable_sort(found.begin(), found.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::vector<std::string> words;
+    for (auto& [cost, word] : found)
+        if (words.size() < most) words.push_back(std::move(word));
+    return words;
 }
 
 namespace {
@@ -196,11 +200,20 @@ SentenceWords sentence_words(std::string_view clean, std::span<const std::string
     }
     std::vector<std::string> words;
     for (const auto& piece : pieces) spell(words, without_accents(piece));
+    for (std::size_t i = 0; i + 1 < words.size(); ++i) {  // "sun glasses"
+        const auto joined = words[i] + words[i + 1];
+        const bool apart = has(Class::worn, words[i] + " " + words[i + 1]) ||
+                           has(Class::compound, words[i] + " " + words[i + 1]);
+        if (apart || words[i].size() < 3 || words[i + 1].size() < 3) continue;
+        if (!has(Class::worn, joined) && !has(Class::thing, joined) && !has(Class::held, joined)) continue;
+        words[i] = joined;
+        words.erase(words.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+    }
     for (auto& word : words) {
         const bool letters = std::isalpha(static_cast<unsigned char>(word[0])) != 0;
         const bool is_needed = std::find(needed.begin(), needed.end(), word) != needed.end();
         if (letters && !is_word(word) && !is_needed && word.find('-') == std::string::npos) {
-            if (auto other = mended(word, needed); !other.empty()) word = other;
+            if (auto other = slips_of(word, needed, 1); !other.empty()) word = other.front();
             else found.unknown.push_back(word);
         }
         auto made = word_of(word);

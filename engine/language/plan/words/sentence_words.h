@@ -19,8 +19,9 @@ struct SentenceWords {
 /// `needed`: words of the scene and of the source, lower case; misspelt words are these before others.
 SentenceWords sentence_words(std::string_view clean, std::span<const std::string> needed);
 
-/// Word one slip away from `typed` (letter left out, doubled, wrong, swapped): one of `needed`, else one of
-/// the lexicon; empty where there is none.
-std::string mended(std::string_view typed, std::span<const std::string> needed, bool needed_only = false);
+/// Words one slip away from `typed` (letter left out, doubled, wrong, swapped), likely ones first, at most
+/// `most`: those of `needed`, then those of the lexicon.
+std::vector<std::string> slips_of(std::string_view typed, std::span<const std::string> needed,
+                                  std::size_t most);
 
 }  // namespace gse::language::plan
