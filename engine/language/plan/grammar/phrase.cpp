@@ -46,7 +46,7 @@ std::string joined_texts(std::span<const Word> words) {
     return text;
 }
 
-bool is_number(std::string_view text) {
+bool is_count(std::string_view text) {
     return !text.empty() && text.size() < 5 && std::all_of(text.begin(), text.end(), [](char c) {
         return std::isdigit(static_cast<unsigned char>(c)) != 0;
     });
@@ -188,7 +188,7 @@ void Cursor::take_determiners(Phrase& phrase) {
             at += found.length;
             phrase.count = found.value;
             if (found.value == "1") phrase.count.clear(), phrase.single = true, phrase.indefinite = true;
-        } else if (is_number(word().text) && !peek(Class::unit, 1) && !peek(Class::degrees, 1)) {
+        } else if (is_count(word().text) && !peek(Class::unit, 1) && !peek(Class::degrees, 1)) {
             phrase.count = word().text;
             if (phrase.count == "1") phrase.count.clear(), phrase.single = true;
             ++at;

@@ -244,7 +244,7 @@ bool Reader::style_text(const Targets& targets) {
     std::string text = before + std::string(style.value);
     ahead.at += style.length;
     while (const auto more = ahead.peek(Class::style)) {
-        text += " " + std::string(more.value);
+        text.append(1, ' ').append(more.value);
         ahead.at += more.length;
     }
     if (ahead.is_owner_mark()) ++ahead.at;
@@ -254,7 +254,7 @@ bool Reader::style_text(const Targets& targets) {
         ++artist.at;
         if (artist.take(Class::definite), artist.peek(Class::style_word)) ++artist.at, artist.take(Class::of);
         if (const auto who = artist.peek(Class::style)) {
-            text += " " + std::string(who.value);
+            text.append(1, ' ').append(who.value);
             artist.at += who.length;
             ahead.at = artist.at;
         }
@@ -325,7 +325,7 @@ bool Reader::pose_text(const Targets& targets) {
         ahead.at += verb.length;
     } else return false;
     while (const auto manner = ahead.peek(Class::pose_manner)) {
-        text += " " + std::string(manner.value);
+        text.append(1, ' ').append(manner.value);
         ahead.at += manner.length;
     }
     c_.at = ahead.at;

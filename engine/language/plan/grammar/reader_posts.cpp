@@ -6,7 +6,7 @@
 namespace gse::language::plan {
 namespace {
 
-std::string first_word(std::string_view phrase) { return std::string(phrase.substr(0, phrase.find(' '))); }
+std::string leading_word(std::string_view phrase) { return std::string(phrase.substr(0, phrase.find(' '))); }
 std::string last_word(std::string_view phrase) {
     const auto blank = phrase.rfind(' ');
     return std::string(blank == std::string_view::npos ? phrase : phrase.substr(blank + 1));
@@ -49,7 +49,7 @@ bool Reader::list_goes_on() {
 }
 
 bool Reader::own_pattern(const Target& subject, const Phrase& phrase) {
-    const auto last = last_word(phrase.noun), first = first_word(phrase.noun);
+    const auto last = last_word(phrase.noun), first = leading_word(phrase.noun);
     std::string colour;
     std::string value;
     for (const auto& attribute : phrase.attributes) {
