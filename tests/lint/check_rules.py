@@ -60,6 +60,13 @@ SUB_ROOMS = {
         "search": {"request", "interfaces", "masks", "placement", "target_views/strategies"},
         "optimise": {"request", "interfaces", "masks", "placement", "target_views"},
     },
+    "language": {
+        "": set(),
+        "plan/notation": set(),
+        "plan/words": {"plan/notation"},
+        "plan/grammar": {"plan/notation", "plan/words"},
+        "plan": {"plan/notation", "plan/words", "plan/grammar"},
+    },
     "laboratory": {
         "synth": {"synth/objects"},
         "synth/objects": set(),

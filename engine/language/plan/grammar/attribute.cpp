@@ -1,0 +1,266 @@
+// Reading descriptions: colours, materials, patterns, sizes, looks and poses.
+#include <algorithm>
+
+#include "engine/language/plan/grammar/phrase.h"
+
+namespace gse::language::plan {
+namespace {
+
+bool is_colour(std::string_view word) { return has(Class::colour, word); }
+
+std::string text_of(std::span<const Word> words) {
+    std::string text;
+    for (const auto& word : words) text += (text.empty() ? "" : " ") + word.text;
+    return text;
+}
+
+/// Length and name of the colour that the words begin with, shades before it ("dark blue"); 0 for none.
+std::size_t colour_length(std::span<const Word> words, std::string& name) {
+    std::size_t at = 0;
+    while (at < words.size() && has(Class::shade, words[at].text) &&
+           match(Class::colour, words.subspan(at)).length < 2)
+        ++at;
+    const auto found = match(Class::colour, words.subspan(std::min(at, words.size())));
+    if (found) {
+        const std::size_t length = at + found.length;
+        name = text_of(words.first(length));
+        return length;
+    }
+    if (words.empty()) return 0;
+    if (const auto shade =
+            match(Class::shade_of, words.subspan(std::min(at, words.size())))) {  // "a deeper shade of red"
+        const auto colour = match(Class::colour, words.subspan(at + shade.length));
+        if (colour) {
+            name = text_of(words.first(at)) + (at > 0 ? " " : "") + std::string(colour.value);
+            return at + shade.length + colour.length;
+        }
+    }
+    const auto& word = words[0].text;
+    if (word.ends_with("-colored") && word.size() > 8) {
+        name = word;
+        return 1;
+    }
+    // "gold colored"
+    const bool named = words.size() > 1 && words[1].text == "colored" && !words[0].mark;
+    if (named) {
+        const auto metal = meaning(Class::material, word);
+        name = metal && is_colour(word) ? word : metal ? std::string(*metal) : word;
+        return 2;
+    }
+    return 0;
+}
+
+}  // namespace
+
+bool Cursor::take_colour(Attribute& attribute, bool in_phrase) {
+    std::string name;
+    std::size_t length = colour_length(rest(), name);
+    if (length == 0) return false;
+    std::string all = name;
+    at += length;
+    // "red, yellow and blue"; a comma alone joins only where "and" follows
+    while (!done()) {
+        std::size_t comma = is_mark(",") ? 1 : 0;
+        std::size_t joint = peek(Class::conjunction, comma).length;
+        if (is_mark("/")) comma = 1, joint = 0;
+        if (comma + joint == 0) break;
+        std::size_t begin = comma + joint;
+        while (peek(Class::degree, begin) || is(Class::word_half, begin)) ++begin;
+        const std::size_t more = colour_length(rest(begin), name);
+        if (more == 0) break;
+        const std::size_t behind = begin + more;
+        // "a red bear and a blue bear" has an article between; "blue and white horse": of one thing
+        const bool list_goes_on =
+            joint > 0 || is_mark(",/", behind) || peek(Class::conjunction, behind).length > 0;
+        if (!list_goes_on && !is_mark("/")) break;
+        if (in_phrase && noun_length(behind) == 0 && joint > 0 && !ends_phrase(behind, true) &&
+            !peek(Class::pattern_plain, behind))
+            break;
+        all += " and " + name;
+        at += behind;
+    }
+    attribute = {Quality::Colour, all, all, ""};
+    if (const auto pattern = peek(Class::pattern_plain); pattern && peek(Class::pattern)) {
+        // "red and white striped": colours of the pattern; "black striped" too
+        attribute = {Quality::Pattern, std::string(peek(Class::pattern).value), "", all};
+        take(Class::pattern);
+        attribute.typed = attribute.value;
+    }
+    return true;
+}
+
+bool Cursor::take_graded(Attribute& attribute) {
+    // "more wooden", "less shiny": as without the word
+    const bool more = static_cast<bool>(peek(Class::more)), less = static_cast<bool>(peek(Class::less));
+    if (!more && !less && !peek(Class::most)) return false;
+    const std::size_t start = at;
+    if (const auto shift = take(Class::shift)) {
+        attribute = {Quality::Shift, std::string(shift.value), text_of(words_.subspan(start, at - start)),
+                     ""};
+        return true;
+    }
+    if (const auto size = take(Class::size)) {
+        attribute = {Quality::Size, std::string(size.value), text_of(words_.subspan(start, at - start)), ""};
+        return true;
+    }
+    ++at;
+    if (take_attribute(attribute, false)) {
+        if (less) {
+            attribute.value = "less " + attribute.value;
+            if (attribute.quality != Quality::Colour && attribute.quality != Quality::Shift)
+                attribute.quality = Quality::State;
+        }
+        if (more && attribute.quality == Quality::State) attribute.value = "more " + attribute.value;
+        return true;
+    }
+    if (more && !done() && (kinds_of(word().text) & Kind::Adjective) != 0) {
+        attribute = {Quality::State, "more " + word().text, word().text, ""};
+        ++at;
+        return true;
+    }
+    at = start;
+    return false;
+}
+
+/// Adjectives that are in no class: "grumpy", "thatched".
+bool Cursor::take_other_attribute(Attribute& attribute, bool in_phrase) {
+    if (peek(Class::thing_name) || peek(Class::number)) return false;
+    const bool participle = word().text.ends_with("ed") && word().base != word().text && noun_length() == 0;
+    if (participle && in_phrase && noun_length(1) > 0 && !ends_phrase(1, true)) {  // "a thatched roof"
+        attribute = {Quality::Other, word().text, word().text, ""};
+        ++at;
+        return true;
+    }
+    const auto kinds = kinds_of(word().text);
+    const bool only_adjective =
+        (kinds & Kind::Adjective) != 0 && (kinds & (Concrete | Perhaps)) == 0 && noun_length() <= 1;
+    const bool noun_follows = in_phrase && noun_length(1) > 0 && !ends_phrase(1, true);
+    const bool ends = ends_phrase(1, true) && (kinds & Other) == 0;
+    if (only_adjective && !peek(Class::part) && !peek(Class::worn) && (noun_follows || ends) &&
+        !is_scene_noun(word().text)) {
+        attribute = {Quality::Other, word().text, word().text, ""};
+        ++at;
+        return true;
+    }
+    return false;
+}
+
+bool Cursor::take_plain_attribute(Attribute& attribute, bool in_phrase) {
+    const std::size_t start = at;
+    const auto made = [&](Quality quality, const Match& found, bool as_typed) {
+        at += found.length;
+        const auto typed = text_of(words_.subspan(start, at - start));
+        attribute = {quality, std::string(found.value), as_typed ? typed : std::string(found.value), ""};
+        return true;
+    };
+    if (in_phrase)
+        if (const auto found = peek(Class::compound); found.length > 1) return false;
+    if (const auto found = peek(Class::worn_adjective)) return made(Quality::Worn, found, false);
+    if (const auto found = peek(Class::unworn_adjective)) return made(Quality::Unworn, found, false);
+    if (const auto animal = peek(Class::pattern_animal);
+        animal && match(Class::pattern_plain, rest(animal.length)) && !is(Class::word_rainbow, 1)) {
+        const auto value = animal.value;  // "zebra stripes"
+        at += animal.length;
+        take(Class::pattern_plain);
+        attribute = {Quality::Pattern, std::string(value), std::string(value), ""};
+        return true;
+    }
+    if (const auto found = peek(Class::pattern_plain))
+        return made(Quality::Pattern,
+                    {found.length, meaning(Class::pattern, found.value).value_or(found.value)}, false);
+    if (const auto found = peek(Class::material)) return made(Quality::Material, found, false);
+    if (const auto found = peek(Class::material_surface)) return made(Quality::Surface, found, false);
+    if (const auto found = peek(Class::shift);
+        found && !(in_phrase && found.length == 1 && !has(Class::shade, word().text)))
+        return made(Quality::Shift, found, true);
+    if (const auto found = peek(Class::size)) return made(Quality::Size, found, true);
+    if (const auto found = peek(Class::state)) return made(Quality::State, found, true);
+    if (const auto found = peek(Class::side);
+        found && in_phrase &&
+        (peek(Class::part, found.length) || noun_length(found.length) > 0 ||
+         is(Class::word_one, found.length)))
+        return made(Quality::Side, found, false);
+    if (const auto found = peek(Class::pose); found && !peek(Class::fire_words))
+        return made(Quality::Pose, found, true);
+    if (in_phrase)
+        if (const auto found = peek(Class::pattern_animal);
+            found && noun_length(found.length) > 0 && !ends_phrase(found.length, true))
+            return made(Quality::Pattern, found, false);
+    if (word().text.ends_with("-shaped") || word().text.ends_with("-like") ||
+        word().text.ends_with("-eyed") || word().text.ends_with("-legged")) {
+        attribute = {Quality::Other, word().text, word().text, ""};
+        ++at;
+        return true;
+    }
+    return take_other_attribute(attribute, in_phrase);
+}
+
+bool Cursor::take_attribute(Attribute& attribute, bool in_phrase) {
+    const std::size_t start = at;
+    if (done() || word().mark) return false;
+    while (const auto degree = peek(Class::degree)) {
+        // "light", "little", "pretty" may describe; "too" and "so" may stand alone
+        if (peek(Class::size) && !has(Class::shade, word().text) &&
+            !has(Class::size, word(degree.length).text) && noun_length(degree.length) > 0 && in_phrase)
+            break;
+        at += degree.length;
+        if (done()) break;
+    }
+    if (is(Class::word_half) && peek(Class::colour, 1)) ++at;
+    if (take_graded(attribute) || take_colour(attribute, in_phrase) ||
+        take_plain_attribute(attribute, in_phrase))
+        return true;
+    at = start;
+    return take_plain_attribute(attribute, in_phrase);
+}
+
+std::vector<Attribute> Cursor::take_attributes() {
+    std::vector<Attribute> attributes;
+    Attribute next;
+    while (take_attribute(next, false)) {
+        attributes.push_back(next);
+        Cursor ahead = *this;
+        const bool comma = ahead.take_mark(',');
+        const bool joint = static_cast<bool>(ahead.take(Class::conjunction));
+        if (!comma && !joint) {
+            Attribute more;
+            Cursor adjacent = *this;
+            if (!adjacent.take_attribute(more, false)) break;
+            continue;
+        }
+        Attribute more;
+        Cursor probe = ahead;
+        if (!probe.take_attribute(more, false) ||
+            (!probe.at_end_of_clause() && probe.noun_length() > 0 && !probe.ends_phrase(0, true)))
+            break;
+        if (probe.is_mark(":")) break;
+        at = ahead.at;
+    }
+    return attributes;
+}
+
+std::string brace_text(const Attribute& attribute) {
+    if (attribute.quality == Quality::Pattern && !attribute.colour.empty())
+        return attribute.value + " " + attribute.colour;
+    return attribute.typed;
+}
+
+Thing thing_of(const Phrase& phrase) {
+    Thing thing{phrase.noun, phrase.count == "all" ? "some" : phrase.count, {}};
+    if (thing.count == "2" && has(Class::pair_noun, phrase.noun)) thing.count.clear();  // "a pair of glasses"
+    if (phrase.plural && thing.count.empty() && !has(Class::pair_noun, phrase.noun)) thing.count = "some";
+    for (const auto& attribute : phrase.attributes) {
+        if (attribute.quality == Quality::Worn || attribute.quality == Quality::Unworn) continue;
+        if (attribute.quality == Quality::Colour && attribute.value.find(" and ") != std::string::npos) {
+            std::string rest = attribute.value;
+            for (std::size_t cut = rest.find(" and "); cut != std::string::npos; cut = rest.find(" and ")) {
+                thing.attributes.push_back(rest.substr(0, cut));
+                rest = rest.substr(cut + 5);
+            }
+            thing.attributes.push_back(rest);
+        } else thing.attributes.push_back(brace_text(attribute));
+    }
+    return thing;
+}
+
+}  // namespace gse::language::plan

@@ -1,0 +1,313 @@
+// Steps of a plan and the rules that they follow.
+#include "engine/language/plan/grammar/draft.h"
+
+#include <algorithm>
+#include <map>
+
+namespace gse::language::plan {
+namespace {
+
+std::string canonical(std::string_view word) {
+    if (const auto material = meaning(Class::material, word)) return std::string(*material);
+    if (const auto surface = meaning(Class::material_surface, word)) return std::string(*surface);
+    return std::string(word);
+}
+
+constexpr std::pair<std::string_view, std::string_view> Opposites[] = {{"bigger", "smaller"},
+                                                                       {"taller", "shorter"},
+                                                                       {"wider", "narrower"},
+                                                                       {"thicker", "thinner"},
+                                                                       {"longer", "shorter"},
+                                                                       {"move left", "move right"},
+                                                                       {"move up", "move down"},
+                                                                       {"move forward", "move back"},
+                                                                       {"lighter", "darker"},
+                                                                       {"brighter", "darker"},
+                                                                       {"more saturated", "less saturated"},
+                                                                       {"older", "younger"},
+                                                                       {"old", "young"},
+                                                                       {"happy", "sad"},
+                                                                       {"open", "closed"},
+                                                                       {"sitting", "standing"},
+                                                                       {"night", "day"}};
+
+bool opposite(std::string_view a, std::string_view b) {
+    return std::any_of(std::begin(Opposites), std::end(Opposites), [&](const auto& pair) {
+        return (pair.first == a && pair.second == b) || (pair.first == b && pair.second == a);
+    });
+}
+
+int rank(Operation operation) {
+    switch (operation) {
+        case Operation::Remove: return 2;
+        case Operation::Replace: return 3;
+        case Operation::Add:
+        case Operation::Duplicate: return 4;
+        case Operation::Style:
+        case Operation::Environment: return 5;
+        case Operation::None: return 6;
+        case Operation::Refuse: return 7;
+        default: return 1;
+    }
+}
+
+Operation operation_for(Quality quality) {
+    switch (quality) {
+        case Quality::Colour:
+        case Quality::Shift: return Operation::Recolour;
+        case Quality::Material:
+        case Quality::Surface: return Operation::Material;
+        case Quality::Pattern: return Operation::Pattern;
+        case Quality::Size: return Operation::Transform;
+        case Quality::Pose: return Operation::Pose;
+        default: return Operation::Alter;
+    }
+}
+
+}  // namespace
+
+Target Draft::scene_target() const {
+    return {Target::Kind::There, scene_reference(), std::nullopt, std::nullopt, ""};
+}
+
+Target Draft::ground_target() const {
+    const auto ground = scene_->ground();
+    return ground ? target_of_thing(*ground) : Target{};
+}
+
+void Draft::push(Step step) {
+    if (std::find(steps_.begin(), steps_.end(), step) == steps_.end()) steps_.push_back(std::move(step));
+}
+
+bool Draft::is_so(const Target& target, const Attribute& attribute) const {
+    if (!target.thing) return false;
+    const auto& told = scene_->things[*target.thing].attributes;
+    return std::any_of(told.begin(), told.end(), [&](const std::string& word) {
+        return word == attribute.value || word == attribute.typed || canonical(word) == attribute.value;
+    });
+}
+
+void Draft::apply(const Target& target, const Attribute& attribute) {
+    if (attribute.quality == Quality::Side || !target.found()) return;
+    if (attribute.quality == Quality::Worn || attribute.quality == Quality::Unworn) {
+        Phrase phrase;
+        phrase.noun = attribute.value;
+        phrase.typed = attribute.value;
+        if (attribute.quality == Quality::Worn) {
+            add(phrase, "worn by", {target});
+            return;
+        }
+        const auto found = things_named(phrase);
+        if (!found.empty()) remove(target_of_thing(found.front()));
+        else if (is_part(phrase) && target.kind == Target::Kind::There) remove(part_target(target, phrase));
+        else same_ = true;
+        return;
+    }
+    if (target.kind == Target::Kind::Made && attribute.quality != Quality::Pose) {
+        auto& attributes = steps_[*target.step].thing.attributes;
+        const auto text = brace_text(attribute);
+        if (steps_[*target.step].operation == Operation::Duplicate) return;
+        if (std::find(attributes.begin(), attributes.end(), text) == attributes.end())
+            attributes.push_back(text);
+        return;
+    }
+    const bool change = attribute.quality == Quality::Colour || attribute.quality == Quality::Material ||
+                        attribute.quality == Quality::Surface || attribute.quality == Quality::Size ||
+                        attribute.quality == Quality::State;
+    if (change && is_so(target, attribute)) {
+        same_ = true;
+        std::erase_if(steps_, [&](const Step& step) {  // "make it blue, then red again"
+            return step.operation == operation_for(attribute.quality) && step.subject == target.reference &&
+                   step.anchors.empty();
+        });
+        return;
+    }
+    step(operation_for(attribute.quality), target, attribute.value,
+         attribute.quality == Quality::Pattern ? attribute.colour : std::string());
+}
+
+void Draft::deny(const Target& target, const Attribute& attribute) {
+    Step denied;
+    denied.operation = operation_for(attribute.quality);
+    denied.subject = target.reference;
+    denied.text = attribute.value;
+    denied_.push_back(denied);
+}
+
+void Draft::step(Operation operation, const Target& target, std::string text, std::string text2) {
+    Step made;
+    made.operation = operation;
+    made.subject = target.reference;
+    made.text = std::move(text);
+    made.text2 = std::move(text2);
+    push(made);
+}
+
+void Draft::move(const Target& target, std::string change, const Target& other) {
+    Step made;
+    made.operation = Operation::Transform;
+    made.subject = target.reference;
+    made.text = std::move(change);
+    made.anchors = {other.reference};
+    push(made);
+}
+
+Target Draft::replace(const Target& target, const Phrase& phrase) {
+    if (target.thing && !phrase.noun.empty() && !phrase.another) {
+        const auto& noun = scene_->things[*target.thing].noun;
+        if (phrase.noun == noun &&
+            (phrase.count.empty() || phrase.count == "all")) {  // with itself: how it is
+            if (phrase.attributes.empty()) same_ = true;
+            for (const auto& attribute : phrase.attributes) apply(target, attribute);
+            return target;
+        }
+    }
+    Step made;
+    made.operation = Operation::Replace;
+    made.subject = target.reference;
+    made.thing = thing_of(phrase);
+    push(made);
+    Target result{
+        Target::Kind::Made, {{{made.thing.noun, "", {}}}, false}, std::nullopt, steps_.size() - 1, ""};
+    for (const auto& attribute : phrase.attributes)
+        if (attribute.quality == Quality::Worn) apply(result, attribute);
+    return result;
+}
+
+Target Draft::add(const Phrase& phrase, std::string_view relation, const std::vector<Target>& anchors) {
+    const auto found = things_named(phrase);
+    const bool there = !found.empty() && !phrase.another && phrase.count.empty() && !phrase.plural;
+    if (there && relation == "worn by") {
+        const auto target = target_of_thing(found.front());
+        same_ = true;
+        for (const auto& attribute : phrase.attributes) apply(target, attribute);
+        return target;
+    }
+    Step made;
+    made.operation = Operation::Add;
+    made.thing = thing_of(phrase);
+    made.relation = relation;
+    for (const auto& anchor : anchors) made.anchors.push_back(anchor.reference);
+    if (made.anchors.empty()) made.anchors.push_back(scene_reference());
+    steps_.push_back(made);
+    return {Target::Kind::Made, {{{made.thing.noun, "", {}}}, false}, std::nullopt, steps_.size() - 1, ""};
+}
+
+void Draft::set_anchors(const Target& made, std::string_view relation, const std::vector<Target>& anchors) {
+    if (!made.step) return;
+    auto& step = steps_[*made.step];
+    if (step.operation != Operation::Add) return;
+    step.relation = relation;
+    step.anchors.clear();
+    for (const auto& anchor : anchors) step.anchors.push_back(anchor.reference);
+    if (relation != "between" || anchors.size() != 1) return;
+    const auto of_all = anchors.front().reference.links.front();  // "between the cars"
+    step.anchors.clear();
+    for (std::size_t i = 0; of_all.count == "all" && i < scene_->things.size(); ++i)
+        if (scene_->things[i].noun == of_all.noun) step.anchors.push_back(target_of_thing(i).reference);
+    if (step.anchors.size() == 2) return;
+    step.relation = "beside";
+    step.anchors = {anchors.front().reference};
+}
+
+void Draft::set_anchor(const Target& made, std::string_view relation, const Target& anchor) {
+    set_anchors(made, relation, {anchor});
+}
+
+void Draft::ground(const Phrase& phrase) {
+    const auto old = scene_->ground();
+    Step made;
+    made.operation = Operation::Ground;
+    made.text2 = old ? scene_->things[*old].noun : "-";
+    made.thing = thing_of(phrase);
+    made.thing.count.clear();
+    if (!phrase.typed.empty() && phrase.plural) made.thing.noun = phrase.typed;
+    if (old && (made.thing.noun == made.text2 || are_synonyms(made.text2, made.thing.noun))) {
+        same_ = true;
+        for (const auto& attribute : phrase.attributes) apply(target_of_thing(*old), attribute);
+        return;
+    }
+    push(made);
+}
+
+void Draft::remove(const Target& target) { step(Operation::Remove, target); }
+
+void Draft::duplicate(const Target& target, std::string count) {
+    step(Operation::Duplicate, target, std::move(count));
+}
+
+void Draft::environment(std::string text) { step(Operation::Environment, scene_target(), std::move(text)); }
+
+void Draft::style(const Target& target, std::string text) { step(Operation::Style, target, std::move(text)); }
+
+void Draft::refuse(std::string_view reason, std::string_view word) {
+    Step made;
+    made.operation = Operation::Refuse;
+    made.text = reason;
+    made.text2 = word;
+    push(made);
+}
+
+void Draft::drop_last() {
+    if (!steps_.empty()) steps_.pop_back();
+    last_.reset();
+}
+
+bool Draft::contradicts() const {
+    for (std::size_t i = 0; i < steps_.size(); ++i) {
+        const auto& a = steps_[i];
+        for (const auto& denied : denied_)
+            if (a.operation == denied.operation && a.subject == denied.subject && a.text == denied.text)
+                return true;
+        for (std::size_t j = 0; a.operation == Operation::Remove && j < steps_.size(); ++j) {
+            const auto& b = steps_[j];
+            const bool on_removed =
+                std::find(b.anchors.begin(), b.anchors.end(), a.subject) != b.anchors.end();
+            if (i != j && (b.subject == a.subject || on_removed)) return true;
+        }
+        for (std::size_t j = i + 1; j < steps_.size(); ++j) {
+            const auto& b = steps_[j];
+            if (a.operation == Operation::Ground && b.operation == Operation::Ground) return true;
+            if (a.operation != b.operation || !(a.subject == b.subject)) continue;
+            if (opposite(a.text, b.text)) return true;
+            const bool colours =
+                a.operation == Operation::Recolour && has(Class::shift, a.text) == has(Class::shift, b.text);
+            const bool materials = a.operation == Operation::Material && has(Class::material, a.text) &&
+                                   has(Class::material, b.text);
+            if ((colours || materials || a.operation == Operation::Replace) && a.text != b.text) return true;
+            if (a.operation == Operation::Replace) return true;
+        }
+    }
+    return false;
+}
+
+Plan Draft::finish() const {
+    if (contradicts()) return refusal(reason::Contradiction);
+    Plan plan;
+    if (steps_.empty()) {
+        Step none;
+        none.operation = Operation::None;
+        none.text = asked_nothing_ && !same_ ? reason::NothingAsked : reason::AlreadySo;
+        plan.steps = {none};
+        return plan;
+    }
+    std::vector<std::string> made;
+    for (const auto& step : steps_)
+        if (!step.thing.noun.empty() && step.operation != Operation::Ground) made.push_back(step.thing.noun);
+    const auto on_made = [&](const Step& step) {
+        const bool there =
+            step.subject.links.empty() ||
+            std::any_of(scene_->things.begin(), scene_->things.end(),
+                        [&](const SceneThing& thing) { return thing.noun == step.subject.root(); });
+        return !there && rank(step.operation) == 1 &&
+               std::find(made.begin(), made.end(), step.subject.root()) != made.end();
+    };
+    plan.steps = steps_;
+    std::stable_sort(plan.steps.begin(), plan.steps.end(), [&](const Step& a, const Step& b) {
+        const int first = on_made(a) ? 4 : rank(a.operation), second = on_made(b) ? 4 : rank(b.operation);
+        return first < second;
+    });
+    return plan;
+}
+
+}  // namespace gse::language::plan

@@ -1,0 +1,422 @@
+// Reading noun phrases.
+#include "engine/language/plan/grammar/phrase.h"
+
+#include <algorithm>
+#include <cctype>
+
+namespace gse::language::plan {
+namespace {
+
+const Word NoWord{};
+
+constexpr Class EndingClasses[] = {Class::relation,    Class::inverse_relation,
+                                   Class::wearing,     Class::having,
+                                   Class::without,     Class::made_of,
+                                   Class::of,          Class::into,
+                                   Class::to,          Class::from,
+                                   Class::like,        Class::relative,
+                                   Class::than,        Class::contrast,
+                                   Class::rather_than, Class::conjunction,
+                                   Class::article,     Class::definite,
+                                   Class::possessive,  Class::negation,
+                                   Class::there_is,    Class::modal,
+                                   Class::pronoun_it,  Class::pronoun_person,
+                                   Class::alternative, Class::all,
+                                   Class::some};
+
+/// Classes that end a phrase when its noun is there already: "the bear smile", "the bear upside down".
+constexpr Class EndingAfterNoun[] = {
+    Class::copula,  Class::pose,        Class::verb_pose,  Class::look_word, Class::emerging,
+    Class::gone,    Class::direction,   Class::flipping,   Class::turning,   Class::degree,
+    Class::as_well, Class::holding,     Class::riding,     Class::times,     Class::more,
+    Class::less,    Class::verb_become, Class::verb_keep,  Class::instead,   Class::courtesy,
+    Class::number,  Class::another,     Class::fire_words, Class::clockwise, Class::verb_face,
+    Class::none,    Class::sequence};
+
+constexpr Class NounClasses[] = {
+    Class::compound,    Class::worn,         Class::held,         Class::part,        Class::ground,
+    Class::place,       Class::thing,        Class::person,       Class::animal,      Class::container,
+    Class::ridden,      Class::floating,     Class::pair_noun,    Class::ground_name, Class::backdrop,
+    Class::animal_name, Class::person_name,  Class::vehicle_name, Class::thing_name,  Class::furniture_name,
+    Class::plant_name,  Class::clothes_name, Class::colour_word,  Class::pattern_word};
+
+std::string joined_texts(std::span<const Word> words) {
+    std::string text;
+    for (const auto& word : words) text += (text.empty() ? "" : " ") + word.text;
+    return text;
+}
+
+bool is_count(std::string_view text) {
+    return !text.empty() && text.size() < 5 && std::all_of(text.begin(), text.end(), [](char c) {
+        return std::isdigit(static_cast<unsigned char>(c)) != 0;
+    });
+}
+
+constexpr std::string_view AdjectiveEndings[] = {"ful",     "ous",      "ish",   "less",    "-like",
+                                                 "-shaped", "-colored", "-eyed", "-legged", "-looking",
+                                                 "-sized",  "-covered", "able",  "ible",    "esque"};
+
+bool looks_like_adjective(std::string_view word) {
+    return std::any_of(
+        std::begin(AdjectiveEndings), std::end(AdjectiveEndings),
+        [&](std::string_view ending) { return word.size() > ending.size() + 2 && word.ends_with(ending); });
+}
+
+}  // namespace
+
+const Word& Cursor::word(std::size_t ahead) const {
+    return at + ahead < words_.size() ? words_[at + ahead] : NoWord;
+}
+
+std::span<const Word> Cursor::rest(std::size_t ahead) const {
+    return at + ahead < words_.size() ? words_.subspan(at + ahead) : std::span<const Word>();
+}
+
+Match Cursor::take(Class word_class) {
+    const auto found = peek(word_class);
+    at += found.length;
+    return found;
+}
+
+bool Cursor::is_mark(std::string_view marks, std::size_t ahead) const {
+    const auto& here = word(ahead);
+    return here.mark && marks.find(here.text[0]) != std::string_view::npos;
+}
+
+bool Cursor::take_mark(char mark) {
+    if (!is_mark(std::string_view(&mark, 1))) return false;
+    ++at;
+    return true;
+}
+
+bool Cursor::at_end_of_clause() const { return done() || is_mark(".,;!?:"); }
+
+bool Cursor::is_scene_noun(std::string_view noun) const {
+    return std::any_of(scene_->things.begin(), scene_->things.end(), [&](const SceneThing& thing) {
+        const auto blank = thing.noun.rfind(' ');
+        return thing.noun == noun || (blank != std::string::npos && thing.noun.substr(blank + 1) == noun);
+    });
+}
+
+std::size_t Cursor::noun_length(std::size_t ahead) const {
+    std::size_t longest = 0;
+    const auto here = rest(ahead);
+    if (here.empty() || here[0].mark) return 0;
+    for (const auto kind : NounClasses) longest = std::max(longest, match(kind, here).length);
+    for (const auto& thing : scene_->things) {
+        const auto count =
+            static_cast<std::size_t>(std::count(thing.noun.begin(), thing.noun.end(), ' ')) + 1;
+        if (count > longest && count <= here.size()) {
+            const auto first = joined_texts(here.first(count));
+            const auto last = count > 1 ? joined_texts(here.first(count - 1)) + " " + here[count - 1].singular
+                                        : here[0].singular;
+            if (first == thing.noun || last == thing.noun) longest = count;
+        }
+    }
+    if (longest > 0) return longest;
+    constexpr std::uint32_t Nouns = Concrete | Perhaps | Other;
+    const auto kinds = kinds_of(here[0].singular);
+    if ((kinds & Nouns) != 0) return 1;
+    if ((kinds & Kind::Verb) != 0 && here[0].text.ends_with('r')) return 1;
+    return 0;
+}
+
+bool Cursor::ends_phrase(std::size_t ahead, bool after_noun) const {
+    if (word(ahead).text.empty() || word(ahead).mark) return true;
+    for (const auto kind : EndingClasses)
+        if (peek(kind, ahead)) return true;
+    if (!after_noun) return peek(Class::copula, ahead).length > 0 && noun_length(ahead) == 0;
+    const bool thing = (kinds_of(word(ahead).text) & Concrete) != 0;
+    for (const auto kind : EndingAfterNoun)
+        if (peek(kind, ahead) && !(thing && kind == Class::verb_pose)) return true;
+    return false;
+}
+
+bool Cursor::take_pronoun(Phrase& phrase) {
+    phrase.begin = at;
+    constexpr std::pair<Class, Naming> Pronouns[] = {{Class::everything_else, Naming::EverythingElse},
+                                                     {Class::everything, Naming::Everything},
+                                                     {Class::pronoun_all, Naming::They},
+                                                     {Class::pronoun_it, Naming::It},
+                                                     {Class::pronoun_person, Naming::Person}};
+    for (const auto& [kind, naming] : Pronouns) {
+        const auto found = peek(kind);
+        if (!found) continue;
+        // "her hat", "this bear", "the thing on the grass"
+        if (naming != Naming::Everything && naming != Naming::EverythingElse) {
+            const bool determines = peek(Class::possessive).length == found.length ||
+                                    peek(Class::definite).length == found.length;
+            Attribute ignored;
+            Cursor ahead = *this;
+            ahead.at += found.length;
+            if (determines && !ahead.ends_phrase(0, true) &&
+                (ahead.noun_length() > 0 || ahead.take_attribute(ignored, true)) &&
+                (kind != Class::pronoun_person || ahead.noun_length() > 0))
+                continue;
+            const auto behind = ahead.peek(Class::relation);
+            if (found.length > 1 && (behind || ahead.peek(Class::relative))) continue;
+        }
+        at += found.length;
+        if (kind == Class::pronoun_it && is(Class::word_all)) {
+            ++at;
+            phrase.naming = Naming::They;
+            phrase.end = at;
+            return true;
+        }
+        if (kind == Class::pronoun_all && is(Class::word_all)) ++at;
+        phrase.naming = naming;
+        phrase.definite = true;
+        phrase.end = at;
+        if (naming == Naming::Everything && peek(Class::except)) {
+            Cursor ahead = *this;
+            ahead.take(Class::except);
+            Phrase excepted;
+            if (ahead.take_phrase(excepted)) {
+                phrase.excepted.push_back(excepted);
+                at = ahead.at;
+                phrase.end = at;
+            }
+        }
+        return true;
+    }
+    return false;
+}
+
+void Cursor::take_determiners(Phrase& phrase) {
+    while (!done()) {
+        if (const auto found = peek(Class::number); found && !(found.length == 1 && word(1).text.empty())) {
+            at += found.length;
+            phrase.count = found.value;
+            if (found.value == "1") phrase.count.clear(), phrase.single = true, phrase.indefinite = true;
+        } else if (is_count(word().text) && !peek(Class::unit, 1) && !peek(Class::degrees, 1)) {
+            phrase.count = word().text;
+            if (phrase.count == "1") phrase.count.clear(), phrase.single = true;
+            ++at;
+            if (is(Class::word_x) && word(1).text.size() > 1) ++at;
+        } else if (take(Class::another)) phrase.another = true;
+        else if (take(Class::all)) phrase.count = "all", phrase.definite = true;
+        else if (take(Class::none)) phrase.none = true;
+        else if (take(Class::some)) phrase.count = "some";
+        else if (take(Class::article)) phrase.indefinite = true;
+        else if (peek(Class::definite)) take(Class::definite), phrase.definite = true;
+        else if (take(Class::possessive)) phrase.possessive = true;
+        else if (peek(Class::of) && phrase.count == "all") take(Class::of);
+        else if (take(Class::caption)) {
+        } else break;
+    }
+}
+
+void Cursor::close_noun(Phrase& phrase, std::size_t begin, std::size_t end) const {
+    const auto typed = words_.subspan(begin, end - begin);
+    phrase.typed = joined_texts(typed);
+    if (has(Class::pair_noun, phrase.typed) || has(Class::pair_noun, typed.back().text))
+        phrase.noun = phrase.typed;
+    else {
+        phrase.noun = typed.size() > 1
+                          ? joined_texts(typed.first(typed.size() - 1)) + " " + typed.back().singular
+                          : typed.back().singular;
+        if (const auto named = meaning(Class::compound, phrase.noun)) phrase.noun = *named;
+    }
+    // "stacks of books": the first noun is in plural
+    if (typed.size() > 2 && phrase.typed.find(" of ") != std::string::npos)
+        phrase.noun = typed.front().singular + phrase.typed.substr(typed.front().text.size());
+    const bool of = typed.size() > 2 && phrase.typed.find(" of ") != std::string::npos;
+    const auto& head = of ? typed.front() : typed.back();
+    phrase.plural = head.text != head.singular;
+    phrase.end = end;
+}
+
+bool Cursor::reads_as_noun(const Phrase& phrase) const {
+    if (is_scene_noun(word().singular)) return true;
+    bool last = ends_phrase(1, true);
+    const std::size_t length = noun_length();
+    if (length > 1) return true;
+    if (!last && length == 1) {  // "the animal blue": what follows describes and ends the clause
+        Cursor ahead = *this, whole = *this;
+        Attribute behind;
+        ++ahead.at;
+        const bool describes =
+            ahead.take_attribute(behind, false) && (ahead.at_end_of_clause() || ahead.ends_phrase(0, true));
+        last = describes && !(whole.take_attribute(behind, false) && whole.at > at + 1) &&
+               !ahead.is_scene_noun(word(1).singular);
+    }
+    if (!last || length == 0) {
+        // two nouns of which the first is also an adjective: "gold fish" describes
+        return false;
+    }
+    if (has(Class::ground, word().text) || has(Class::ground, word().singular)) return true;
+    const auto kinds = kinds_of(word().singular);
+    bool things = (kinds & Concrete) != 0;
+    for (const auto kind :
+         {Class::thing, Class::worn, Class::held, Class::floating, Class::animal_name, Class::person_name,
+          Class::vehicle_name, Class::plant_name, Class::clothes_name, Class::thing_name, Class::part})
+        things = things || peek(kind);
+    const bool plural = word().text != word().singular;
+    if (phrase.attributes.empty() && !phrase.has_determiner())
+        return things && (plural || !has(Class::material, word().text)) && !has(Class::colour, word().text) &&
+               !has(Class::size, word().text) && !has(Class::state, word().text) &&
+               !has(Class::pattern_plain, word().text) && !has(Class::pose, word().text);
+    if (!things) return false;
+    // "a darker red", "the blue": colours that name no thing
+    if (has(Class::size, word().text) || has(Class::state, word().text) ||
+        has(Class::pattern_plain, word().text) || has(Class::pose, word().text))
+        return false;
+    return !has(Class::colour, word().text) || peek(Class::thing) || peek(Class::held) ||
+           (kinds & (Plant | Food)) != 0;
+}
+
+/// Nouns one behind the other: "fire truck".
+void Cursor::take_nouns(Phrase& phrase, bool split, std::size_t length) {
+    const std::size_t begin = at;
+    at += length;
+    while (!done() && !ends_phrase(0, true)) {
+        const auto so_far = joined_texts(words_.subspan(begin, at - begin));
+        const bool owner = is_scene_noun(words_[at - 1].singular);
+        if (owner && peek(Class::verb_face) && (peek(Class::direction, 1) || peek(Class::definite, 1))) break;
+        if (owner &&
+            (split || peek(Class::part) || peek(Class::colour_word) || is_scene_noun(word().singular)))
+            break;
+        Attribute ignored;
+        Cursor ahead = *this;
+        const std::size_t more = noun_length();
+        if (more == 0) break;
+        if (more == 1 && !is_scene_noun(word().singular) && ahead.take_attribute(ignored, false) &&
+            !peek(Class::thing) && !peek(Class::person))
+            break;
+        at += more;
+    }
+    close_noun(phrase, begin, at);
+}
+
+bool Cursor::take_body(Phrase& phrase, bool split) {
+    const std::size_t start = at;
+    while (!done()) {
+        const bool comma_list = is_mark(",") && !phrase.attributes.empty();
+        if (comma_list) {  // "a big, round bear"
+            Cursor ahead = *this;
+            ++ahead.at;
+            Attribute next;
+            if (ahead.ends_phrase(0, false) || ahead.reads_as_noun(phrase) ||
+                !ahead.take_attribute(next, true) || ahead.noun_length() == 0)
+                break;
+            ++at;
+        }
+        if (ends_phrase(0, false)) break;
+        Attribute attribute;
+        const std::size_t before = at;
+        if (!reads_as_noun(phrase) && take_attribute(attribute, true)) {
+            phrase.attributes.push_back(attribute);
+            if (is(Class::word_and) && !ends_phrase(1, false)) {  // "a big and round bear"
+                Cursor ahead = *this;
+                ++ahead.at;
+                Attribute next;
+                if (!ahead.reads_as_noun(phrase) && ahead.take_attribute(next, true) &&
+                    ahead.noun_length() > 0 && !ahead.ends_phrase(0, false))
+                    ++at;
+            }
+            continue;
+        }
+        at = before;
+        const std::size_t length = noun_length();
+        if (length == 0) {
+            if (!ends_phrase(0, false) && looks_like_adjective(word().text)) {
+                phrase.attributes.push_back({Quality::Other, word().text, word().text, ""});
+                ++at;
+                continue;
+            }
+            break;
+        }
+        take_nouns(phrase, split, length);
+        return true;
+    }
+    phrase.end = at;
+    if (at > start && (phrase.attributes.size() > 0) && (phrase.definite || phrase.has_determiner()))
+        return true;  // "the red one", "the red"
+    return false;
+}
+
+void Cursor::take_owner_behind(Phrase& phrase) {
+    const bool plural_owner = phrase.plural && is_scene_noun(words_[at - 1].singular) && peek(Class::part) &&
+                              !ends_phrase(0, false);
+    const bool bare_owner =
+        is_scene_noun(phrase.noun) &&
+        (peek(Class::part) || (peek(Class::colour_word) && !peek(Class::look_word))) &&
+        !ends_phrase(0, false) && !peek(Class::direction) && !peek(Class::times) &&
+        !(peek(Class::verb_face) && (peek(Class::direction, 1) || peek(Class::definite, 1))) &&
+        !peek(Class::pose) && !peek(Class::state);
+    if (is_owner_mark() || plural_owner || bare_owner) {
+        if (is_owner_mark()) ++at;
+        Phrase owned;
+        owned.begin = phrase.begin;
+        owned.definite = true;
+        const std::size_t before = at;
+        if (take(Class::all)) owned.count = "all";
+        if (take_body(owned, false) && !owned.noun.empty()) {
+            auto owner = std::make_shared<Phrase>(phrase);
+            owner->plural = false;
+            owned.owner = owner;
+            owned.definite = true;
+            phrase = owned;
+            take_owner_behind(phrase);
+            return;
+        }
+        at = before;
+        return;
+    }
+    if (!peek(Class::of)) return;
+    Cursor ahead = *this;
+    ahead.take(Class::of);
+    Phrase whole;
+    if (!ahead.take_phrase(whole)) return;
+    const bool part = has(Class::part, phrase.noun) || has(Class::part, words_[phrase.end - 1].singular) ||
+                      has(Class::colour_word, phrase.noun) || has(Class::part, phrase.typed) ||
+                      phrase.noun == "size" || phrase.noun == "position" || phrase.noun == "place";
+    if ((part && (whole.definite || whole.possessive || whole.naming != Naming::Thing ||
+                  is_scene_noun(whole.noun))) ||
+        whole.naming == Naming::It || (is_scene_noun(phrase.noun) && is_scene_noun(whole.noun))) {
+        phrase.owner = std::make_shared<Phrase>(whole);
+        phrase.definite = true;
+        at = ahead.at;
+        phrase.end = at;
+    } else if (!whole.definite && whole.naming == Naming::Thing && !whole.noun.empty() &&
+               !has(Class::material, whole.noun) && !part &&
+               (kinds_of(phrase.noun) & (Artifact | Perhaps | Other | Object)) != 0 &&
+               (!is_scene_noun(phrase.noun) || whole.indefinite)) {
+        phrase.noun += " of " + (whole.typed.empty() ? whole.noun : whole.typed);  // "bowl of fruit"
+        at = ahead.at;
+        phrase.end = at;
+    }
+}
+
+bool Cursor::take_phrase(Phrase& phrase, bool split) {
+    const std::size_t start = at;
+    phrase = {};
+    phrase.begin = at;
+    while (take(Class::caption)) {}
+    if (take_pronoun(phrase)) return true;
+    take_determiners(phrase);
+    if (phrase.has_determiner() && take_pronoun(phrase)) return true;  // "all of it"
+    if (!take_body(phrase, split)) {
+        at = start;
+        return false;
+    }
+    phrase.begin = start;
+    if (phrase.noun.empty()) {
+        if (is(Class::word_one) || is(Class::word_ones)) ++at;
+    } else if (has(Class::thing_name, phrase.noun) && (phrase.noun == "one" || phrase.noun == "ones"))
+        phrase.noun.clear();
+    take_owner_behind(phrase);
+    if (phrase.definite && !phrase.owner) {  // "the car on the left"
+        const auto side = peek(Class::direction);
+        if (side.length > 2 && !is(Class::word_to) && has(Class::side, side.value) &&
+            !peek(Class::of, side.length)) {
+            phrase.attributes.push_back(
+                {Quality::Side, std::string(side.value), std::string(side.value), ""});
+            at += side.length;
+        }
+    }
+    phrase.end = at;
+    return true;
+}
+
+}  // namespace gse::language::plan

@@ -1,0 +1,244 @@
+// The sentence as a whole: what it is, its clauses, and what stands between them.
+#include "engine/language/plan/grammar/reader.h"
+
+#include <algorithm>
+
+namespace gse::language::plan {
+namespace {
+
+constexpr std::size_t LongSentence = 16;  // words; only longer ones may tell a story around the order
+
+}  // namespace
+
+Reader::Reader(std::span<const Word> words, const SceneWords& scene, std::string_view source)
+    : c_(words, scene), d_(scene, source), word_count_(words.size()) {}
+
+bool Reader::fail(std::string_view reason) {
+    if (reason_.empty()) reason_ = reason;
+    return false;
+}
+
+Plan Reader::failure() const {
+    if (!missing_.empty()) return refusal(reason::NotInScene, missing_);
+    return refusal(reason_.empty() ? reason::NotASentence : reason_);
+}
+
+std::optional<Plan> Reader::whole_sentence() {
+    Cursor at = c_;
+    const auto ends = [](Cursor here) {
+        while (!here.done() &&
+               (here.is_mark(".,;!?:'") || here.take(Class::courtesy) || here.take(Class::as_well)))
+            if (here.is_mark(".,;!?:'")) ++here.at;
+        return here.done();
+    };
+    for (int pass = 0; pass < 6; ++pass) {
+        for (const auto kind : {Class::never_mind, Class::meta}) {
+            Cursor behind = at;
+            if (!behind.take(kind) || !ends(behind)) continue;
+            if (kind == Class::meta) return refusal(reason::NotAnEdit);
+            d_.nothing_asked();
+            return d_.finish();
+        }
+        if (at.is_mark(".,;!?:'")) ++at.at;
+        else if (!at.take(Class::courtesy)) break;
+    }
+    for (Cursor here = c_; !here.done(); ++here.at)
+        if (here.peek(Class::injection)) return refusal(reason::NotAnEdit);
+    if (at.done()) return refusal(c_.done() ? reason::NotASentence : reason::NotAnEdit);
+    if (at.peek(Class::request)) return std::nullopt;
+    bool asked = at.peek(Class::question_word).length > 0;
+    Cursor last = c_;
+    bool mark = false;
+    for (; !last.done(); ++last.at) mark = last.is_mark("?") || (mark && last.is_mark("!"));
+    asked = asked || (mark && at.peek(Class::question).length > 0);
+    if (asked) return refusal(reason::Question);
+    if (const auto verb = at.peek(Class::meta_verb)) {
+        constexpr Class Others[] = {
+            Class::verb_turn, Class::verb_remove,  Class::verb_rotate, Class::verb_make, Class::verb_add,
+            Class::verb_pose, Class::verb_replace, Class::verb_keep,   Class::verb_move, Class::verb_become,
+            Class::verb_size, Class::holding,      Class::thing};
+        const bool other = std::any_of(std::begin(Others), std::end(Others),
+                                       [&](Class kind) { return at.peek(kind).length > 0; });
+        bool program = false;
+        for (Cursor here = at; !here.done(); ++here.at)
+            program = program || here.peek(Class::meta_noun).length > 0;
+        bool scene_too = false;
+        for (Cursor here = at; !here.done(); ++here.at)
+            scene_too = scene_too || here.is_scene_noun(here.word().singular);
+        if (!other || (program && !scene_too && verb.length >= 1 && !at.is(Class::word_make)))
+            return refusal(reason::NotAnEdit);
+    }
+    return std::nullopt;
+}
+
+bool Reader::skip_separators() {
+    const std::size_t before = c_.at;
+    while (!c_.done()) {
+        if (c_.is_mark(".,;!?:'|/")) ++c_.at;
+        else if (const auto behind = c_.peek(Class::as_well);
+                 behind && c_.peek(Class::courtesy).length <= behind.length && !c_.peek(Class::rather_than) &&
+                 !c_.peek(Class::there_is) && c_.at > 0)
+            c_.at += behind.length;
+        else break;
+    }
+    return c_.at > before;
+}
+
+/// Segments between commas that say nothing of the scene ("masterpiece, best quality").
+bool Reader::skip_noise() {
+    const std::size_t before = c_.at;
+    Cursor ahead = c_;
+    if (ahead.peek(Class::negative_prompt)) {
+        ahead.take(Class::negative_prompt);
+        if (ahead.is_mark(":")) {
+            while (!c_.done()) ++c_.at;
+            return true;
+        }
+    }
+    ahead = c_;
+    while (ahead.take(Class::noise) ||
+           (ahead.at > c_.at && (ahead.take(Class::conjunction) || ahead.take(Class::degree)))) {}
+    if (ahead.at > c_.at && ahead.at_end_of_clause()) c_.at = ahead.at;
+    ahead = c_;
+    if (const auto prefix = ahead.peek(Class::prefix); prefix && ahead.is_mark(":", prefix.length)) {
+        c_.at += prefix.length + 1;
+    }
+    return c_.at > before;
+}
+
+void Reader::skip_lead_in() {
+    while (!c_.done()) {
+        if (skip_separators() || skip_noise()) continue;
+        const std::size_t before = c_.at;
+        if (c_.peek(Class::only)) break;
+        if (const auto found = c_.peek(Class::request)) {
+            // "show", "let me": only where something follows
+            Cursor ahead = c_;
+            ahead.at += found.length;
+            if (ahead.done()) break;
+            const bool verb_of_ours = found.length == 1 &&
+                                      (c_.peek(Class::verb_make) || c_.peek(Class::verb_add)) &&
+                                      !c_.is(Class::word_want) && !c_.is(Class::word_try);
+            if (verb_of_ours) break;
+            c_.at = ahead.at;
+            requested_ = true;
+        } else if (const auto polite = c_.peek(Class::courtesy);
+                   polite && !(polite.length == 1 && c_.noun_length() > 0 && c_.is_mark(":", 1))) {
+            c_.at += polite.length;
+        } else if (const auto step = c_.peek(Class::sequence); step && !(c_.noun_length() > step.length)) {
+            c_.at += step.length;
+        } else if (c_.peek(Class::conjunction)) {
+            c_.take(Class::conjunction);
+        } else if (c_.peek(Class::contrast)) {
+            c_.take(Class::contrast);
+        } else if (c_.peek(Class::colour_word) && c_.is_mark(":>", 1)) {
+            c_.at += 2;  // "color=blue"
+        } else if (c_.peek(Class::prefix) && c_.is_mark(":", c_.peek(Class::prefix).length)) {
+            c_.at += c_.peek(Class::prefix).length + 1;
+        }
+        if (c_.at == before) break;
+    }
+}
+
+/// Behind a clause: "instead of red", "rather than the grass", "except the bear".
+void Reader::skip_rest() {
+    Cursor ahead = c_;
+    Phrase other;
+    Attribute attribute;
+    const bool changes = frame_ == Frame::Make || frame_ == Frame::Paint || frame_ == Frame::Turn;
+    if (!changes || (!ahead.take(Class::rather_than) && !ahead.take(Class::except))) return;
+    Cursor thing = ahead;
+    if (thing.take_phrase(other) && d_.resolve(other).found()) c_.at = thing.at;
+    else if (ahead.take_attribute(attribute, false)) c_.at = ahead.at;
+}
+
+bool Reader::ends_well() const {
+    Cursor here = c_;
+    while (here.take(Class::as_well) || here.take(Class::courtesy)) {}
+    return here.at_end_of_clause() || here.peek(Class::rather_than) || here.peek(Class::except) ||
+           here.peek(Class::conjunction) || here.peek(Class::sequence) || here.peek(Class::contrast) ||
+           here.peek(Class::noise);
+}
+
+/// A clause of a long sentence that tells a story, up to the next comma.
+bool Reader::skip_narrative(std::size_t start) {
+    if (word_count_ < LongSentence) return false;
+    Cursor here = c_;
+    here.at = start;
+    bool story = false;
+    while (!here.at_end_of_clause()) {
+        story = story || here.peek(Class::narrative) || here.peek(Class::subordinate);
+        ++here.at;
+    }
+    if (!story) return false;
+    c_.at = here.at;
+    return true;
+}
+
+bool Reader::correction() {
+    Cursor ahead = c_;
+    const bool refuses = ahead.peek(Class::none).length > 0;
+    if (!ahead.take(Class::correction)) return false;
+    if (refuses && ahead.at == c_.at + 1 && !ahead.is_mark(",.!") && !ahead.peek(Class::correction))
+        return false;  // "no grass"
+    while (ahead.take(Class::correction) || ahead.take_mark(',') || ahead.take_mark('.')) {}
+    if (d_.size() == 0 || ahead.done()) return false;
+    c_.at = ahead.at;
+    return true;
+}
+
+Plan Reader::read_story() {
+    for (Cursor here = c_; !here.done(); ++here.at)
+        if (here.peek(Class::injection) || here.is_mark("?")) return failure();
+    while (!c_.done()) {
+        const std::size_t start = c_.at;
+        requested_ = false;
+        skip_lead_in();
+        if (c_.done()) break;
+        const auto draft = d_;
+        Phrase subject;
+        Cursor ahead = c_;
+        const bool wish =
+            ahead.take_phrase(subject) && ahead.peek(Class::modal) && d_.resolve(subject).found();
+        const bool order = starts_verb() && c_.word().text == c_.word().base && !c_.peek(Class::verb_keep);
+        const std::size_t begin = c_.at;
+        const bool read = (requested_ || wish || order) && clause() && c_.at > begin && ends_well();
+        reason_ = {};
+        missing_.clear();
+        if (read) continue;
+        d_ = draft;
+        c_.at = std::max(begin, start);
+        while (!c_.done() && !c_.is_mark(".,;!:") && !c_.peek(Class::request)) ++c_.at;
+        if (c_.at == begin && c_.peek(Class::request)) ++c_.at;
+    }
+    if (d_.size() == 0 && !d_.asked_nothing()) return refusal(reason::NotAnEdit);
+    return d_.finish();
+}
+
+Plan Reader::read() {
+    if (auto plan = whole_sentence()) return *plan;
+    bool narrated = false;
+    while (true) {
+        skip_lead_in();
+        if (c_.done()) break;
+        const std::size_t start = c_.at;
+        const bool read = clause();
+        if (read) skip_rest();
+        if (read && ends_well()) continue;
+        if (!missing_.empty() && !read && reason_ == reason::NotInScene && d_.size() == 0) return failure();
+        c_.at = start;
+        if (read || !skip_narrative(start)) {
+            if (reason_.empty()) reason_ = reason::NotASentence;
+            return failure();
+        }
+        reason_ = {};
+        missing_.clear();
+        narrated = true;
+    }
+    if (d_.size() == 0 && (!reason_.empty() || !missing_.empty())) return failure();
+    if (narrated && d_.size() == 0) return refusal(reason::NotAnEdit);
+    if (d_.size() == 0 && !d_.says_same() && !d_.asked_nothing()) return refusal(reason::Incomplete);
+    return d_.finish();
+}
+
+}  // namespace gse::language::plan

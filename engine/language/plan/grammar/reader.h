@@ -1,0 +1,171 @@
+// Reads a sentence clause by clause and makes the steps of its plan.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/language/plan/grammar/draft.h"
+#include "engine/language/plan/grammar/phrase.h"
+#include "engine/language/plan/notation/plan.h"
+
+namespace gse::language::plan {
+
+class Reader {
+public:
+    Reader(std::span<const Word> words, const SceneWords& scene, std::string_view source);
+    Plan read();
+    /// Reads the orders and wishes of a long text, and leaves out what it tells around them.
+    Plan read_story();
+
+private:
+    using Targets = std::vector<Target>;
+    /// Kind of the last verb: "paint the bear green, the grass white".
+    enum class Frame { None, Make, Turn, Paint, Replace, Add, Give, Remove, Describe };
+
+    // reader.cpp: the whole sentence, and what stands before and between clauses
+    std::optional<Plan> whole_sentence();
+    void skip_lead_in();
+    bool skip_noise();
+    bool skip_separators();
+    bool clause();
+    bool ends_well() const;
+    void skip_rest();
+    bool skip_narrative(std::size_t start);
+    bool fail(std::string_view reason);
+    Plan failure() const;
+    bool correction();
+    bool starts_verb(std::size_t ahead = 0) const;
+    bool starts_object(std::size_t ahead) const;
+
+    // reader_verbs.cpp: imperatives
+    bool verb_clause();
+    bool try_verbs();
+    bool keep_clause();
+    bool make_clause();
+    bool paint_clause();
+    bool turn_clause();
+    std::optional<bool> use_clause(bool substitute);
+    bool replace_clause();
+    bool swap_clause();
+    bool give_clause();
+    bool dress_clause();
+    bool cover_clause();
+    void skip_from(Targets& targets);
+    void take_worn(Targets& targets) const;
+    bool takes_away(const Cursor& particle, bool direct, bool gets) const;
+    void remove_all(const Targets& targets);
+    bool remove_clause();
+    bool shave_clause();
+    bool instruct_less_clause();
+    // reader_moves.cpp
+    bool add_one();
+    bool add_clause();
+    bool place_new(const Phrase& phrase, Targets& made);
+    bool place_at(const Phrase& phrase, const Target& thing, const Target& bearer, const Phrase& where,
+                  std::string_view relation);
+    std::string take_amount();
+    void move_way(const Target& target, const Match& direction, std::string amount);
+    bool move_to(const Target& target, const Match& relation);
+    bool move_clause();
+    std::string take_factor(bool scale, bool smaller);
+    bool take_sized(Targets& targets, std::string_view& sizes);
+    bool size_clause();
+    std::string take_degrees();
+    bool rotate_clause();
+    bool face_clause();
+    bool duplicate_clause();
+    bool shift_clause();
+    bool pose_clause();
+    bool fire_clause();
+    void add_another(const Phrase& phrase, const Target& target, const std::string& noun);
+    bool one_more(const Phrase& phrase);
+    bool move_target(const Target& target);
+    bool ellipsis();
+
+    // reader_says.cpp: statements and descriptions
+    void skip_moon();
+    bool environment_clause();
+    bool style_clause();
+    bool there_is_clause();
+    bool only_clause();
+    bool no_thing_clause();
+    bool do_not_clause(Cursor ahead);
+    bool negative_clause();
+    bool instead_clause();
+    std::optional<bool> statement(const std::vector<Phrase>& phrases, bool said, bool adjective_behind);
+    bool noun_clause();
+    std::optional<bool> has_something(const Targets& subjects);
+    bool is_somehow(const Targets& subjects);
+    bool predicate(const Targets& subjects);
+    bool describe(const Phrase& phrase);
+    bool describe_part(const Phrase& phrase, const Target& found);
+    std::optional<bool> describe_place(const Phrase& phrase, bool bare);
+    std::optional<bool> describe_instead(const Phrase& phrase);
+    bool describe_beside(const Phrase& phrase);
+    bool describe_new(const Phrase& phrase);
+    bool describe_other(const Phrase& phrase);
+    bool skip_instead();
+    bool describe_more();
+    bool attribute_clause();
+    bool names_later(const Phrase& phrase) const;
+    bool mentions_focus(std::size_t from) const;
+
+    // reader_change.cpp: what becomes of things
+    bool complement(const Targets& targets);
+    bool described_as(const Targets& targets);
+    bool complement_once(const Targets& targets);
+    bool measure(const Targets& targets);
+    bool compared(const Targets& targets);
+    bool alike(const Targets& targets);
+    bool become(const Targets& targets, const Phrase& phrase);
+    bool material_of(const Targets& targets);
+    bool denied(const Targets& targets);
+    bool apply_all(const Targets& targets, const std::vector<Attribute>& attributes);
+    bool pose_text(const Targets& targets);
+    bool style_text(const Targets& targets);
+
+    // reader_posts.cpp: what stands behind a noun
+    void posts(const Target& subject);
+    bool inversely_related(const Target& subject);
+    bool weather_clause();
+    bool post(const Target& subject);
+    bool has_list(const Target& subject, std::string_view relation);
+    bool own(const Target& subject, const Phrase& phrase, std::string_view relation);
+    bool own_part(const Target& subject, const Phrase& phrase);
+    bool own_pattern(const Target& subject, const Phrase& phrase);
+    bool lack_list(const Target& subject);
+    bool lack(const Target& subject, const Phrase& phrase);
+    bool related(const Target& subject);
+    bool relate_there(const Target& subject, std::string_view relation, const Phrase& phrase,
+                      const Target& found);
+    bool between(const Target& subject, const Phrase& phrase);
+    bool relate(const Target& subject, std::string_view relation, const Phrase& phrase);
+    bool in_colour(const Target& subject);
+    bool in_place(const Cursor& ahead, const std::string& before);
+    bool surroundings(const Target& subject, std::string_view relation);
+    bool relative(const Target& subject);
+    void nested(const Target& made, const Target& bearer);
+    bool list_goes_on();
+
+    bool objects(Targets& targets, std::vector<Phrase>* phrases = nullptr, bool split = false);
+    bool contradicts_colour(const Phrase& phrase, const Target& found) const;
+    Targets things_on(const Target& target) const;
+    bool object(Targets& targets, Phrase& phrase, bool split = false);
+    Target expect(const Phrase& phrase);
+    bool on_bearer(const Phrase& phrase, Target& bearer) const;
+
+    Cursor c_;
+    Draft d_;
+    Frame frame_ = Frame::None;
+    std::string_view reason_;
+    std::string missing_;
+    std::vector<Phrase> instead_;
+    std::optional<Target> described_;
+    bool requested_ = false, refused_part_ = false;
+    std::size_t word_count_ = 0;
+};
+
+}  // namespace gse::language::plan

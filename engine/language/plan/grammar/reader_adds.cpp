@@ -1,0 +1,323 @@
+// Orders that add things and copies.
+#include <algorithm>
+
+#include "engine/language/plan/grammar/reader.h"
+
+namespace gse::language::plan {
+
+/// "another bear, a green one, next to it", "two more bears".
+void Reader::add_another(const Phrase& phrase, const Target& target, const std::string& noun) {
+    Cursor ahead = c_;
+    Phrase colour;
+    const bool told = !phrase.attributes.empty() || (ahead.take_mark(',') && ahead.take_phrase(colour) &&
+                                                     colour.noun.empty() && !colour.attributes.empty());
+    if (told) {
+        Phrase second = phrase;
+        if (phrase.attributes.empty()) {
+            second.attributes = colour.attributes;
+            c_.at = ahead.at;
+        }
+        second.noun = noun;
+        const auto made = d_.add(second, "beside", {target});
+        c_.take_mark(',');
+        nested(made, target);
+    } else if (c_.peek(Class::relation) && !c_.is(Class::word_in) &&
+               !c_.is(Class::word_on)) {  // "a second bear to the left of it"
+        Phrase second = phrase;
+        second.noun = noun;
+        const auto made = d_.add(second, "beside", {target});
+        nested(made, target);
+    } else {
+        const int more = phrase.count.empty() || phrase.count == "some" ? 1 : std::atoi(phrase.count.c_str());
+        d_.duplicate(target, phrase.plural && phrase.count.empty() ? "some"
+                             : phrase.count == "some"              ? "some"
+                                                                   : std::to_string(more + 1));
+        nested(target, target);
+        Cursor place = c_;
+        Phrase where;
+        if (place.take(Class::relation) && place.take_phrase(where) && d_.resolve(where).found())
+            c_.at = place.at;
+    }
+}
+
+/// "another bear", "two bears", "one more bear": copies of what is there.
+bool Reader::one_more(const Phrase& phrase) {
+    if (!phrase.another && (phrase.count.empty() || phrase.count == "all") && !phrase.plural) return false;
+    const auto found = d_.things_named(phrase);
+    if (found.empty() || d_.scene().things[found.front()].is_ground || phrase.owner || phrase.definite)
+        return false;
+    const auto& noun = d_.scene().things[found.front()].noun;
+    const auto same = std::count_if(d_.scene().things.begin(), d_.scene().things.end(),
+                                    [&](const SceneThing& thing) { return thing.noun == noun; });
+    if (same > 1) return false;
+    if (has(Class::pair_noun, noun)) return false;
+    if (!phrase.another && phrase.noun != noun && noun.find(phrase.noun) == std::string::npos &&
+        !are_synonyms(noun, phrase.noun))
+        return false;
+    const auto target = d_.target_of_thing(found.front());
+    d_.mention(target);
+    if (phrase.another) {
+        add_another(phrase, target, noun);
+        return true;
+    }
+    apply_all({target}, phrase.attributes);
+    described_ = target;
+    d_.duplicate(target, phrase.count.empty() ? "some" : phrase.count);
+    posts(target);
+    return true;
+}
+
+/// Puts the new thing beside, on or into what `where` names; `relation`: empty = "to".
+bool Reader::place_at(const Phrase& phrase, const Target& thing, const Target& bearer, const Phrase& where,
+                      std::string_view relation) {
+    const auto focus = d_.focus();
+    const bool to = relation.empty();
+    Target anchor =
+        where.naming == Naming::It || where.naming == Naming::Person
+            ? (bearer.found() && bearer.kind == Target::Kind::There ? bearer : d_.pronoun(where.naming, true))
+            : d_.resolve(where);
+    if (where.naming == Naming::They && bearer.found()) anchor = bearer;
+    Target body = where.owner || !where.possessive ? focus : bearer;
+    if (on_bearer(where, body)) {
+        const bool worn = is_worn(phrase);
+        Target whole = body;
+        whole.reference.links = {body.reference.links.back()};
+        d_.set_anchor(thing,
+                      worn ? std::string_view("worn by")
+                      : to ? std::string_view("on")
+                           : relation,
+                      worn ? whole : body);
+        return true;
+    }
+    if (anchor.kind == Target::Kind::Ambiguous) return fail(reason::Ambiguous);
+    if (!anchor.found()) {
+        if (is_ground(where) && !where.definite) {
+            d_.ground(where);
+            return true;
+        }
+        missing_ = anchor.word.empty() ? where.noun : anchor.word;
+        return fail(reason::NotInScene);
+    }
+    if (relation == "between" && c_.take(Class::conjunction)) {
+        Phrase second;
+        if (!c_.take_phrase(second)) return fail(reason::Incomplete);
+        const auto other = expect(second);
+        if (!other.found()) return false;
+        d_.set_anchors(thing, "between", {anchor, other});
+        return true;
+    }
+    const bool on_body =
+        (to || relation == "on" || relation == "around") && is_worn(phrase) && d_.can_wear(anchor);
+    std::string_view how = on_body ? std::string_view("worn by")
+                           : to    ? (is_held(phrase) && d_.can_wear(anchor) ? std::string_view("held by")
+                                      : anchor.is_scene()                    ? std::string_view("in")
+                                      : d_.is_animate(anchor)                ? std::string_view("beside")
+                                                                             : std::string_view("on"))
+                                   : relation;
+    d_.set_anchor(thing, how, anchor);
+    if (anchor.thing)
+        apply_all({anchor},
+                  where.attributes.empty() || where.definite ? std::vector<Attribute>{} : where.attributes);
+    return true;
+}
+
+/// A new thing and its place.
+bool Reader::place_new(const Phrase& phrase, Targets& made) {
+    if (!is_thing(phrase)) return false;
+    const auto focus = d_.focus();
+    const auto bearer = d_.last() && d_.last()->found() ? *d_.last() : focus;
+    const bool wears = is_worn(phrase) && d_.can_wear(focus) && !has(Class::ground, phrase.noun);
+    Target thing = wears ? d_.add(phrase, "worn by", {focus}) : d_.add(phrase, "in", {d_.scene_target()});
+    if (thing.kind == Target::Kind::There) {
+        nested(thing, focus);
+        return true;
+    }
+    made.push_back(thing);
+    while (true) {
+        const std::size_t start = c_.at;
+        while (c_.take(Class::emerging) || c_.take(Class::pose)) {}
+        if (const auto side = c_.peek(Class::direction);
+            side && !c_.peek(Class::relation) && (side.value == "left" || side.value == "right")) {
+            c_.at += side.length;
+            if (focus.found()) d_.set_anchor(thing, side.value == "left" ? "left of" : "right of", focus);
+            continue;
+        }
+        auto relation = c_.take(Class::relation);
+        const bool to = !relation && (c_.is(Class::word_to) || c_.is(Class::word_for));
+        if (to) ++c_.at;
+        if (!relation && !to) {
+            c_.at = start;
+            break;
+        }
+        Phrase where;
+        const std::size_t before = c_.at;
+        if (!c_.take_phrase(where)) {
+            c_.at = before;
+            if (c_.at_end_of_clause() || c_.peek(Class::conjunction)) {
+                if (focus.found() && relation)
+                    d_.set_anchor(thing, relation.value == "in" ? std::string_view("beside") : relation.value,
+                                  focus);
+                continue;
+            }
+            c_.at = start;
+            return fail(reason::Incomplete);
+        }
+        if (!place_at(phrase, thing, bearer, where, relation ? relation.value : std::string_view()))
+            return false;
+    }
+    d_.mention(thing);
+    nested(thing, bearer);
+    while (c_.peek(Class::having) && !c_.peek(Class::conjunction)) {
+        const std::size_t start = c_.at;
+        if (!post(thing)) {
+            c_.at = start;
+            break;
+        }
+    }
+    return true;
+}
+
+/// One thing of a list that is added.
+bool Reader::add_one() {
+    Phrase phrase;
+    Targets made;
+    if (!c_.take_phrase(phrase)) return c_.at_end_of_clause() ? fail(reason::Incomplete) : false;
+    if (phrase.naming != Naming::Thing) {
+        const auto found = d_.resolve(phrase);
+        if (!found.found()) return fail(reason::Incomplete);
+        return move_target(found);
+    }
+    if (phrase.noun.empty()) return fail(reason::Incomplete);
+    Cursor choice = c_;
+    if (choice.take(Class::alternative)) return fail(reason::Ambiguous);
+    if (one_more(phrase)) return true;
+    const auto focus = d_.focus();
+    if (own_pattern(focus, phrase)) {
+        Cursor place = c_;
+        Phrase where;
+        if ((place.take(Class::relation) || place.take(Class::to)) && place.take_phrase(where))
+            c_.at = place.at;
+        return true;
+    }
+    if (const auto weather = meaning(Class::environment, phrase.noun);
+        weather && (c_.at_end_of_clause() || c_.peek(Class::conjunction))) {
+        d_.environment(std::string(*weather));
+        return true;
+    }
+    const auto found = d_.resolve(phrase);
+    const bool there = found.found() && found.thing && !phrase.another && phrase.count.empty() &&
+                       (phrase.definite || (!is_worn(phrase) && !phrase.indefinite));
+    if (there) {
+        d_.mention(found);
+        if (!move_target(found)) return false;
+        return true;
+    }
+    if (!place_new(phrase, made)) return false;
+    Cursor more = c_;
+    more.take_mark(',');
+    if (more.take(Class::contrast)) {  // "but not a red one"
+        Phrase other;
+        if (more.take(Class::negation) && more.take_phrase(other)) c_.at = more.at;
+    }
+    return true;
+}
+
+bool Reader::add_clause() {
+    const bool paints = !c_.peek(Class::verb_add);
+    if (!c_.take(Class::verb_add) && !c_.take(Class::verb_recolour) && !c_.take(Class::verb_carve) &&
+        !c_.take(Class::verb_make) && !c_.take(Class::verb_move))
+        return false;
+    c_.take(Class::as_well);
+    if (c_.done()) return fail(reason::Incomplete);
+    Phrase begin;
+    Cursor probe = c_;
+    if (paints && (!probe.take_phrase(begin) || begin.definite || begin.naming != Naming::Thing ||
+                   !begin.has_determiner()))
+        return false;  // "make the hat blue" adds none
+    frame_ = Frame::Add;
+    Phrase phrase;
+    Attribute pattern;
+    Cursor dots = c_;  // "put white polka dots on the bear"
+    if (dots.take_attribute(pattern, false) && pattern.quality == Quality::Pattern &&
+        (dots.take(Class::relation) || dots.take(Class::to)) && dots.take_phrase(phrase) &&
+        d_.resolve(phrase).found()) {
+        c_.at = dots.at;
+        return apply_all({d_.resolve(phrase)}, {pattern});
+    }
+    do {
+        if (!add_one()) return false;
+    } while (list_goes_on());
+    return true;
+}
+
+bool Reader::duplicate_clause() {
+    if (!c_.take(Class::verb_duplicate)) return false;
+    Targets targets;
+    if (!objects(targets)) return c_.done() && reason_.empty() ? fail(reason::Incomplete) : false;
+    std::string count = "2";
+    if (const auto times = c_.take(Class::times))
+        count = std::to_string(std::atoi(std::string(times.value).c_str()) + 1);
+    else if (c_.word(1).text == "times" && !c_.word().text.empty() &&
+             std::isdigit(static_cast<unsigned char>(c_.word().text[0])) != 0) {
+        count = std::to_string(std::atoi(c_.word().text.c_str()) + 1);
+        c_.at += 2;
+    }
+    for (const auto& target : targets) d_.duplicate(target, count);
+    return true;
+}
+
+/// "set the bear on fire".
+bool Reader::fire_clause() {
+    Cursor ahead = c_;
+    if (!ahead.take(Class::fire_verb)) return false;
+    Phrase phrase;
+    if (!ahead.take_phrase(phrase)) return false;
+    const auto fire = ahead.peek(Class::fire_words);
+    if (!fire) return false;
+    const auto target = expect(phrase);
+    if (!target.found()) return false;
+    c_.at = ahead.at + fire.length;
+    Phrase flames;
+    flames.noun = flames.typed = std::string(fire.value);
+    d_.add(flames, "on", {target});
+    return true;
+}
+
+/// The last verb goes on: "paint the bear green, the grass white", "remove the hat and the scarf".
+bool Reader::ellipsis() {
+    const std::size_t start = c_.at;
+    if (starts_verb()) return false;
+    Phrase phrase;
+    Cursor ahead = c_;
+    if (!ahead.take_phrase(phrase)) return false;
+    if (frame_ == Frame::Add || frame_ == Frame::Give) {
+        if (ahead.peek(Class::copula) || ahead.peek(Class::modal) || ahead.is_mark(":") ||
+            phrase.naming != Naming::Thing || phrase.noun.empty() || phrase.none)
+            return false;
+        if (frame_ == Frame::Add && phrase.definite && d_.resolve(phrase).found()) return false;
+        c_.at = ahead.at;
+        if (one_more(phrase)) return true;
+        if (frame_ == Frame::Give && d_.last()) {
+            const auto bearer = d_.pronoun(Naming::It, true);
+            if (bearer.found() && own(bearer, phrase, "with")) return true;
+        }
+        Targets made;
+        if (place_new(phrase, made)) return true;
+        c_.at = start;
+        return false;
+    }
+    const auto found = d_.resolve(phrase);
+    if (!found.found() || ahead.peek(Class::copula) || ahead.peek(Class::modal) || phrase.indefinite)
+        return false;
+    c_.at = ahead.at;
+    if (frame_ == Frame::Remove) {
+        d_.remove(found);
+        return true;
+    }
+    if (c_.is(Class::word_to) || c_.is(Class::word_with) || c_.is(Class::word_by)) ++c_.at;
+    if (!c_.at_end_of_clause() && complement({found})) return true;
+    c_.at = start;
+    return false;
+}
+
+}  // namespace gse::language::plan

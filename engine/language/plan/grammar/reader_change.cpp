@@ -1,0 +1,459 @@
+// Complements: what a thing becomes, looks like, is made of.
+#include <algorithm>
+
+#include "engine/language/plan/grammar/reader.h"
+
+namespace gse::language::plan {
+namespace {
+
+Attribute material_attribute(std::string_view value) {
+    return {Quality::Material, std::string(value), std::string(value), ""};
+}
+
+}  // namespace
+
+bool Reader::apply_all(const Targets& targets, const std::vector<Attribute>& attributes) {
+    for (const auto& target : targets)
+        for (const auto& attribute : attributes) {
+            const bool on_ground = target.thing && d_.scene().things[*target.thing].is_ground;
+            const bool stuff = attribute.quality == Quality::Material || attribute.quality == Quality::Colour;
+            if (on_ground && stuff && has(Class::ground, attribute.value)) {
+                Phrase ground;
+                ground.noun = ground.typed = attribute.value;
+                d_.ground(ground);
+            } else if (target.is_scene() && attribute.quality == Quality::Shift)
+                d_.step(Operation::Recolour, target, attribute.value);
+            else d_.apply(target, attribute);
+        }
+    return !attributes.empty();
+}
+
+/// "not red but blue": the first says nothing of what is to be.
+bool Reader::denied(const Targets& targets) {
+    Cursor ahead = c_;
+    if (!ahead.take(Class::negation)) return false;
+    ahead.take(Class::article);
+    std::vector<Attribute> attributes;
+    Attribute one;
+    while (ahead.take_attribute(one, false)) {
+        attributes.push_back(one);
+        if (!ahead.take(Class::alternative)) break;
+    }
+    if (attributes.empty()) return false;
+    c_.at = ahead.at;
+    for (const auto& target : targets)
+        for (const auto& attribute : attributes) d_.deny(target, attribute);
+    c_.take_mark(',');
+    if (c_.take(Class::contrast) || c_.take(Class::rather_than)) return complement(targets);
+    Cursor more = c_;
+    Attribute attribute;
+    if (more.take_attribute(attribute, false)) return complement(targets);
+    return d_.size() > 0 || fail(reason::Incomplete);
+}
+
+/// "made of glass", "out of polished bronze".
+bool Reader::material_of(const Targets& targets) {
+    Cursor ahead = c_;
+    if (!ahead.take(Class::made_of) && !ahead.take(Class::of) && !ahead.take(Class::from)) return false;
+    while (ahead.take(Class::made_of) || ahead.take(Class::degree)) {}
+    ahead.take(Class::article);
+    ahead.take(Class::some);
+    std::vector<Attribute> found;
+    Attribute next;
+    while (!ahead.at_end_of_clause()) {
+        if (const auto material = ahead.peek(Class::material)) {
+            ahead.at += material.length;
+            found.push_back(material_attribute(material.value));
+            if (ahead.ends_phrase(0, true) || ahead.done()) break;
+            continue;
+        }
+        if (!ahead.take_attribute(next, true)) break;
+        found.push_back(next);
+    }
+    const bool named = std::any_of(found.begin(), found.end(),
+                                   [](const Attribute& each) { return each.quality == Quality::Material; });
+    if (!named) {
+        if (!c_.peek(Class::made_of)) return false;
+        Phrase stuff;
+        const bool noun = ahead.take_phrase(stuff) && !stuff.noun.empty() && !stuff.definite &&
+                          d_.things_named(stuff).empty();
+        if (!noun) return false;
+        found.push_back(material_attribute(stuff.typed));
+    }
+    // "polished", "solid", "clear" say how that material is
+    std::erase_if(found, [](const Attribute& each) {
+        return each.quality != Quality::Material && each.quality != Quality::Colour;
+    });
+    c_.at = ahead.at;
+    return apply_all(targets, found);
+}
+
+/// "twice as big", "half as wide", "two times taller", "half its size".
+bool Reader::measure(const Targets& targets) {
+    Cursor ahead = c_;
+    std::string factor;
+    if (const auto times = ahead.take(Class::times)) factor = times.value;
+    else if (!ahead.word().text.empty() &&
+             std::isdigit(static_cast<unsigned char>(ahead.word().text[0])) != 0 &&
+             (ahead.is(Class::word_times, 1) || ahead.is(Class::word_x, 1))) {
+        factor = ahead.word().text;
+        ahead.at += 2;
+    } else return false;
+    ahead.take(Class::like);
+    ahead.take(Class::possessive);
+    ahead.take(Class::definite);
+    Match dimension = ahead.take(Class::dimension);
+    std::string_view sizes = dimension.value;
+    if (!dimension) {
+        if (const auto size = ahead.take(Class::size))
+            sizes =
+                size.value == "bigger" || size.value == "smaller" ? std::string_view("scale") : size.value;
+        else return false;
+    }
+    ahead.take(Class::like);
+    if (ahead.is(Class::word_it) || ahead.is(Class::word_now)) ++ahead.at;
+    const bool grows = factor[0] != '0';
+    std::string change = "scale " + factor;
+    if (sizes != "scale") {
+        const auto blank = sizes.find(' ');
+        change = blank == std::string_view::npos
+                     ? std::string(sizes)
+                     : std::string(grows ? sizes.substr(0, blank) : sizes.substr(blank + 1));
+    }
+    c_.at = ahead.at;
+    c_.take(Class::as_well);
+    for (const auto& target : targets) d_.step(Operation::Transform, target, change);
+    return true;
+}
+
+/// "as tall as the house", "the same size as the car", "the color of the chair", "bigger than the dog".
+bool Reader::compared(const Targets& targets) {
+    Cursor ahead = c_;
+    Phrase other;
+    ahead.take(Class::definite);
+    ahead.take(Class::article);
+    ahead.take(Class::like);
+    const bool same = ahead.is(Class::word_same);
+    if (same) ++ahead.at;
+    if (const auto size = ahead.peek(Class::size); size && !same) {
+        ahead.at += size.length;
+        if (!ahead.take(Class::like) && !ahead.take(Class::than)) return false;
+        if (!ahead.take_phrase(other)) return false;
+        c_.at = ahead.at;
+        for (const auto& target : targets) d_.step(Operation::Transform, target, std::string(size.value));
+        return true;
+    }
+    const bool colour = ahead.peek(Class::colour_word).length > 0,
+               dimension = ahead.peek(Class::dimension).length > 0;
+    if (!colour && !dimension) return false;
+    ++ahead.at;
+    if (!ahead.take(Class::like) && !ahead.take(Class::of)) return false;
+    const std::size_t begin = ahead.at;
+    if (!ahead.take_phrase(other)) return false;
+    const auto found = d_.resolve(other);
+    if (dimension) {
+        if (!found.found()) return false;
+        c_.at = ahead.at;
+        for (const auto& target : targets) d_.move(target, "same size as", found);
+        return true;
+    }
+    std::string told;
+    if (found.thing)
+        for (const auto& word : d_.scene().things[*found.thing].attributes)
+            if (has(Class::colour, word) || told.empty()) told = word;
+    if (told.empty()) told = c_.rest(begin - c_.at).front().text.empty() ? "" : other.noun + "-colored";
+    c_.at = ahead.at;
+    return apply_all(targets, {{Quality::Colour, told, told, ""}});
+}
+
+/// "like a zebra", "as if it were made of gold", "like it is made of chocolate".
+bool Reader::alike(const Targets& targets) {
+    Cursor ahead = c_;
+    if (!ahead.take(Class::like)) return false;
+    const std::size_t start = c_.at;
+    Phrase same;
+    Phrase role;
+    Cursor as = ahead;
+    if (c_.is(Class::word_as) && as.take_phrase(role) && role.indefinite && !role.noun.empty() &&
+        is_thing(role) && !has(Class::style, role.noun)) {
+        const bool person = (kinds_of(role.noun) & Person) != 0 || has(Class::person, role.noun);
+        if (!person) {
+            c_.at = as.at;
+            return become(targets, role);
+        }
+    }
+    Cursor clause = ahead;
+    const bool subject = clause.take_phrase(same) && clause.peek(Class::copula).length > 0;
+    if (subject) ahead.at = clause.at;
+    if (ahead.take(Class::copula) || subject) {
+        while (ahead.take(Class::copula)) {}
+        c_.at = ahead.at;
+        if (complement(targets)) return true;
+        c_.at = start;
+        return false;
+    }
+    Cursor look = ahead;
+    if (look.peek(Class::made_of)) {
+        c_.at = ahead.at;
+        return material_of(targets);
+    }
+    c_.at = ahead.at;
+    if (style_text(targets)) return true;
+    Phrase model;
+    Attribute attribute;
+    if (const auto pattern = ahead.peek(Class::pattern_animal, ahead.peek(Class::article).length);
+        pattern && frame_ == Frame::Paint) {
+        c_.at += ahead.peek(Class::article).length + pattern.length;
+        return apply_all(targets,
+                         {{Quality::Pattern, std::string(pattern.value), std::string(pattern.value), ""}});
+    }
+    if (ahead.take_phrase(model) && !model.noun.empty()) {
+        c_.at = ahead.at;
+        if (has(Class::environment, model.noun) || has(Class::environment, model.typed)) {
+            d_.environment(model.typed);
+            return true;
+        }
+        if (has(Class::material, model.noun)) return become(targets, model);
+        for (const auto& target : targets) {
+            if (target.is_scene()) d_.style(target, model.typed);
+            else d_.step(Operation::Alter, target, model.typed);
+        }
+        return true;
+    }
+    c_.at = ahead.at;
+    const auto attributes = c_.take_attributes();
+    if (apply_all(targets, attributes)) return true;
+    c_.at = start;
+    return false;
+}
+
+/// "an oil painting", "pixel art", "a drawing by van gogh".
+bool Reader::style_text(const Targets& targets) {
+    Cursor ahead = c_;
+    ahead.take(Class::article);
+    ahead.take(Class::definite);
+    Attribute adjective;
+    Cursor described = ahead;
+    std::string before;
+    while (described.take_attribute(adjective, true) && !ahead.peek(Class::style)) {
+        before += adjective.typed + " ";
+        ahead.at = described.at;
+    }
+    const auto style = ahead.peek(Class::style);
+    if (!style) return false;
+    std::string text = before + std::string(style.value);
+    ahead.at += style.length;
+    while (const auto more = ahead.peek(Class::style)) {
+        text.append(1, ' ').append(more.value);
+        ahead.at += more.length;
+    }
+    if (ahead.is_owner_mark()) ++ahead.at;
+    if (ahead.peek(Class::style_word)) ahead.take(Class::style_word);
+    if (ahead.is(Class::word_by) || ahead.is(Class::word_from) || ahead.is(Class::word_in)) {
+        Cursor artist = ahead;
+        ++artist.at;
+        if (artist.take(Class::definite), artist.peek(Class::style_word)) ++artist.at, artist.take(Class::of);
+        if (const auto who = artist.peek(Class::style)) {
+            text.append(1, ' ').append(who.value);
+            artist.at += who.length;
+            ahead.at = artist.at;
+        }
+    }
+    if (!ahead.at_end_of_clause() && !ahead.peek(Class::of) && ahead.noun_length() > 0 &&
+        !ahead.ends_phrase(0, true))
+        return false;
+    c_.at = ahead.at;
+    for (const auto& target : targets) d_.style(target, text);
+    return true;
+}
+
+/// Another thing in its place, or what it is made of: "into a panda", "into wood", "a darker red".
+bool Reader::become(const Targets& targets, const Phrase& phrase) {
+    if (phrase.naming != Naming::Thing || phrase.none) return false;
+    if (phrase.noun.empty()) return apply_all(targets, phrase.attributes);
+    if (has(Class::colour_word, phrase.noun) || has(Class::look_word, phrase.noun))
+        return apply_all(targets, phrase.attributes);
+    for (const auto& target : targets) {
+        const bool on_ground = target.thing && d_.scene().things[*target.thing].is_ground;
+        const auto material = meaning(Class::material, phrase.noun);
+        if (on_ground &&
+            (is_ground(phrase) || has(Class::material, phrase.noun) || has(Class::place, phrase.noun))) {
+            d_.ground(phrase);
+        } else if (material && !phrase.indefinite && phrase.count.empty()) {
+            apply_all({target}, {material_attribute(*material)});
+            apply_all({target}, phrase.attributes);
+        } else if (has(Class::style, phrase.noun) || has(Class::style, phrase.typed)) {
+            d_.style(target, phrase.typed);
+        } else if (!is_thing(phrase) && !material) {
+            return fail(reason::NotASentence);
+        } else if (target.is_scene()) {
+            if (!has(Class::place, phrase.noun) && !has(Class::environment, phrase.noun) &&
+                !is_ground(phrase))
+                return fail(reason::NotASentence);
+            d_.environment(phrase.typed);
+        } else if (on_ground && !target.reference.except) {
+            d_.replace(target, phrase);
+        } else {
+            const auto made = d_.replace(target, phrase);
+            d_.mention(made);
+            posts(made);
+        }
+    }
+    return true;
+}
+
+/// "waves its hand", "smile broadly", "sitting".
+bool Reader::pose_text(const Targets& targets) {
+    Cursor ahead = c_;
+    std::string text;
+    if (const auto raised = ahead.peek(Class::verb_raise)) {
+        Cursor part = ahead;
+        part.at += raised.length;
+        Phrase what;
+        if (part.take_phrase(what) && (what.possessive || what.owner) && is_part(what)) {
+            c_.at = part.at;
+            const auto pose = ahead.word().base + " " + what.typed;
+            for (const auto& target : targets) d_.step(Operation::Pose, target, pose);
+            return true;
+        }
+    }
+    if (const auto pose = ahead.peek(Class::pose)) {
+        text = pose.value;
+        ahead.at += pose.length;
+    } else if (const auto verb = ahead.peek(Class::verb_pose)) {
+        text = verb.value;
+        ahead.at += verb.length;
+    } else return false;
+    while (const auto manner = ahead.peek(Class::pose_manner)) {
+        text.append(1, ' ').append(manner.value);
+        ahead.at += manner.length;
+    }
+    c_.at = ahead.at;
+    for (const auto& target : targets) {
+        Attribute attribute{Quality::Pose, text, text, ""};
+        d_.apply(target, attribute);
+    }
+    // "running across the grass", "waving at us"
+    Cursor where = c_;
+    Phrase place;
+    if (where.take(Class::relation) && where.take_phrase(place)) {
+        const auto found = d_.resolve(place);
+        if (place.naming != Naming::Thing || (found.thing && d_.scene().things[*found.thing].is_ground))
+            c_.at = where.at;
+    }
+    return true;
+}
+
+/// "a darker red", "bigger and blue".
+bool Reader::described_as(const Targets& targets) {
+    Cursor adjectives = c_;
+    const bool article = adjectives.take(Class::article).length > 0;
+    const auto attributes = adjectives.take_attributes();
+    const bool ends = adjectives.at_end_of_clause() || adjectives.ends_phrase(0, true) ||
+                      adjectives.noun_length() == 0 || adjectives.peek(Class::colour_word);
+    const bool model = std::any_of(attributes.begin(), attributes.end(),
+                                   [](const Attribute& each) { return each.quality == Quality::Colour; });
+    if (!attributes.empty() && ends &&
+        !(article && adjectives.noun_length() > 0 && !adjectives.peek(Class::colour_word) &&
+          !adjectives.ends_phrase(0, true))) {
+        const bool only_pose = attributes.size() == 1 && attributes[0].quality == Quality::Pose;
+        if (!only_pose) {
+            c_.at = adjectives.at;
+            c_.take(Class::colour_word);
+            Cursor like = c_;  // "green like a frog"
+            Phrase of_that;
+            if (model && like.take(Class::like) && like.take_phrase(of_that)) c_.at = like.at;
+            return apply_all(targets, attributes);
+        }
+    }
+    return false;
+}
+
+bool Reader::complement_once(const Targets& targets) {
+    const std::size_t start = c_.at;
+    while (c_.take(Class::look_word) || c_.take(Class::copula) || c_.take(Class::to) ||
+           c_.take(Class::modal) || c_.take(Class::verb_become)) {}
+    c_.take(Class::as_well);
+    if (c_.at_end_of_clause() && !c_.done() && c_.at == start) return false;
+    if (const auto gone = c_.peek(Class::gone)) {
+        Cursor behind = c_;
+        behind.at += gone.length;
+        if (behind.at_end_of_clause() || behind.peek(Class::from) || behind.peek(Class::conjunction) ||
+            behind.peek(Class::as_well) || behind.peek(Class::courtesy)) {
+            c_.at = behind.at;
+            for (const auto& target : targets) d_.remove(target);
+            return true;
+        }
+    }
+    if (c_.peek(Class::negation)) return denied(targets);
+    if (measure(targets) || compared(targets)) return true;
+    if (c_.peek(Class::made_of) || c_.peek(Class::of)) return material_of(targets);
+    if (c_.peek(Class::verb_make) && c_.is(Class::word_made)) ++c_.at;
+    if (const auto turned = c_.peek(Class::flipping)) {
+        c_.at += turned.length;
+        for (const auto& target : targets) d_.step(Operation::Transform, target, std::string(turned.value));
+        return true;
+    }
+    if (c_.take(Class::into)) {
+        if (c_.peek(Class::made_of)) return material_of(targets);
+    }
+    if (!targets.empty() && (targets[0].is_scene()) && environment_clause()) return true;
+    if (style_text(targets)) return true;
+    if (alike(targets)) return true;
+    if (c_.peek(Class::verb_face) || c_.is(Class::word_facing)) {
+        Cursor side = c_;
+        ++side.at;
+        if (const auto direction = side.take(Class::direction)) {
+            c_.at = side.at;
+            for (const auto& target : targets)
+                d_.step(Operation::Transform, target,
+                        "face " + std::string(direction.value == "up" || direction.value == "down"
+                                                  ? "forward"
+                                                  : direction.value));
+            return true;
+        }
+    }
+    if (described_as(targets)) return true;
+    if (pose_text(targets)) return true;
+    Phrase phrase;
+    if (c_.take_phrase(phrase) && become(targets, phrase)) return true;
+    c_.at = start;
+    return false;
+}
+
+/// Reads what the targets become; several, joined by commas and "and".
+bool Reader::complement(const Targets& targets) {
+    const std::size_t before = d_.size();
+    bool done = complement_once(targets);
+    if (!done) {
+        for (const auto& target : targets) done = post(target) || done;
+        if (!done) return false;
+    }
+    for (const auto& target : targets)
+        if (targets.size() == 1) posts(target);
+    while (true) {
+        Cursor ahead = c_;
+        const bool comma = ahead.take_mark(',');
+        if (!ahead.take(Class::conjunction) && !comma) break;
+        Attribute next;
+        Cursor probe = ahead;
+        ahead.take(Class::as_well);
+        const bool adjective = probe.take_attribute(next, false) &&
+                               (probe.at_end_of_clause() || probe.ends_phrase(0, true)) &&
+                               !probe.is_mark(":") && !probe.peek(Class::copula);
+        if (ahead.peek(Class::into)) {  // "into a cat and into a dog"
+            c_.at = ahead.at;
+            if (!complement_once(targets)) return false;
+            continue;
+        }
+        const bool denied_more = ahead.peek(Class::negation) && targets.size() == 1;
+        if (!adjective && !denied_more) break;
+        if (adjective && starts_verb(ahead.at - c_.at)) break;
+        c_.at = ahead.at;
+        if (!complement_once(targets)) return false;
+    }
+    (void)before;
+    return true;
+}
+
+}  // namespace gse::language::plan

@@ -1,0 +1,378 @@
+// Descriptions of the scene after the edit: "a blue bear wearing a hat", "blue", "on snow".
+#include <algorithm>
+
+#include "engine/language/plan/grammar/reader.h"
+#include "engine/language/plan/words/sentence_words.h"
+
+namespace gse::language::plan {
+namespace {
+
+bool is_one_slip(const std::string& noun, const std::string& other) {
+    const std::vector<std::string> needed{other};
+    const auto near = slips_of(noun, needed, 100);
+    return std::find(near.begin(), near.end(), other) != near.end();
+}
+
+}  // namespace
+
+/// Tells whether the thing that the sentence is about is named from that word on.
+bool Reader::mentions_focus(std::size_t from) const {
+    const auto focus = d_.focus();
+    Cursor here = c_;
+    bool instead = false;
+    for (here.at = from; !here.done(); ++here.at) {
+        instead = here.peek(Class::rather_than).length > 0;
+        if (instead) return false;
+        Phrase word;
+        word.noun = here.word().singular;
+        word.typed = here.word().text;
+        for (const auto index : d_.things_named(word))
+            if (focus.thing ? index == *focus.thing : !d_.scene().things[index].is_ground) return true;
+        if (here.peek(Class::pronoun_person)) return true;
+        if (const auto relation = here.peek(Class::relation);
+            relation && here.peek(Class::possessive, relation.length))
+            return true;
+    }
+    return false;
+}
+
+/// "green eyes", "a chimney on the house".
+bool Reader::describe_part(const Phrase& phrase, const Target& found) {
+    std::vector<Attribute> attributes;
+    for (const auto& attribute : phrase.attributes)
+        if (attribute.quality != Quality::Side) attributes.push_back(attribute);
+    if (attributes.empty() && phrase.indefinite && !phrase.owner)
+        return describe_new(phrase);  // "a chimney on the house"
+    const bool own_worn = is_worn(phrase) && !phrase.owner && (kinds_of(phrase.noun) & Body) == 0;
+    if (own_worn) {
+        d_.add(phrase, "worn by", {d_.focus()});
+        return describe_more();
+    }
+    if (!apply_all({found}, attributes) && !complement({found})) return fail(reason::Incomplete);
+    return describe_more();
+}
+
+/// The first thing of a description: it is there, or stands in the place of what is.
+bool Reader::describe(const Phrase& phrase) {
+    frame_ = Frame::Describe;
+    const auto focus = d_.focus();
+    if (phrase.noun.empty()) {
+        const auto target = phrase.definite ? d_.resolve(phrase) : focus;
+        if (!target.found()) return fail(reason::Ambiguous);
+        return apply_all({target}, phrase.attributes);
+    }
+    if (phrase.none) return lack(focus, phrase);
+    if (one_more(phrase)) return describe_more();
+    const auto named = d_.things_named(phrase);
+    const bool exact = std::any_of(named.begin(), named.end(),
+                                   [&](std::size_t i) { return d_.scene().things[i].noun == phrase.noun; });
+    if (const auto kin = d_.kin_of(phrase);
+        kin && !phrase.owner && (named.empty() || (phrase.indefinite && !exact))) {
+        const auto made = d_.replace(d_.target_of_thing(*kin), phrase);
+        described_ = made;
+        posts(made);
+        return describe_more();
+    }
+    const auto found = d_.resolve(phrase);
+    if (found.kind == Target::Kind::Ambiguous) return fail(reason::Ambiguous);
+    if (!found.found()) return describe_new(phrase);
+    const bool on_ground = found.thing && d_.scene().things[*found.thing].is_ground;
+    if (on_ground && !phrase.attributes.empty() && has(Class::empty, phrase.attributes.front().typed) &&
+        focus.found()) {
+        d_.remove(focus);  // "an empty lawn"
+        return true;
+    }
+    if (std::count_if(phrase.attributes.begin(), phrase.attributes.end(),
+                      [](const Attribute& each) { return each.quality == Quality::Colour; }) > 1)
+        return fail(reason::Contradiction);
+    if (found.kind == Target::Kind::There && found.reference.links.size() > 1 &&
+        !found.thing) {  // "green eyes"
+        return describe_part(phrase, found);
+    }
+    described_ = described_ ? described_ : std::optional(found);
+    if (phrase.count.empty() || phrase.count == "all" || found.reference.links[0].count == "all" ||
+        found.kind == Target::Kind::Made) {
+        if (found.kind == Target::Kind::There) d_.already_so();
+        apply_all({found}, phrase.attributes);
+    } else {
+        apply_all({found}, phrase.attributes);
+        d_.duplicate(found, phrase.count);
+    }
+    d_.mention(found);
+    posts(found);
+    Cursor last = c_;  // "golden bear grass"
+    Phrase ground;
+    if (last.take_phrase(ground) && last.at_end_of_clause() && is_ground(ground) &&
+        !ground.has_determiner() && d_.resolve(ground).found() && ground.attributes.empty())
+        c_.at = last.at;
+    return describe_more();
+}
+
+/// A ground or a place: "snow instead of grass", "a forest"; nothing for things.
+std::optional<bool> Reader::describe_place(const Phrase& phrase, bool bare) {
+    Cursor instead = c_;
+    Phrase replaced;
+    if (is_ground(phrase) && instead.take(Class::rather_than) &&
+        instead.take_phrase(replaced)) {  // "snow instead of grass"
+        const auto old = d_.resolve(replaced);
+        if (!old.found()) return expect(replaced).found();
+        c_.at = instead.at;
+        return become({old}, phrase);
+    }
+    if (is_ground(phrase) && !is_worn(phrase) && phrase.count.empty() && (described_ || bare) &&
+        !has(Class::thing, phrase.noun)) {
+        d_.ground(phrase);
+        return true;
+    }
+    if (has(Class::place, phrase.noun) && bare) {
+        d_.environment(phrase.typed);
+        return true;
+    }
+    return std::nullopt;
+}
+
+/// A new thing, and the thing of the scene behind it: "a cat near a bear", "a tree and a bear".
+bool Reader::describe_beside(const Phrase& phrase) {
+    const auto focus = d_.focus();
+    const auto made =
+        d_.add(phrase, is_worn(phrase) ? "worn by" : "beside", focus.found() ? Targets{focus} : Targets{});
+    if (!focus.found()) d_.set_anchor(made, "in", d_.scene_target());
+    d_.mention(made);
+    nested(made, focus);
+    // "for the bear"
+    posts(made);
+    if (is_worn(phrase)) described_ = focus;
+    while (c_.take(Class::conjunction)) {
+        Phrase other;
+        if (!c_.take_phrase(other)) return false;
+        const auto found = d_.resolve(other);
+        if (found.found()) {
+            d_.set_anchor(made, "beside", found);
+            apply_all({found}, other.attributes);
+            described_ = found;
+            posts(found);
+        } else {
+            const auto more = d_.add(other, "beside", focus.found() ? Targets{focus} : Targets{});
+            nested(more, focus);
+            posts(more);
+        }
+    }
+    return true;
+}
+
+/// "a cat instead of the bear".
+std::optional<bool> Reader::describe_instead(const Phrase& phrase) {
+    Cursor ahead = c_;
+    if (!ahead.take(Class::rather_than)) ahead.take(Class::than);
+    Phrase old;
+    if (ahead.take_phrase(old)) {
+        const auto target = d_.resolve(old);
+        if (!target.found()) return expect(old).found();
+        c_.at = ahead.at;
+        const auto made = d_.replace(target, phrase);
+        described_ = made;
+        posts(made);
+        return describe_more();
+    }
+    return std::nullopt;
+}
+
+/// A thing that the scene does not show.
+bool Reader::describe_new(const Phrase& phrase) {
+    const auto focus = d_.focus();
+    if (!described_ && d_.source_missing()) {
+        missing_ = d_.source_word();
+        return fail(reason::NotInScene);
+    }
+    if (!is_thing(phrase)) return fail(reason::NotASentence);
+    const bool bare = c_.at_end_of_clause();
+    if (const auto read = describe_place(phrase, bare)) return *read;
+    const bool wears = is_worn(phrase) || (is_held(phrase) && described_);
+    const auto bearer = described_ && described_->found() ? *described_ : focus;
+    if (described_) {  // further things stand beside the first, or are worn by it
+        if (!bearer.found()) return fail(reason::Ambiguous);
+        const auto how =
+            is_worn(phrase) && d_.can_wear(bearer) ? std::string_view("worn by") : std::string_view("beside");
+        const auto made = d_.add(phrase, how, {bearer});
+        d_.mention(made);
+        nested(made, bearer);
+        posts(made);
+        return describe_more();
+    }
+    if (c_.peek(Class::rather_than) || (c_.peek(Class::than) && requested_)) {
+        if (const auto read = describe_instead(phrase)) return *read;
+    }
+    const bool later = mentions_focus(c_.at);
+    if (later || (wears && focus.found() && (d_.can_wear(focus)) && is_worn(phrase))) {
+        return describe_beside(phrase);
+    }
+    const bool many = phrase.count == "some" || (phrase.plural && phrase.count.empty());
+    if (many && !has(Class::pair_noun, phrase.noun)) {  // "lots of flowers in the grass"
+        const auto made = d_.add(phrase, "in", {d_.scene_target()});
+        d_.mention(made);
+        posts(made);
+        return describe_more();
+    }
+    // "a blue beer": food is no likely slip of a pen, but of the bear's name
+    const bool being = (kinds_of(phrase.noun) & (Animal | Person | Artifact | Vehicle)) != 0;
+    if (focus.found() && !being && is_one_slip(phrase.noun, focus.reference.root()))
+        return fail(reason::NotASentence);
+    if (focus.found()) {
+        const auto made = d_.replace(focus, phrase);
+        described_ = made;
+        d_.mention(made);
+        posts(made);
+        if (c_.take(Class::rather_than)) {
+            Phrase old;
+            if (!c_.take_phrase(old)) return false;
+        }
+        return describe_more();
+    }
+    const auto made = d_.add(phrase, "in", {d_.scene_target()});
+    d_.mention(made);
+    posts(made);
+    return describe_more();
+}
+
+/// "a red car and a green car" of two cars: how the other one is.
+bool Reader::describe_other(const Phrase& phrase) {
+    const auto& things = d_.scene().things;  // "a red car and a green car" of two cars
+    const auto& noun = things[*described_->thing].noun;
+    Targets others;
+    for (std::size_t i = 0; i < things.size(); ++i)
+        if (i != *described_->thing && things[i].noun == noun && noun == phrase.noun)
+            others.push_back(d_.target_of_thing(i));
+    if (others.size() == 1) {
+        apply_all(others, phrase.attributes);
+        return true;
+    }
+    return false;
+}
+
+/// "on grass instead of snow": says what is not there.
+bool Reader::skip_instead() {
+    Cursor ahead = c_;
+    ahead.take(Class::rather_than);
+    Phrase old;
+    Cursor probe = ahead;
+    Attribute attribute;
+    if (probe.take_phrase(old) && !old.noun.empty()) {
+        c_.at = probe.at;
+        return true;
+    }
+    if (ahead.take_attribute(attribute, false)) {
+        c_.at = ahead.at;
+        return true;
+    }
+    return false;
+}
+
+/// Things that a description names behind its first thing: "and a cat", ", snow", "on the grass".
+bool Reader::describe_more() {
+    while (true) {
+        Cursor ahead = c_;
+        const std::size_t start = c_.at;
+        if (c_.peek(Class::rather_than) && described_) {
+            if (skip_instead()) continue;
+        }
+        const bool comma = ahead.take_mark(',');
+        const bool joint = ahead.take(Class::conjunction).length > 0;
+        if (!joint || comma) return true;
+        const std::size_t distance = ahead.at - c_.at;
+        if (starts_verb(distance) && !(ahead.peek(Class::article) || ahead.peek(Class::number))) return true;
+        Phrase phrase;
+        if (!ahead.take_phrase(phrase) || phrase.naming != Naming::Thing) return true;
+        if (phrase.noun.empty()) {  // "a red bear and a blue one"
+            if (!phrase.indefinite || phrase.attributes.empty() || !described_ || !described_->thing)
+                return true;
+            phrase.noun = phrase.typed = d_.scene().things[*described_->thing].noun;
+        }
+        if (ahead.peek(Class::copula) || ahead.peek(Class::modal) || ahead.is_mark(":") ||
+            ahead.peek(Class::gone))
+            return true;
+        Attribute behind;
+        Cursor adjective = ahead;
+        if (adjective.take_attribute(behind, false) && adjective.at_end_of_clause() &&
+            d_.resolve(phrase).found())
+            return true;
+        c_.at = ahead.at;
+        const auto found = d_.resolve(phrase);
+        if (described_ && described_->thing && phrase.indefinite && !phrase.attributes.empty()) {
+            if (describe_other(phrase)) continue;
+        }
+        const bool same =
+            found.found() && described_ && found.reference == described_->reference && phrase.indefinite;
+        if (same && !phrase.attributes.empty()) {  // "a red bear and a blue bear"
+            Phrase second = phrase;
+            second.another = true;
+            const auto made = d_.add(second, "beside", {found});
+            posts(made);
+            continue;
+        }
+        if (!describe(phrase)) {
+            c_.at = start;
+            return false;
+        }
+        return true;
+    }
+}
+
+/// "blue", "bigger", "on snow", "wearing a hat": of the thing that the sentence is about.
+bool Reader::attribute_clause() {
+    const std::size_t start = c_.at;
+    const auto target = described_ && described_->found() ? *described_ : d_.focus();
+    Attribute attribute;
+    Cursor ahead = c_;
+    ahead.take(Class::article);
+    const bool attributes = ahead.take_attribute(attribute, false);
+    const bool begins = c_.peek(Class::relation) || c_.peek(Class::wearing) || c_.peek(Class::holding) ||
+                        c_.peek(Class::having) || c_.peek(Class::made_of) ||
+                        c_.peek(Class::inverse_relation) || c_.peek(Class::riding) || c_.peek(Class::like) ||
+                        c_.peek(Class::without) || c_.peek(Class::times) || c_.peek(Class::pose) ||
+                        c_.peek(Class::fire_words);
+    if (!attributes && !begins) return false;
+    if (const auto contrast = c_.take(Class::contrast_change)) {
+        d_.step(Operation::Recolour, d_.scene_target(), std::string(contrast.value));
+        return true;
+    }
+    ahead = c_;
+    std::vector<Attribute> qualities;
+    ahead.take(Class::article);
+    Phrase bearer;
+    qualities = ahead.take_attributes();  // "blue on the bear", "a deeper red for the bear"
+    const bool joint = !qualities.empty() && ahead.at_end_of_clause() == false &&
+                       (ahead.is(Class::word_for) || ahead.is(Class::word_on));
+    if (joint && ++ahead.at && ahead.take_phrase(bearer) && bearer.definite && ahead.at_end_of_clause()) {
+        const auto found = d_.resolve(bearer);
+        if (found.found() && found.thing && !d_.scene().things[*found.thing].is_ground) {
+            c_.at = ahead.at;
+            return apply_all({found}, qualities);
+        }
+    }
+    if (!target.found()) {
+        if (target.kind == Target::Kind::Missing) missing_ = target.word;
+        return fail(target.kind == Target::Kind::Missing ? reason::NotInScene : reason::Ambiguous);
+    }
+    if (attributes && attribute.quality == Quality::Other && ahead.done() && !described_)
+        return fail(reason::NotASentence);
+    if (attributes && complement({target})) {
+        frame_ = Frame::Make;
+        return true;
+    }
+    c_.at = start;
+    Cursor role = c_;  // "as a panda"
+    Phrase model;
+    if (role.is(Class::word_as) && ++role.at && role.take_phrase(model) && model.indefinite &&
+        role.at_end_of_clause()) {
+        c_.at = role.at;
+        return become({target}, model);
+    }
+    if (post(target)) {
+        posts(target);
+        return true;
+    }
+    c_.at = start;
+    return false;
+}
+
+}  // namespace gse::language::plan

@@ -1,0 +1,410 @@
+// Orders that add, move, size and turn things.
+#include <algorithm>
+
+#include "engine/language/plan/grammar/reader.h"
+
+namespace gse::language::plan {
+
+/// "2 meters", "by 50 cm": as a change has it, with a blank before; empty for none, and for other units.
+std::string Reader::take_amount() {
+    std::string amount;
+    Cursor ahead = c_;
+    ahead.is(Class::word_by) ? void(++ahead.at) : void();
+    Cursor number = ahead;
+    if (const auto named = number.peek(Class::number)) {
+        amount = named.value;
+        number.at += named.length;
+    } else if (number.take(Class::article)) amount = "1";
+    else if (!number.word().text.empty() &&
+             std::isdigit(static_cast<unsigned char>(number.word().text[0])) != 0)
+        amount = number.word().text, ++number.at;
+    else return amount;
+    const auto unit = number.peek(Class::unit);
+    if (!unit) {
+        amount.clear();
+        return amount;
+    }
+    const bool known = unit.value == "m" || unit.value == "cm" || unit.value == "%";
+    amount = known ? " " + amount + " " + std::string(unit.value) : "";
+    number.at += unit.length;
+    c_.at = number.at;
+    return amount;
+}
+
+/// "to the left": moves the target that way, or onto what stands there.
+void Reader::move_way(const Target& target, const Match& direction, std::string amount) {
+    const std::string way(direction.value);
+    c_.at += direction.length;
+    while (c_.take(Class::degree)) {}
+    if (amount.empty()) amount = take_amount();
+    Cursor onto = c_;
+    if (onto.peek(Class::relation) && onto.peek(Class::relation).value == "on") {
+        onto.take(Class::relation);
+        Phrase where;
+        if (onto.take_phrase(where)) {
+            const auto place = d_.resolve(where);
+            if (place.found()) {
+                c_.at = onto.at;
+                d_.move(target, "move on", place);
+                return;
+            }
+        }
+    }
+    d_.step(Operation::Transform, target, "move " + way + amount);
+}
+
+/// "behind the statue", "in a cage", "on snow".
+bool Reader::move_to(const Target& target, const Match& relation) {
+    const auto name = relation ? relation.value : std::string_view("beside");
+    c_.at += relation ? relation.length : 1;
+    if (c_.is(Class::word_to) || c_.is(Class::word_of)) ++c_.at;
+    Phrase where;
+    if (!c_.take_phrase(where)) { return fail(reason::Incomplete); }
+    auto place = where.naming == Naming::It ? d_.focus() : d_.resolve(where);
+    Target body = d_.focus();
+    if (!place.found() && on_bearer(where, body)) place = body;
+    if (!place.found()) {
+        if (is_ground(where) && !where.definite && name == "on") {  // "put it on snow"
+            d_.ground(where);
+            return true;
+        }
+        const bool place_name = has(Class::place, where.noun) || has(Class::environment, where.noun);
+        if (place.kind == Target::Kind::Missing && (where.indefinite || place_name) &&
+            where.naming == Naming::Thing) {
+            if (place_name) d_.environment(where.typed);  // "put the bear in a cage", "in the forest"
+            else if (!relate(target, name, where)) return false;
+            return true;
+        }
+        return expect(where).found();
+    }
+    if (name == "between" && c_.take(Class::conjunction)) {
+        Phrase second;
+        if (!c_.take_phrase(second)) return fail(reason::Incomplete);
+        d_.move(target, "move beside", place);
+        return true;
+    }
+    if (target.reference == place.reference) return fail(reason::Incomplete);
+    const bool usual = name == "on" && target.thing && place.thing &&
+                       !d_.scene().things[*place.thing].is_ground && d_.scene().things.size() == 2;
+    const bool worn = target.thing && d_.scene().things[*target.thing].is_worn && d_.can_wear(place);
+    if (usual || (worn && name == "on")) d_.already_so();
+    else d_.move(target, "move " + std::string(name), place);
+    return true;
+}
+
+/// A thing that is there goes to another place.
+bool Reader::move_target(const Target& target) {
+    c_.take(Class::degree);
+    const auto amount = take_amount();
+    bool moved = false;
+    while (true) {
+        const std::size_t start = c_.at;
+        if (moved) {
+            const bool joint = c_.take(Class::conjunction).length > 0;
+            if (!joint) break;
+        }
+        c_.take(Class::degree);
+        while (c_.take(Class::emerging)) {}
+        const auto relation = c_.peek(Class::relation);
+        const auto direction = c_.peek(Class::direction);
+        Cursor behind = c_;
+        behind.at += direction.length;
+        const bool plain =
+            direction && direction.length >= relation.length &&
+            (behind.at_end_of_clause() || behind.peek(Class::as_well) || behind.peek(Class::conjunction) ||
+             behind.peek(Class::courtesy) || behind.is(Class::word_by) || behind.peek(Class::degree) ||
+             behind.peek(Class::unit, 1) || (direction.length >= relation.length && direction.length > 1) ||
+             behind.peek(Class::from) || behind.is(Class::word_to));
+        if (plain) {
+            move_way(target, direction, amount);
+            moved = true;
+            continue;
+        }
+        if (relation || c_.is(Class::word_to) || c_.is(Class::word_from)) {
+            if (!move_to(target, relation)) return false;
+            moved = true;
+            continue;
+        }
+        c_.at = start;
+        break;
+    }
+    return moved || fail(reason::Incomplete);
+}
+
+bool Reader::move_clause() {
+    const auto lift = c_.peek(Class::verb_lift);
+    const auto verb = c_.peek(Class::verb_move);
+    if (!verb && !lift) return false;
+    c_.at += std::max(verb.length, lift.length);
+    Targets targets;
+    Phrase first;
+    Cursor ahead = c_;
+    if (!ahead.take_phrase(first)) return false;
+    const auto found = d_.resolve(first);
+    if (!found.found() || (first.indefinite && first.naming == Naming::Thing)) {
+        if (found.kind == Target::Kind::Ambiguous && first.naming != Naming::Thing)
+            return fail(reason::Ambiguous);
+        return false;
+    }
+    if (found.kind == Target::Kind::There && !found.thing && found.reference.links.size() > 1)
+        return false;  // a part: a pose
+    if (!objects(targets)) return false;
+    Cursor way = c_;
+    while (way.take(Class::degree) || way.take(Class::emerging)) {}
+    const bool goes =
+        way.peek(Class::direction) || way.peek(Class::relation) || way.is(Class::word_to) ||
+        way.is(Class::word_by) ||
+        (!way.word().text.empty() && std::isdigit(static_cast<unsigned char>(way.word().text[0])) != 0) ||
+        way.peek(Class::number) || way.is(Class::word_from);
+    Cursor position = c_;
+    const bool stands = position.peek(Class::pose) || position.peek(Class::flipping);
+    if (lift && (c_.at_end_of_clause() || !goes)) {
+        for (const auto& target : targets) d_.step(Operation::Transform, target, std::string(lift.value));
+        return c_.at_end_of_clause() || ends_well();
+    }
+    if (lift && way.is(Class::word_up)) {
+        ++way.at;
+        c_.at = way.at;
+        for (const auto& target : targets) d_.step(Operation::Transform, target, "move up");
+        return true;
+    }
+    if (!goes || stands) return c_.at_end_of_clause() ? fail(reason::Incomplete) : false;
+    for (const auto& target : targets)
+        if (!move_target(target)) return false;
+    return true;
+}
+
+/// "1.5", "half", "50 %" as a factor; empty for none. `scale`: percents are of the size, not of the change.
+std::string Reader::take_factor(bool scale, bool smaller) {
+    std::string number;
+    if (const auto times = c_.take(Class::times)) number = times.value;
+    else if (const auto named = c_.take(Class::number)) number = named.value;
+    else if (!c_.word().text.empty() && std::isdigit(static_cast<unsigned char>(c_.word().text[0])) != 0)
+        number = c_.word().text, ++c_.at;
+    if (number.empty()) return number;
+    if (const auto unit = c_.take(Class::unit); unit && unit.value == "%") {
+        const double percent = std::atof(number.c_str());
+        const double scaled = scale ? percent / 100 : smaller ? 1 - percent / 100 : 1 + percent / 100;
+        number = std::to_string(scaled);
+        number.erase(number.find_last_not_of('0') + 1);
+        if (number.back() == '.') number.pop_back();
+    }
+    return number;
+}
+
+/// "the size of the bear", "the bear's height", "the bear": targets, and what of them is sized.
+bool Reader::take_sized(Targets& targets, std::string_view& sizes) {
+    Cursor ahead = c_;
+    ahead.take(Class::definite);
+    if (ahead.peek(Class::dimension) && ahead.peek(Class::of, 1)) {  // "double the size of the bear"
+        sizes = ahead.take(Class::dimension).value;
+        ahead.take(Class::of);
+        c_.at = ahead.at;
+    }
+    Phrase first;
+    Cursor whole = c_;
+    if (whole.take_phrase(first) && first.indefinite && !d_.resolve(first).found()) return false;
+    if (first.owner && has(Class::dimension, first.noun)) {  // "the bear's size"
+        sizes = *meaning(Class::dimension, first.noun);
+        const auto target = expect(*first.owner);
+        if (!target.found()) return false;
+        c_.at = whole.at;
+        targets.push_back(target);
+        d_.mention(target);
+    } else if (!objects(targets)) return false;
+    return true;
+}
+
+bool Reader::size_clause() {
+    const auto size = c_.peek(Class::verb_size);
+    const auto factor = c_.peek(Class::verb_double);
+    const auto scale = c_.peek(Class::verb_scale);
+    if (!size && !factor && !scale) return false;
+    c_.at += std::max({size.length, factor.length, scale.length});
+    Targets targets;
+    std::string_view sizes;
+    if (!take_sized(targets, sizes)) return false;
+    std::string change = size ? std::string(size.value) : factor ? "scale " + std::string(factor.value) : "";
+    const bool up = c_.is(Class::word_up), down = c_.is(Class::word_down);
+    if (up || down) ++c_.at, change = up ? "bigger" : "smaller";
+    if (c_.peek(Class::dimension) && !c_.peek(Class::relation)) sizes = c_.take(Class::dimension).value;
+    if (c_.is(Class::word_in) && c_.peek(Class::dimension, 1)) c_.at += 2;
+    if (c_.is(Class::word_vertically)) ++c_.at, change = "taller";
+    else if (c_.is(Class::word_horizontally) || c_.is(Class::word_sideways)) ++c_.at, change = "wider";
+    if (c_.is(Class::word_by) || c_.is(Class::word_to)) {
+        ++c_.at;
+        if (c_.is(Class::word_a)) ++c_.at;
+        while (c_.take(Class::degree)) {}
+        if (c_.is(Class::word_factor) && c_.is(Class::word_of, 1)) c_.at += 2;
+        const auto number = take_factor(scale.length > 0, change == "smaller");
+        if (number.empty()) return fail(reason::Incomplete);
+        c_.take(Class::dimension);
+        if (c_.peek(Class::possessive) && c_.peek(Class::dimension, 1)) c_.at += 2;
+        change = "scale " + number;
+    } else if (scale && change.empty()) {
+        if (c_.at_end_of_clause()) return fail(reason::Incomplete);
+        return complement(targets);
+    }
+    if (c_.take(Class::to)) {
+        Attribute ignored;
+        Phrase other;
+        if (!c_.take_attribute(ignored, false) && !c_.take_phrase(other)) return false;
+    }
+    c_.take(Class::times);
+    if (factor && !sizes.empty() && sizes != "scale") {
+        const auto blank = sizes.find(' ');
+        change = factor.value[0] != '0' ? std::string(sizes.substr(0, blank))
+                                        : std::string(sizes.substr(blank + 1));
+    }
+    while (c_.take(Class::degree) || c_.take(Class::pose_manner)) {}
+    for (const auto& each : targets) d_.step(Operation::Transform, each, change);
+    return true;
+}
+
+/// "90 degrees", "by a quarter turn"; empty for none.
+std::string Reader::take_degrees() {
+    Cursor angle = c_;
+    if (angle.is(Class::word_by)) ++angle.at;
+    std::string degrees;
+    const bool digits =
+        !angle.word().text.empty() && std::isdigit(static_cast<unsigned char>(angle.word().text[0])) != 0;
+    if (digits) {
+        degrees = angle.word().text;
+        ++angle.at;
+        angle.take(Class::degrees);
+        c_.at = angle.at;
+    } else if (const auto named = angle.peek(Class::number);
+               named && angle.peek(Class::degrees, named.length)) {
+        degrees = named.value;
+        angle.at += named.length;
+        angle.take(Class::degrees);
+        c_.at = angle.at;
+    }
+    const auto turn = c_.peek(Class::turning);
+    if (degrees.empty() && turn) {
+        degrees = turn.value;
+        c_.at += turn.length;
+    }
+    return degrees;
+}
+
+bool Reader::rotate_clause() {
+    const auto verb = c_.peek(Class::verb_rotate);
+    const auto flip = c_.peek(Class::verb_flip);
+    if (!verb && !flip) return false;
+    c_.at += std::max(verb.length, flip.length);
+    if (c_.is(Class::word_around)) ++c_.at;
+    Targets targets;
+    Phrase first;
+    Cursor ahead = c_;
+    if (!ahead.take_phrase(first)) return false;
+    const auto found = d_.resolve(first);
+    if (!found.found()) {
+        if (verb && c_.peek(Class::verb_turn)) return false;
+        return expect(first).found();
+    }
+    if (!objects(targets)) return false;
+    std::string change;
+    if (flip) change = flip.value;
+    c_.take(Class::degree);
+    if (const auto turned = c_.peek(Class::flipping);
+        turned && (flip || turned.length > 1 || c_.at + turned.length >= word_count_)) {
+        c_.at += turned.length;
+        change = turned.value;
+    } else if (!flip) {
+        const auto degrees = take_degrees();
+        const auto way = c_.peek(Class::clockwise);
+        if (degrees.empty() && !way) {
+            if (!c_.at_end_of_clause()) return false;
+            const auto& text = verb.value;
+            if (text == "turn" || text == "roll" || text == "angle") return fail(reason::Incomplete);
+            change = "rotate";
+        } else {
+            change = "rotate" + (degrees.empty() ? "" : " " + degrees);
+            if (way) {
+                const std::string_view value = way.value;
+                change += " " + std::string(value);
+                c_.at += way.length;
+            }
+        }
+    }
+    while (c_.take(Class::degree)) {}
+    if (c_.peek(Class::into)) return false;
+    for (const auto& target : targets) d_.step(Operation::Transform, target, change);
+    return true;
+}
+
+/// "make it face left", "turn the bear to face us".
+bool Reader::face_clause() {
+    Cursor verb = c_;
+    if (!verb.take(Class::verb_face)) return false;
+    Targets targets;
+    c_.at = verb.at;
+    Phrase first;
+    Cursor ahead = c_;
+    if (!ahead.take_phrase(first) || !d_.resolve(first).found()) return false;
+    if (!objects(targets)) return false;
+    if (c_.take(Class::to) && !c_.peek(Class::verb_face)) --c_.at;
+    if (c_.peek(Class::verb_face)) ++c_.at;
+    else if (verb.at > 0 && !c_.peek(Class::direction)) return false;
+    const auto way = c_.take(Class::direction);
+    if (!way) return false;
+    std::string side(way.value == "up" ? "back" : way.value == "down" ? "forward" : way.value);
+    for (const auto& target : targets) d_.step(Operation::Transform, target, "face " + side);
+    return true;
+}
+
+/// Verbs that name the change: "bleach the bear", "gild it", "age the man", "stripe the bear".
+bool Reader::shift_clause() {
+    constexpr std::pair<Class, Operation> Changes[] = {{Class::verb_shift, Operation::Recolour},
+                                                       {Class::verb_material, Operation::Material},
+                                                       {Class::verb_pattern, Operation::Pattern},
+                                                       {Class::verb_style, Operation::Style},
+                                                       {Class::verb_alter, Operation::Alter}};
+    for (const auto& [kind, operation] : Changes) {
+        const auto verb = c_.peek(kind);
+        if (!verb) continue;
+        c_.at += verb.length;
+        Targets targets;
+        Phrase backdrop;
+        Cursor ahead = c_;
+        if (ahead.take_phrase(backdrop) && has(Class::backdrop, backdrop.noun) &&
+            d_.things_named(backdrop).empty()) {
+            c_.at = ahead.at;
+            if (operation == Operation::Style)
+                d_.style(d_.scene_target(), std::string(verb.value) + " " + backdrop.noun);
+            else d_.environment(std::string(verb.value) + " " + backdrop.noun);
+            return true;
+        }
+        if (!objects(targets)) return false;
+        if (c_.is(Class::word_up) || c_.is(Class::word_down) || c_.is(Class::word_out)) ++c_.at;
+        while (c_.take(Class::degree) || c_.take(Class::pose_manner)) {}
+        if (c_.is(Class::word_by)) {
+            while (!c_.at_end_of_clause() && !c_.peek(Class::conjunction)) ++c_.at;
+        }
+        for (const auto& target : targets) d_.step(operation, target, std::string(verb.value));
+        return true;
+    }
+    return false;
+}
+
+/// "open the door", "raise the left arm", "let it smile".
+bool Reader::pose_clause() {
+    const auto verb = c_.peek(Class::verb_pose);
+    const auto raise = c_.peek(Class::verb_raise);
+    if (!verb && !raise) return false;
+    c_.at += std::max(verb.length, raise.length);
+    Targets targets;
+    if (!objects(targets)) {
+        if (c_.at_end_of_clause() && verb && d_.focus().found()) return false;
+        return false;
+    }
+    const auto text = raise.length >= verb.length ? raise.value : verb.value;
+    if (c_.is(Class::word_up) || c_.is(Class::word_out) || c_.is(Class::word_down) || c_.is(Class::word_wide))
+        ++c_.at;
+    while (c_.take(Class::pose_manner)) {}
+    for (const auto& target : targets) d_.step(Operation::Pose, target, std::string(text));
+    return true;
+}
+
+}  // namespace gse::language::plan

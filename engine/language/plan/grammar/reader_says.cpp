@@ -1,0 +1,492 @@
+// Statements and descriptions: "the bear is blue", "a blue bear wearing a hat", "on snow", "no hat".
+#include <algorithm>
+
+#include "engine/language/plan/grammar/reader.h"
+
+namespace gse::language::plan {
+/// "only grass": what else is there goes.
+bool Reader::only_clause() {
+    Cursor ahead = c_;
+    Phrase phrase;
+    if (!ahead.take(Class::only) || !ahead.take_phrase(phrase) || !ahead.at_end_of_clause()) return false;
+    if (d_.size() > 0 || !phrase.attributes.empty() || phrase.naming != Naming::Thing) return false;
+    const auto found = d_.resolve(phrase);
+    const auto focus = d_.focus();
+    if (!found.thing || !focus.found()) return false;
+    c_.at = ahead.at;
+    d_.already_so();
+    if (d_.scene().things[*found.thing].is_ground) d_.remove(focus);
+    return true;
+}
+
+bool Reader::clause() {
+    if (correction()) {
+        // "no wait, green": in the place of the last
+        d_.drop_last();
+        return clause();
+    }
+    if (only_clause()) return true;
+    if (c_.take(Class::only)) skip_lead_in();
+    if (keep_clause() || instead_clause() || negative_clause() || environment_clause() || style_clause())
+        return true;
+    if (!reason_.empty()) return false;
+    if (there_is_clause()) return true;
+    if (!reason_.empty()) return false;
+    if (frame_ != Frame::None && frame_ != Frame::Describe && ellipsis()) return true;
+    if (starts_verb()) {
+        const std::size_t start = c_.at;
+        if (verb_clause()) return true;
+        if (!reason_.empty()) return false;
+        c_.at = start;
+    }
+    return noun_clause() || attribute_clause();
+}
+
+/// "and the moon is shining": says nothing more.
+void Reader::skip_moon() {
+    Cursor also = c_;  // "and the moon is shining"
+    if (also.take(Class::conjunction) && also.take(Class::definite) &&
+        (also.is(Class::word_moon) || also.is(Class::word_sun) || also.is(Class::word_stars) ||
+         also.is(Class::word_sky))) {
+        while (!also.at_end_of_clause()) ++also.at;
+        c_.at = also.at;
+    }
+}
+
+/// "it is night", "make it snow", "at night", "let it rain".
+bool Reader::environment_clause() {
+    Cursor ahead = c_;
+    const bool makes =
+        ahead.take(Class::verb_make) || ahead.take(Class::verb_turn) || ahead.take(Class::verb_add);
+    const bool subject = ahead.is(Class::word_it) || ahead.is(Class::word_its) ||
+                         ahead.peek(Class::time_word) || ahead.peek(Class::everything) ||
+                         (ahead.peek(Class::definite) && ahead.peek(Class::time_word, 1));
+    if (subject) {
+        if (!ahead.peek(Class::everything)) ahead.take(Class::definite);
+        if (!ahead.take(Class::everything)) ++ahead.at;
+    }
+    while (ahead.take(Class::modal) || ahead.take(Class::copula) || ahead.take(Class::look_word) ||
+           ahead.take(Class::like) || ahead.take(Class::to) || ahead.take(Class::into)) {}
+    if (const auto relation = ahead.peek(Class::relation);
+        relation && (relation.value == "in" || relation.value == "beside" || relation.value == "under") &&
+        ahead.at != c_.at)
+        ahead.at += relation.length;
+    else if (relation && !makes && !subject &&
+             (ahead.is(Class::word_at) || ahead.is(Class::word_in) || ahead.is(Class::word_during)))
+        ahead.at += relation.length;
+    const auto verb = ahead.peek(Class::weather_verb);
+    if (verb && subject && verb.length == 1 && ahead.word(1).text != "on") {
+        // with the ground as the source, "make it snow" says what the ground becomes
+        const auto focus = d_.focus();
+        const bool ground = makes && focus.thing && d_.scene().things[*focus.thing].is_ground &&
+                            has(Class::ground, ahead.word().text);
+        if (ground) return false;
+        c_.at = ahead.at + 1;
+        while (c_.take(Class::degree) || c_.take(Class::pose_manner)) {}
+        d_.environment(std::string(verb.value));
+        c_.take(Class::as_well);
+        return true;
+    }
+    ahead.take(Class::article);
+    ahead.take(Class::definite);
+    const auto weather = ahead.peek(Class::environment);
+    if (!weather) return false;
+    const bool alone = !makes && !subject && ahead.at == c_.at;
+    if (alone && weather.length == 1 &&
+        (ahead.peek(Class::shade) || ahead.peek(Class::material_surface) || ahead.is(Class::word_fall)) &&
+        ahead.noun_length(1) > 0)
+        return false;
+    Cursor behind = ahead;
+    behind.at += weather.length;
+    behind.take(Class::time_word);
+    behind.take(Class::environment);
+    while (behind.take(Class::as_well)) {}
+    const bool adds_thing = makes && !subject && ahead.noun_length() > weather.length;
+    if (adds_thing || !(behind.at_end_of_clause() || behind.peek(Class::conjunction) ||
+                        behind.peek(Class::relation) || behind.peek(Class::courtesy)))
+        return false;
+    if (subject && c_.is(Class::word_it) == false && makes == false && d_.is_animate(d_.focus()) &&
+        ahead.is(Class::word_dark))
+        return false;
+    c_.at = behind.at;
+    d_.environment(std::string(weather.value));
+    skip_moon();
+    return true;
+}
+
+/// "minecraft style", "in the style of van gogh", "as an oil painting", "an oil painting of a bear".
+bool Reader::style_clause() {
+    Cursor ahead = c_;
+    const std::size_t start = c_.at;
+    if (ahead.is(Class::word_in) || ahead.is(Class::word_as) || ahead.is(Class::word_with)) ++ahead.at;
+    ahead.take(Class::definite);
+    ahead.take(Class::article);
+    if (ahead.take(Class::style_word) && ahead.take(Class::of)) {
+        c_.at = ahead.at;
+        if (style_text({d_.scene_target()})) return true;
+        Phrase model;
+        if (c_.take_phrase(model)) {
+            d_.style(d_.scene_target(), model.typed);
+            return true;
+        }
+        c_.at = start;
+        return false;
+    }
+    ahead = c_;
+    if (ahead.is(Class::word_in) || ahead.is(Class::word_as)) ++ahead.at;
+    c_.at = ahead.at;
+    if (style_text({d_.scene_target()})) {
+        if (c_.take(Class::of)) {
+            const bool more = clause();
+            return more || c_.at_end_of_clause();
+        }
+        if (c_.at_end_of_clause() || c_.peek(Class::conjunction)) return true;
+        d_.drop_last();
+    }
+    // "lego style"
+    c_.at = start;
+    Phrase named;
+    if (c_.take_phrase(named) && !named.noun.empty() && c_.at_end_of_clause()) {
+        const auto blank = named.typed.rfind(' ');
+        const auto last = blank == std::string::npos ? named.typed : named.typed.substr(blank + 1);
+        if (has(Class::style_word, last) && last != "look" && last != "version") {
+            std::string text;
+            for (const auto& attribute : named.attributes) text += attribute.typed + " ";
+            if (blank != std::string::npos) text += named.typed.substr(0, blank);
+            while (!text.empty() && text.back() == ' ') text.pop_back();
+            if (!text.empty()) {
+                d_.style(d_.scene_target(), text);
+                return true;
+            }
+        }
+    }
+    c_.at = start;
+    return false;
+}
+
+bool Reader::there_is_clause() {
+    Cursor ahead = c_;
+    if (!ahead.take(Class::there_is)) return false;
+    ahead.take(Class::as_well);
+    const std::size_t start = c_.at;
+    c_.at = ahead.at;
+    if (c_.peek(Class::none) || c_.peek(Class::negation)) return negative_clause();
+    Targets made;
+    Phrase phrase;
+    do {
+        if (!c_.take_phrase(phrase) || phrase.noun.empty()) {
+            c_.at = start;
+            return false;
+        }
+        if (one_more(phrase)) continue;
+        const auto found = d_.resolve(phrase);
+        if (found.found() && phrase.count.empty() && !phrase.another) {
+            apply_all({found}, phrase.attributes);
+            d_.already_so();
+            posts(found);
+            continue;
+        }
+        if (!place_new(phrase, made)) return false;
+    } while (list_goes_on());
+    return true;
+}
+
+/// "no hat on the bear", "not a bear but a lion".
+bool Reader::no_thing_clause() {
+    Cursor ahead = c_;
+    Phrase phrase;
+    if (!ahead.take_phrase(phrase) || !phrase.none || phrase.noun.empty()) return false;
+    c_.at = ahead.at;
+    phrase.none = false;
+    if (c_.peek(Class::relation)) {  // "no hat on the bear"
+        Cursor place = c_;
+        place.take(Class::relation);
+        Phrase where;
+        if (place.take_phrase(where)) c_.at = place.at;
+        else c_.take(Class::relation);
+    }
+    Phrase other;
+    Cursor but = c_;
+    if (but.take(Class::contrast) && but.take_phrase(other) && other.indefinite &&
+        d_.resolve(phrase).found()) {
+        c_.at = but.at;  // "not a bear but a lion"
+        return become({d_.resolve(phrase)}, other);
+    }
+    return lack(d_.focus(), phrase);
+}
+
+/// "do not touch the bear": nothing is asked.
+bool Reader::do_not_clause(Cursor ahead) {
+    if (starts_verb(ahead.at - c_.at) || ahead.word().text == "touch" || ahead.word().text == "forget") {
+        if (ahead.word().text == "forget") {
+            c_.at = ahead.at + 1;
+            c_.take(Class::to);
+            return clause();
+        }
+        while (!ahead.at_end_of_clause() && !ahead.peek(Class::contrast)) ++ahead.at;
+        c_.at = ahead.at;
+        d_.nothing_asked();
+        return true;
+    }
+    return false;
+}
+
+/// "no hat", "neither a bear nor a cat", "without a hat", "not red but green".
+bool Reader::negative_clause() {
+    Cursor ahead = c_;
+    if (ahead.take(Class::do_not)) {  // "do not touch the bear": nothing is asked
+        return do_not_clause(ahead);
+    }
+    if (ahead.take(Class::unwanted)) {  // "I do not want to see a bear there"
+        Phrase phrase;
+        if (!ahead.take_phrase(phrase) || phrase.naming != Naming::Thing || d_.things_named(phrase).empty())
+            return false;
+        c_.at = ahead.at;
+        while (c_.take(Class::as_well) || c_.is(Class::word_there)) {
+            if (c_.is(Class::word_there)) ++c_.at;
+        }
+        return c_.at_end_of_clause() && lack(d_.focus(), phrase);
+    }
+    if (c_.peek(Class::without)) {
+        c_.take(Class::without);
+        return lack_list(d_.last() ? *d_.last() : d_.focus());
+    }
+    if (ahead.is(Class::word_neither)) {
+        ++ahead.at;
+        Phrase phrase;
+        c_.at = ahead.at;
+        do {
+            if (!c_.take_phrase(phrase) || !lack(d_.focus(), phrase)) return false;
+        } while (c_.is(Class::word_nor) && ++c_.at);
+        return true;
+    }
+    if (ahead.peek(Class::none) && !ahead.peek(Class::correction)) return no_thing_clause();
+    if (ahead.peek(Class::negation)) {
+        const std::size_t start = c_.at;
+        Cursor behind = ahead;
+        behind.take(Class::negation);
+        Phrase other;
+        Attribute attribute;
+        Cursor probe = behind;
+        if (!probe.take_attribute(attribute, false) && behind.take_phrase(other) &&
+            other.naming == Naming::Thing && behind.at_end_of_clause() && (d_.size() > 0 || !behind.done())) {
+            c_.at = behind.at;  // "not the hat, the bear should be yellow"
+            d_.nothing_asked();
+            return true;
+        }
+        const auto focus = d_.last() ? *d_.last() : d_.focus();
+        if (!focus.found()) return fail(reason::Ambiguous);
+        if (denied({focus})) return true;
+        if (!reason_.empty()) return false;
+        c_.at = start;
+    }
+    return false;
+}
+
+/// "instead of a bear I want a cat".
+bool Reader::instead_clause() {
+    Cursor ahead = c_;
+    if (!ahead.peek(Class::rather_than) || ahead.is(Class::word_not)) return false;
+    ahead.take(Class::rather_than);
+    Phrase old;
+    if (!ahead.take_phrase(old)) return false;
+    const auto target = d_.resolve(old);
+    c_.at = ahead.at;
+    skip_lead_in();
+    while (c_.take(Class::verb_add) || c_.take(Class::there_is) || c_.take(Class::verb_make)) {}
+    Phrase phrase;
+    if (!target.found()) {  // "instead of snow, grass"
+        return expect(old).found();
+    }
+    if (!c_.take_phrase(phrase)) return fail(reason::Incomplete);
+    return become({target}, phrase);
+}
+
+/// "wears a hat", "has wings"; nothing where no such verb stands.
+std::optional<bool> Reader::has_something(const Targets& subjects) {
+    for (const auto kind : {Class::wearing, Class::holding, Class::riding, Class::having}) {
+        if (!c_.peek(kind) || c_.peek(Class::conjunction)) continue;
+        Cursor verb = c_;
+        verb.take(kind);
+        if (verb.peek(Class::copula) || verb.peek(Class::verb_become)) {  // "has turned blue"
+            c_.take(Class::having);
+            break;
+        }
+        bool all = true;
+        const std::size_t behind = verb.at;
+        for (const auto& subject : subjects) {
+            c_.at = behind;
+            const std::string_view relation = kind == Class::wearing   ? "worn by"
+                                              : kind == Class::holding ? "held by"
+                                              : kind == Class::riding  ? "ridden by"
+                                                                       : "with";
+            all = all && has_list(subject, relation);
+        }
+        if (!all) return false;
+        for (const auto& subject : subjects) posts(subject);
+        return true;
+    }
+    return std::nullopt;
+}
+
+/// "is blue", "is painted blue", "is replaced by a cat", "is behind the statue".
+bool Reader::is_somehow(const Targets& subjects) {
+    c_.take(Class::copula);
+    c_.take(Class::as_well);
+    if (!c_.peek(Class::like) && c_.peek(Class::relation) && !c_.peek(Class::flipping))
+        return related(subjects.front());
+    // "is replaced by a cat", "is painted blue", "is removed"
+    if (c_.peek(Class::verb_replace) && c_.word().text.ends_with("ed")) {
+        ++c_.at;
+        Phrase phrase;
+        if ((c_.is(Class::word_by) || c_.is(Class::word_with)) && ++c_.at && c_.take_phrase(phrase))
+            return become(subjects, phrase);
+        return false;
+    }
+    if ((c_.peek(Class::verb_recolour) || c_.peek(Class::verb_turn)) && c_.word().text.ends_with("ed"))
+        ++c_.at;
+    if (c_.peek(Class::verb_remove) && (c_.word().text.ends_with("ed") || c_.word().text.ends_with("en"))) {
+        c_.take(Class::verb_remove);
+        for (const auto& subject : subjects) d_.remove(subject);
+        return true;
+    }
+    return complement(subjects);
+}
+
+bool Reader::predicate(const Targets& subjects) {
+    const std::size_t start = c_.at;
+    const auto back = [&] {
+        c_.at = start;
+        return false;
+    };
+    const bool modal = c_.take(Class::modal).length > 0;
+    if (modal && (c_.peek(Class::article) || c_.peek(Class::number) || c_.peek(Class::some)) &&
+        subjects.size() == 1)
+        return has_list(subjects.front(), "with") || back();  // "the bear needs a hat"
+    while (c_.take(Class::as_well)) {}
+    if (c_.peek(Class::gone)) {
+        Cursor behind = c_;
+        behind.take(Class::gone);
+        if (behind.at_end_of_clause() || behind.peek(Class::conjunction) || behind.peek(Class::from) ||
+            behind.peek(Class::contrast)) {
+            c_.at = behind.at;
+            for (const auto& subject : subjects) d_.remove(subject);
+            return true;
+        }
+    }
+    if (c_.peek(Class::without)) {
+        c_.take(Class::without);
+        return lack_list(subjects.front()) || back();
+    }
+    if (modal && c_.take(Class::negation)) {
+        if (c_.peek(Class::copula)) c_.take(Class::copula);
+        if (c_.take(Class::having) || c_.take(Class::wearing) || c_.take(Class::holding))
+            return lack_list(subjects.front()) || back();
+        const auto attributes = c_.take_attributes();
+        if (attributes.empty()) return back();
+        for (const auto& subject : subjects)
+            for (const auto& attribute : attributes) d_.deny(subject, attribute);
+        c_.take_mark(',');
+        if (c_.take(Class::contrast)) return complement(subjects);
+        return fail(reason::Incomplete);
+    }
+    if (const auto read = has_something(subjects)) return *read || back();
+    if (c_.peek(Class::emerging) && c_.peek(Class::relation, c_.peek(Class::emerging).length)) {
+        c_.take(Class::emerging);
+        return related(subjects.front()) || back();
+    }
+    if (c_.peek(Class::copula) || c_.peek(Class::look_word) || c_.peek(Class::verb_become) || modal) {
+        return is_somehow(subjects) || back();
+    }
+    if (c_.is_mark(":>")) {
+        ++c_.at;
+        if (c_.at_end_of_clause()) return back();
+        return complement(subjects) || back();
+    }
+    if (c_.peek(Class::verb_pose) && subjects.front().found()) return pose_text(subjects) || back();
+    return back();
+}
+
+/// Subjects and what is said of them; nothing where the words may be a description.
+std::optional<bool> Reader::statement(const std::vector<Phrase>& phrases, bool said, bool adjective_behind) {
+    const auto& phrase = phrases.front();
+    Targets subjects;
+    bool all = true;
+    for (const auto& each : phrases) {
+        const auto found = d_.resolve(each);
+        all = all && found.found();
+        subjects.push_back(found);
+    }
+    if (all) {
+        d_.mention(subjects.front());
+        for (std::size_t i = 0; i < subjects.size(); ++i)
+            if (subjects[i].thing && phrases[i].indefinite) apply_all({subjects[i]}, phrases[i].attributes);
+        const std::size_t here = c_.at;
+        if (said && predicate(subjects)) {
+            frame_ = Frame::Make;
+            return true;
+        }
+        c_.at = here;
+        if (!reason_.empty()) return false;
+        if (adjective_behind && complement(subjects)) {
+            frame_ = Frame::Make;
+            return true;
+        }
+        if (said && phrase.naming != Naming::Thing) return false;
+    } else if (said && subjects.front().kind == Target::Kind::Ambiguous) {
+        return fail(reason::Ambiguous);
+    } else if (phrase.definite && said && d_.kin_of(phrase) == std::nullopt && !is_ground(phrase)) {
+        missing_ = subjects.front().word;
+        return fail(reason::NotInScene);
+    }
+    return std::nullopt;
+}
+
+bool Reader::noun_clause() {
+    const std::size_t start = c_.at;
+    Phrase phrase;
+    if (!c_.take_phrase(phrase)) return false;
+    if (phrase.naming == Naming::Something) return false;
+    // "chair blue", "the bears ears white", "bear: green"
+    std::vector<Phrase> phrases{phrase};
+    Cursor list = c_;
+    while (true) {
+        Phrase next;
+        Cursor ahead = list;
+        if (!ahead.take(Class::conjunction) || !ahead.take_phrase(next) || next.noun.empty()) break;
+        phrases.push_back(next);
+        list.at = ahead.at;
+    }
+    const bool verb = list.peek(Class::copula) || list.peek(Class::modal) || list.peek(Class::gone) ||
+                      list.is_mark(":>") || list.peek(Class::verb_become);
+    if (phrases.size() > 1 && verb && d_.resolve(phrases[1]).found()) c_.at = list.at;
+    else phrases.resize(1);
+    if (requested_ && c_.is(Class::word_to) &&
+        (starts_verb(1) || c_.peek(Class::wearing, 1) || c_.peek(Class::copula, 1) ||
+         c_.peek(Class::holding, 1) || c_.peek(Class::having, 1) || c_.peek(Class::verb_become, 1) ||
+         c_.peek(Class::look_word, 1)))
+        ++c_.at;  // "my daughter wants the bear to wear a hat"
+    const bool said = c_.peek(Class::copula) || c_.peek(Class::modal) || c_.peek(Class::gone) ||
+                      c_.is_mark(":>") || c_.peek(Class::verb_become) || c_.peek(Class::look_word) ||
+                      (phrase.has_determiner() &&
+                       (c_.peek(Class::wearing) || c_.peek(Class::holding) ||
+                        (c_.is(Class::word_has) || c_.is(Class::word_have)) || c_.peek(Class::verb_pose)));
+    Attribute behind;
+    Cursor adjective = c_;
+    const bool adjective_behind =
+        !said && adjective.take_attribute(behind, false) && adjective.at_end_of_clause();
+    if (said || adjective_behind) {
+        if (const auto read = statement(phrases, said, adjective_behind)) return *read;
+    }
+    if (phrase.naming == Naming::Everything && !c_.at_end_of_clause()) {
+        posts(d_.scene_target());
+        return c_.at_end_of_clause();
+    }
+    if (phrase.naming != Naming::Thing) {
+        c_.at = start;
+        return false;
+    }
+    return describe(phrase);
+}
+
+}  // namespace gse::language::plan

@@ -1,0 +1,522 @@
+// Orders that change, replace, give and take away.
+#include <algorithm>
+
+#include "engine/language/plan/grammar/reader.h"
+
+namespace gse::language::plan {
+namespace {
+
+constexpr Class Verbs[] = {
+    Class::verb_recolour, Class::verb_shift,   Class::verb_make,      Class::verb_turn,
+    Class::verb_replace,  Class::verb_swap,    Class::verb_add,       Class::verb_give,
+    Class::verb_dress,    Class::verb_cover,   Class::verb_remove,    Class::verb_relieve,
+    Class::verb_shave,    Class::verb_undress, Class::verb_empty,     Class::verb_move,
+    Class::verb_size,     Class::verb_scale,   Class::verb_double,    Class::verb_rotate,
+    Class::verb_flip,     Class::verb_face,    Class::verb_duplicate, Class::verb_style,
+    Class::verb_material, Class::verb_carve,   Class::verb_pattern,   Class::verb_alter,
+    Class::verb_pose,     Class::verb_raise,   Class::verb_keep,      Class::fire_verb};
+
+}  // namespace
+
+/// Tells whether an object of a verb may begin there.
+bool Reader::starts_object(std::size_t ahead) const {
+    Cursor here = c_;
+    here.at += ahead;
+    if (here.done()) return false;
+    for (const auto kind : {Class::article, Class::definite, Class::possessive, Class::another, Class::all,
+                            Class::some, Class::number, Class::pronoun_it, Class::pronoun_person,
+                            Class::pronoun_all, Class::everything, Class::everything_else, Class::none})
+        if (here.peek(kind)) return true;
+    if (here.word().text.find_first_not_of("0123456789") == std::string::npos) return true;
+    return here.is_scene_noun(here.word().singular);
+}
+
+/// Tells whether an order begins there: a verb, and no noun or description of the same spelling.
+bool Reader::starts_verb(std::size_t ahead) const {
+    Cursor here = c_;
+    here.at += ahead;
+    if (here.done() || here.word().mark) return false;
+    std::size_t length = 0;
+    for (const auto kind : Verbs) length = std::max(length, here.peek(kind).length);
+    if (length == 0) return false;
+    const auto& word = here.word();
+    const bool form = word.text == word.base || word.text.ends_with("ing");
+    if (!form) return false;
+    if (starts_object(ahead + length)) return true;
+    if (length > 1) return true;
+    const auto kinds = kinds_of(word.text);
+    const bool noun = (kinds & (Concrete | Perhaps)) != 0 || here.is_scene_noun(word.singular);
+    Attribute attribute;
+    Cursor description = here;
+    if (description.take_attribute(attribute, false) && !here.peek(Class::verb_pose)) return false;
+    if (word.text.ends_with("ing") &&
+        (here.peek(Class::pose) || here.peek(Class::holding) || here.peek(Class::wearing)))
+        return false;
+    return !noun || here.peek(Class::verb_make) || here.peek(Class::verb_turn) ||
+           here.peek(Class::verb_remove) || here.peek(Class::verb_add) || here.peek(Class::verb_recolour) ||
+           here.peek(Class::verb_swap);
+}
+
+Target Reader::expect(const Phrase& phrase) {
+    const auto found = d_.resolve(phrase);
+    if (found.found()) return found;
+    if (found.kind == Target::Kind::Ambiguous) fail(reason::Ambiguous);
+    else {
+        missing_ = found.word.empty() ? phrase.noun : found.word;
+        fail(missing_.empty() ? reason::Ambiguous : reason::NotInScene);
+    }
+    return found;
+}
+
+/// Tells whether the phrase calls the thing of the scene by a colour that it does not have.
+bool Reader::contradicts_colour(const Phrase& phrase, const Target& found) const {
+    if (!found.thing || !phrase.definite || d_.size() > 0) return false;
+    const auto& told = d_.scene().things[*found.thing].attributes;
+    const bool coloured = std::any_of(told.begin(), told.end(),
+                                      [](const std::string& word) { return has(Class::colour, word); });
+    return coloured &&
+           std::any_of(phrase.attributes.begin(), phrase.attributes.end(), [&](const Attribute& each) {
+               return each.quality == Quality::Colour &&
+                      std::find(told.begin(), told.end(), each.value) == told.end();
+           });
+}
+
+bool Reader::object(Targets& targets, Phrase& phrase, bool split) {
+    Cursor whatever = c_;  // "what stands on the table"
+    Phrase carrier;
+    if (whatever.take(Class::what_stands) && whatever.take(Class::relation) &&
+        whatever.take_phrase(carrier)) {
+        const auto on = things_on(d_.resolve(carrier));
+        if (on.size() != 1) return fail(reason::Ambiguous);
+        c_.at = whatever.at;
+        targets.push_back(on.front());
+        return true;
+    }
+    if (!c_.take_phrase(phrase, split)) return false;
+    if (phrase.owner && has(Class::colour_word, phrase.noun))
+        phrase = Phrase(*phrase.owner);  // "the colors of the bear"
+    Target found;
+    if (phrase.naming == Naming::It) found = d_.pronoun(Naming::It);
+    else found = d_.resolve(phrase);
+    if (!found.found()) {
+        expect(phrase);
+        return false;
+    }
+    if (contradicts_colour(phrase, found)) {  // "the blue bear", which is red
+        missing_ = phrase.attributes.front().typed + " " + phrase.noun;
+        return fail(reason::NotInScene);
+    }
+    if (found.is_scene()) {  // "make everything blue except the grass"
+        Cursor except = c_;
+        while (!except.at_end_of_clause() && !except.peek(Class::except)) ++except.at;
+        Phrase kept;
+        if (except.take(Class::except) && except.take_phrase(kept) && d_.resolve(kept).found()) {
+            found = d_.resolve(kept);
+            found.reference.except = true;
+            found.thing.reset();
+        }
+    }
+    Cursor further = c_;  // "the wall behind him yellow"
+    Phrase near;
+    Attribute colour;
+    if (phrase.definite && further.take(Class::relation) && further.take_phrase(near) &&
+        d_.resolve(near).found()) {
+        Cursor after = further;
+        if (after.take_attribute(colour, false)) c_.at = further.at;
+    }
+    // "the thing on the grass", "the vase on the table": tells which
+    Cursor ahead = c_;
+    Phrase place;
+    if (phrase.naming == Naming::Thing && ahead.take(Class::relation) && ahead.take_phrase(place) &&
+        (has(Class::thing_name, phrase.noun) || phrase.noun.empty()) && d_.resolve(place).found())
+        c_.at = ahead.at;
+    targets.push_back(found);
+    return true;
+}
+
+bool Reader::objects(Targets& targets, std::vector<Phrase>* phrases, bool split) {
+    while (true) {
+        Phrase phrase;
+        if (!object(targets, phrase, split)) return false;
+        if (phrases != nullptr) phrases->push_back(phrase);
+        Cursor ahead = c_;
+        const bool comma = ahead.take_mark(',');
+        const bool joint = ahead.take(Class::conjunction).length > 0;
+        if (!comma && !joint) break;
+        if (starts_verb(ahead.at - c_.at)) break;
+        Phrase next;
+        Cursor probe = ahead;
+        if (!probe.take_phrase(next) || next.naming != Naming::Thing || next.noun.empty() ||
+            !d_.resolve(next).found())
+            break;
+        c_.at = ahead.at;
+    }
+    d_.mention(targets.back());
+    return true;
+}
+
+bool Reader::verb_clause() {
+    if (!try_verbs()) return false;
+    return true;
+}
+
+bool Reader::try_verbs() {
+    using Try = bool (Reader::*)();
+    constexpr Try Tries[] = {
+        &Reader::fire_clause,      &Reader::shave_clause,   &Reader::rotate_clause, &Reader::face_clause,
+        &Reader::swap_clause,      &Reader::replace_clause, &Reader::remove_clause, &Reader::give_clause,
+        &Reader::dress_clause,     &Reader::cover_clause,   &Reader::move_clause,   &Reader::size_clause,
+        &Reader::duplicate_clause, &Reader::paint_clause,   &Reader::turn_clause,   &Reader::make_clause,
+        &Reader::shift_clause,     &Reader::pose_clause,    &Reader::add_clause};
+    const std::size_t start = c_.at;
+    const auto draft = d_;
+    std::string_view reason;
+    std::string missing;
+    for (const auto each : Tries) {
+        reason_ = {};
+        missing_.clear();
+        if ((this->*each)() && ends_well()) return true;
+        c_.at = start;
+        d_ = draft;
+        if (reason.empty() && !reason_.empty()) {
+            reason = reason_;
+            missing = missing_;
+        }
+    }
+    reason_ = reason;
+    missing_ = missing;
+    return false;
+}
+
+bool Reader::make_clause() {
+    if (!c_.take(Class::verb_make)) return false;
+    Targets targets;
+    const std::size_t start = c_.at;
+    std::vector<Phrase> phrases;
+    // "make a bear with a hat": as a description
+    Phrase first;
+    Cursor ahead = c_;
+    if (ahead.take_phrase(first) && first.indefinite && first.naming == Naming::Thing &&
+        !d_.resolve(first).found())
+        return noun_clause();
+    if (ahead.at == c_.at) {
+        if (c_.done()) return fail(reason::Incomplete);
+        return attribute_clause();
+    }
+    if (first.naming == Naming::Something) return false;
+    Cursor comparison = c_;
+    if (!first.attributes.empty() && first.noun.empty() && first.indefinite) return attribute_clause();
+    if (has(Class::time_word, first.noun) && d_.things_named(first).empty()) {  // "make the light warmer"
+        c_.at = ahead.at;
+        const auto how = c_.take_attributes();
+        for (const auto& each : how) d_.environment(each.typed + " " + first.noun);
+        return !how.empty();
+    }
+    if (!objects(targets, &phrases)) return false;
+    frame_ = Frame::Make;
+    c_.take(Class::instead);
+    if (c_.at_end_of_clause()) {
+        std::vector<Attribute> told;
+        for (const auto& attribute : phrases.front().attributes)
+            if (attribute.quality != Quality::Side) told.push_back(attribute);
+        if (first.indefinite || (!told.empty() && !first.definite)) return noun_clause();
+        if (phrases.size() == 1 && !told.empty() && phrases.front().possessive)
+            return apply_all(targets, told);
+        return fail(reason::Incomplete);
+    }
+    if (first.indefinite && first.naming == Naming::Thing) {
+        c_.at = start;
+        return noun_clause();
+    }
+    return complement(targets);
+}
+
+bool Reader::paint_clause() {
+    const bool carve = c_.peek(Class::verb_carve).length > 0;
+    if (!c_.take(Class::verb_recolour) && !c_.take(Class::verb_carve)) return false;
+    Targets targets;
+    Phrase first;
+    Cursor ahead = c_;
+    if (c_.done()) return fail(reason::Incomplete);
+    if (ahead.take_phrase(first) && (first.indefinite || !first.count.empty() || first.another) &&
+        first.naming == Naming::Thing && !first.noun.empty() && !d_.resolve(first).found())
+        return false;  // a new thing
+    if (ahead.at == c_.at) return attribute_clause();
+    if (!objects(targets)) return false;
+    frame_ = Frame::Paint;
+    if (c_.at_end_of_clause()) return fail(reason::Incomplete);
+    Cursor how = c_;
+    if (how.is(Class::word_in) || how.is(Class::word_with) || how.is(Class::word_to)) {
+        ++how.at;
+        how.take(Class::article);
+        const auto attributes = how.take_attributes();
+        if (!attributes.empty() && (how.at_end_of_clause() || how.peek(Class::colour_word) ||
+                                    how.peek(Class::conjunction) || how.ends_phrase(0, true))) {
+            c_.at = how.at;
+            c_.take(Class::colour_word);
+            return apply_all(targets, attributes);
+        }
+    }
+    Cursor gold = c_;
+    Attribute metal;
+    if (!carve && gold.take_attribute(metal, false) && metal.quality == Quality::Material) {
+        c_.at = gold.at;
+        for (const auto& target : targets) d_.step(Operation::Recolour, target, metal.value);
+        return true;
+    }
+    return complement(targets);
+}
+
+bool Reader::turn_clause() {
+    const bool colour_first = c_.peek(Class::verb_turn).length > 0;
+    if (!colour_first || !c_.take(Class::verb_turn)) return false;
+    if (c_.done()) return fail(reason::Incomplete);
+    Targets targets;
+    // "change the color of the bear to blue", "change bear color green"
+    Cursor ahead = c_;
+    ahead.take(Class::definite);
+    Phrase colour;
+    Cursor whole = c_;
+    if (whole.take_phrase(colour) &&
+        (has(Class::colour_word, colour.noun) || colour.noun == "material" || colour.noun == "pose" ||
+         colour.noun == "shape" || colour.noun == "size") &&
+        colour.owner) {
+        const auto target = expect(*colour.owner);
+        if (!target.found()) return false;
+        c_.at = whole.at;
+        d_.mention(target);
+        while (c_.take(Class::to) || c_.take(Class::into) || c_.take(Class::from)) {}
+        if (c_.at_end_of_clause()) return fail(reason::Incomplete);
+        return complement({target});
+    }
+    std::vector<Phrase> phrases;
+    const auto backdrop =
+        whole.at > c_.at && has(Class::backdrop, colour.noun) && d_.things_named(colour).empty();
+    if (backdrop) {
+        c_.at = whole.at;
+        while (c_.take(Class::to) || c_.take(Class::into) || c_.take(Class::copula)) {}
+        Phrase place;
+        if (c_.take_phrase(place) && !place.noun.empty()) {
+            d_.environment(place.typed + " " + colour.noun);
+            return true;
+        }
+        const auto attributes = c_.take_attributes();
+        for (const auto& attribute : attributes) d_.environment(attribute.typed + " " + colour.noun);
+        return !attributes.empty();
+    }
+    if (!objects(targets, &phrases)) return false;
+    frame_ = Frame::Turn;
+    c_.take(Class::colour_word);
+    Cursor from = c_;
+    if (from.take(Class::from)) {  // "from red to blue"
+        Attribute old;
+        Phrase old_thing;
+        if (from.take_attribute(old, false) || from.take_phrase(old_thing)) c_.at = from.at;
+    }
+    if (c_.at_end_of_clause()) return fail(reason::Incomplete);
+    if ((c_.is(Class::word_to) || c_.is(Class::word_with) || c_.is(Class::word_for) ||
+         c_.is(Class::word_in) || c_.is(Class::word_by)))
+        ++c_.at;
+    return complement(targets);
+}
+
+/// "use a cat instead of the bear", "substitute a cat for the bear"; nothing where it is said otherwise.
+std::optional<bool> Reader::use_clause(bool substitute) {
+    Phrase first;
+    Cursor ahead = c_;
+    if (ahead.take_phrase(first) &&
+        (ahead.take(Class::rather_than) || (substitute && ahead.is(Class::word_for) && ++ahead.at))) {
+        Phrase old;
+        if (!ahead.take_phrase(old)) return fail(reason::Incomplete);
+        const auto target = expect(old);
+        if (!target.found()) return false;
+        c_.at = ahead.at;
+        return become({target}, first);
+    }
+    return std::nullopt;
+}
+
+bool Reader::replace_clause() {
+    if (c_.peek(Class::verb_swap) && c_.peek(Class::verb_replace).length == 0) return false;
+    const bool use = c_.is(Class::word_use), substitute = c_.is(Class::word_substitute);
+    if (!c_.take(Class::verb_replace)) return false;
+    if (c_.done()) return fail(reason::Incomplete);
+    Phrase first;
+    Cursor ahead = c_;
+    if (use || substitute) {  // "use a cat instead of the bear", "substitute a cat for the bear"
+        if (const auto read = use_clause(substitute)) return *read;
+        if (use) return false;
+    }
+    Targets targets;
+    if (!objects(targets)) return false;
+    frame_ = Frame::Replace;
+    const bool joint = c_.is(Class::word_with) || c_.is(Class::word_by) || c_.is(Class::word_for) ||
+                       c_.is(Class::word_to) || c_.is(Class::word_against);
+    if (joint) ++c_.at;
+    else if (!c_.take(Class::into)) return fail(reason::Incomplete);
+    if (c_.at_end_of_clause()) return fail(reason::Incomplete);
+    if (c_.peek(Class::nobody)) {
+        ++c_.at;
+        for (const auto& target : targets) d_.remove(target);
+        return true;
+    }
+    Phrase phrase;
+    if (!c_.take_phrase(phrase) || phrase.naming != Naming::Thing) return false;
+    const auto other = d_.resolve(phrase);
+    if (targets.size() == 1 && other.thing && phrase.definite && !(other.reference == targets[0].reference)) {
+        d_.move(targets[0], "swap with", other);
+        return true;
+    }
+    return become(targets, phrase);
+}
+
+bool Reader::swap_clause() {
+    if (!c_.take(Class::verb_swap)) return false;
+    Cursor positions = c_;
+    positions.take(Class::definite);
+    if (positions.is(Class::word_positions) || positions.is(Class::word_places) ||
+        positions.is(Class::word_position) || positions.is(Class::word_place)) {
+        ++positions.at;
+        if (positions.take(Class::of)) c_.at = positions.at;
+    }
+    Targets targets;
+    const std::size_t start = c_.at;
+    Phrase quality;
+    Cursor of = c_;
+    if (of.take_phrase(quality) && quality.owner && !is_part(quality))
+        return fail(reason::NotASentence);  // "the colors of"
+    if (!objects(targets)) return false;
+    if (targets.size() == 2 && c_.at_end_of_clause()) {
+        d_.move(targets[0], "swap with", targets[1]);
+        return true;
+    }
+    if (targets.size() == 1 && (c_.is(Class::word_with) || c_.is(Class::word_and))) {
+        Cursor ahead = c_;
+        ++ahead.at;
+        Phrase other;
+        if (ahead.take_phrase(other)) {
+            const auto found = d_.resolve(other);
+            if (found.thing && !(found.reference == targets[0].reference) && !other.indefinite) {
+                c_.at = ahead.at;
+                d_.move(targets[0], "swap with", found);
+                return true;
+            }
+        }
+    }
+    c_.at = start;
+    return false;
+}
+
+bool Reader::give_clause() {
+    if (!c_.peek(Class::verb_give)) return false;
+    Cursor verb = c_;
+    const bool gives = c_.is(Class::word_give) || !c_.peek(Class::verb_make);
+    c_.take(Class::verb_give);
+    if (!gives) return false;
+    Targets targets;
+    Phrase first;
+    Cursor ahead = c_;
+    if (!ahead.take_phrase(first, true)) return fail(reason::Incomplete);
+    Target receiver = first.naming == Naming::It ? d_.pronoun(Naming::It, true) : d_.resolve(first);
+    const bool indirect = !receiver.found() || first.indefinite;
+    if (indirect && first.naming == Naming::Thing && ahead.is(Class::word_to)) {  // "give a hat to the bear"
+        Phrase whom;
+        ++ahead.at;
+        if (!ahead.take_phrase(whom)) return fail(reason::Incomplete);
+        receiver = whom.naming == Naming::It ? d_.pronoun(Naming::It, true) : expect(whom);
+        if (!receiver.found()) return false;
+        c_.at = ahead.at;
+        return own(receiver, first, "with");
+    }
+    if (!receiver.found()) return expect(first).found();
+    c_.at = ahead.at;
+    targets.push_back(receiver);
+    while (c_.peek(Class::conjunction)) {  // "give the bear and the cat hats"
+        Phrase more;
+        Cursor list = c_;
+        list.take(Class::conjunction);
+        if (!list.take_phrase(more, true) || !d_.resolve(more).found()) break;
+        c_.at = list.at;
+        targets.push_back(d_.resolve(more));
+    }
+    if (c_.is(Class::word_with) || c_.is(Class::word_a) == false) c_.take(Class::having);
+    if (c_.at_end_of_clause()) return fail(reason::Incomplete);
+    frame_ = Frame::Give;
+    const std::size_t here = c_.at;
+    const auto size = d_.size();
+    for (const auto& target : targets) {
+        c_.at = here;
+        if (!has_list(target, "with")) {
+            (void)size;
+            return false;
+        }
+        posts(target);
+    }
+    if (d_.size() == size) d_.mention(receiver);
+    return true;
+}
+
+bool Reader::dress_clause() {
+    if (!c_.take(Class::verb_dress)) return false;
+    Targets targets;
+    if (!objects(targets)) return false;
+    if (c_.is(Class::word_up)) ++c_.at;
+    if (c_.is(Class::word_as) || c_.is(Class::word_like)) {
+        ++c_.at;
+        Phrase role;
+        if (!c_.take_phrase(role) || role.noun.empty()) return fail(reason::Incomplete);
+        for (const auto& target : targets) d_.step(Operation::Alter, target, role.typed);
+        return true;
+    }
+    if (!c_.is(Class::word_in) && !c_.is(Class::word_with)) return fail(reason::Incomplete);
+    ++c_.at;
+    Attribute colour;
+    Cursor ahead = c_;
+    if (ahead.take_attribute(colour, false) && ahead.at_end_of_clause()) return false;
+    return has_list(targets.front(), "worn by");
+}
+
+bool Reader::cover_clause() {
+    const bool around = c_.peek(Class::verb_around).length > 0, fills = c_.peek(Class::verb_fill).length > 0;
+    if (!c_.take(Class::verb_cover)) return false;
+    Targets targets;
+    if (!objects(targets)) return fail(reason_.empty() ? reason::Incomplete : reason_), false;
+    const auto relation = c_.peek(Class::relation);
+    if (!c_.is(Class::word_in) && !c_.is(Class::word_with) && !c_.is(Class::word_by)) return false;
+    (void)relation;
+    ++c_.at;
+    Cursor ahead = c_;
+    std::vector<Attribute> found;
+    Attribute next;
+    ahead.take(Class::article);
+    const bool things =
+        ahead.word().text != ahead.word().singular && ahead.noun_length() > 0;  // "with flowers"
+    while (!things && ahead.take_attribute(next, true)) found.push_back(next);
+    const auto covering = ahead.peek(Class::covering);
+    if (covering && !around && !fills) {
+        ahead.at += covering.length;
+        c_.at = ahead.at;
+        return apply_all(targets,
+                         {{Quality::Material, std::string(covering.value), std::string(covering.value), ""}});
+    }
+    if (!found.empty() && ahead.at_end_of_clause()) {
+        c_.at = ahead.at;
+        return apply_all(targets, found);
+    }
+    Phrase phrase;
+    if (!c_.take_phrase(phrase) || phrase.noun.empty()) return fail(reason::Incomplete);
+    for (const auto& target : targets) {
+        if (own_pattern(target, phrase)) continue;
+        const auto made = d_.add(phrase,
+                                 around            ? "around"
+                                 : fills           ? "in"
+                                 : is_worn(phrase) ? "worn by"
+                                                   : "on",
+                                 {target});
+        d_.mention(made);
+        nested(made, target);
+    }
+    return true;
+}
+
+}  // namespace gse::language::plan

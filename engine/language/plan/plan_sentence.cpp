@@ -1,0 +1,88 @@
+// From text to plan: cleaning, words, reading.
+#include "engine/language/plan/plan_sentence.h"
+
+#include <algorithm>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/language/plan/grammar/reader.h"
+#include "engine/language/plan/words/clean_text.h"
+#include "engine/language/plan/words/sentence_words.h"
+
+namespace gse::language::plan {
+namespace {
+
+/// Words of the scene and of the source: what a misspelt word stands for before all others.
+std::vector<std::string> needed_words(const SceneWords& scene, std::string_view source) {
+    std::vector<std::string> words;
+    const auto append = [&](const SceneWords& from) {
+        for (const auto& thing : from.things) {
+            for (std::size_t begin = 0; begin < thing.noun.size();) {
+                const std::size_t end = std::min(thing.noun.find(' ', begin), thing.noun.size());
+                words.push_back(thing.noun.substr(begin, end - begin));
+                begin = end + 1;
+            }
+            words.insert(words.end(), thing.attributes.begin(), thing.attributes.end());
+        }
+    };
+    append(scene);
+    append(scene_words(source));
+    return words;
+}
+
+constexpr std::size_t ShortSentence = 14;  // words; only those of short sentences are taken for slips
+constexpr std::size_t MostSlips = 5;       // words that one word may stand for
+constexpr std::size_t StoryLength = 18;  // words; longer sentences may tell a story around what they ask for
+
+bool is_refused_for(const Plan& plan, std::initializer_list<std::string_view> reasons) {
+    const auto& step = plan.steps.front();
+    return step.operation == Operation::Refuse &&
+           std::find(reasons.begin(), reasons.end(), step.text) != reasons.end();
+}
+
+/// The plan when one word, though it is one, is a slip: "a bear wearing a hate". Nothing where no word makes
+/// sense of the sentence.
+std::optional<Plan> with_a_slip(const SentenceWords& sentence, const SceneWords& scene,
+                                std::string_view source, const std::vector<std::string>& needed,
+                                bool towards_scene_only) {
+    if (sentence.words.size() > ShortSentence) return std::nullopt;
+    auto words = sentence.words;
+    for (auto& word : words) {
+        const bool told = std::find(needed.begin(), needed.end(), word.singular) != needed.end();
+        if (word.mark || word.text.size() < 2 || told || is_grammatical(word.text)) continue;
+        const Word typed = word;
+        for (auto& other : slips_of(typed.text, needed, MostSlips)) {
+            const bool is_needed = std::find(needed.begin(), needed.end(), other) != needed.end();
+            const bool thing =
+                has(Class::worn, other) || has(Class::held, other) || has(Class::colour, other);
+            if (!is_needed && (towards_scene_only || !thing)) continue;
+            word = word_of(std::move(other));
+            auto plan = Reader(words, scene, source).read();
+            if (!plan.is_refusal()) return plan;
+        }
+        word = typed;
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+Plan plan_sentence(std::string_view sentence, const SceneWords& scene, std::string_view source) {
+    const auto clean = clean_text(sentence);
+    if (!clean.refused.empty()) return refusal(clean.refused);
+    const auto needed = needed_words(scene, source);
+    const auto words = sentence_words(clean.text, needed);
+    if (!words.refused.empty()) return refusal(words.refused);
+    if (words.words.empty()) return refusal(reason::Empty);
+    auto plan = Reader(words.words, scene, source).read();
+    const bool unread = is_refused_for(plan, {reason::NotASentence, reason::Incomplete});
+    if (unread || is_refused_for(plan, {reason::NotInScene}))
+        if (auto other = with_a_slip(words, scene, source, needed, !unread)) return *other;
+    if (words.words.size() > StoryLength && plan.steps.front().operation == Operation::Refuse)
+        return Reader(words.words, scene, source).read_story();
+    return plan;
+}
+
+}  // namespace gse::language::plan

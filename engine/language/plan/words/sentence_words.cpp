@@ -1,0 +1,235 @@
+// Splitting, spelling and language of a sentence.
+#include "engine/language/plan/words/sentence_words.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include "engine/language/plan/notation/plan.h"
+#include "engine/language/plan/words/clean_text.h"
+
+namespace gse::language::plan {
+namespace {
+
+constexpr std::size_t LongestWord = 20;  // letters of a word that may be mended
+
+bool is_letter(char letter) {
+    const auto byte = static_cast<unsigned char>(letter);
+    return std::isalnum(byte) != 0 || byte >= 0x80 || letter == '\'' || letter == '-';
+}
+
+bool is_number(std::string_view text) {
+    return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
+        return std::isdigit(static_cast<unsigned char>(c)) != 0 || c == '.';
+    });
+}
+
+/// Words with their accents, and marks, in order.
+std::vector<std::string> pieces_of(std::string_view text) {
+    std::vector<std::string> pieces;
+    std::string word;
+    const auto flush = [&] {
+        while (!word.empty() && (word.front() == '\'' || word.front() == '-')) word.erase(0, 1);
+        const bool plural_owner = word.size() > 2 && word.ends_with("s'");
+        while (!word.empty() && (word.back() == '\'' || word.back() == '-')) word.pop_back();
+        if (!word.empty()) pieces.push_back(word);
+        if (plural_owner) pieces.emplace_back("'s");
+        word.clear();
+    };
+    for (std::size_t at = 0; at < text.size(); ++at) {
+        const char letter = text[at];
+        const bool decimal = letter == '.' && !word.empty() && is_number(word) && at + 1 < text.size() &&
+                             std::isdigit(static_cast<unsigned char>(text[at + 1])) != 0;
+        const bool unit_begins = !word.empty() && is_number(word) &&
+                                 std::isalpha(static_cast<unsigned char>(letter)) != 0 &&
+                                 !(letter == 'd' || letter == 'k');
+        if (unit_begins) flush();
+        if (is_letter(letter) || decimal) {
+            word += letter;
+            continue;
+        }
+        flush();
+        if (std::isspace(static_cast<unsigned char>(letter)) == 0) pieces.emplace_back(1, letter);
+    }
+    flush();
+    return pieces;
+}
+
+void append(std::vector<std::string>& words, std::string_view phrase) {
+    for (std::size_t begin = 0; begin < phrase.size();) {
+        const std::size_t end = std::min(phrase.find(' ', begin), phrase.size());
+        if (end > begin) words.emplace_back(phrase.substr(begin, end - begin));
+        begin = end + 1;
+    }
+}
+
+constexpr std::string_view KeptEndings[] = {"-shaped",  "-colored", "-like", "-style", "-sized",
+                                            "-covered", "-looking", "-eyed", "-legged"};
+
+/// One piece as words in American spelling; hyphens that join no known word are blanks.
+void spell(std::vector<std::string>& words, const std::string& piece) {
+    if (const auto other = meaning(Class::spelling, piece)) return append(words, *other);
+    if (piece.size() > 2 && piece.ends_with("'s")) {
+        spell(words, piece.substr(0, piece.size() - 2));
+        words.emplace_back("'s");
+        return;
+    }
+    const auto hyphen = piece.find('-');
+    if (hyphen == std::string::npos || is_word(piece)) {
+        words.push_back(piece);
+        return;
+    }
+    std::string american = piece;
+    if (const auto at = american.find("colour"); at != std::string::npos) american.erase(at + 4, 1);
+    for (const auto ending : KeptEndings)
+        if (american.ends_with(ending)) {
+            words.push_back(american);
+            return;
+        }
+    std::string joined = piece;
+    std::erase(joined, '-');
+    if (is_word(joined)) {
+        words.push_back(joined);
+        return;
+    }
+    spell(words, piece.substr(0, hyphen));
+    if (hyphen + 1 < piece.size()) spell(words, piece.substr(hyphen + 1));
+}
+
+/// Calls `each(candidate, cost)` for every text one slip away; cheap ones are what fingers do.
+template <class F> void for_slips(std::string_view typed, F&& each) {
+    std::string text(typed);
+    for (std::size_t i = 0; i + 1 < text.size(); ++i) {
+        std::swap(text[i], text[i + 1]);
+        each(text, i == 0 ? 2 : 0);
+        std::swap(text[i], text[i + 1]);
+    }
+    for (std::size_t i = 0; i <= typed.size(); ++i)
+        for (char letter = 'a'; letter <= 'z'; ++letter) {
+            text = typed;
+            text.insert(i, 1, letter);
+            each(text, i == 0 ? 3 : 1);
+            if (i == typed.size()) continue;
+            text = typed;
+            if (text[i] == letter) continue;
+            text[i] = letter;
+            each(text, i == 0 ? 5 : 3);
+        }
+    for (std::size_t i = 0; i < typed.size(); ++i) {
+        text = typed;
+        text.erase(i, 1);
+        const bool doubled = i > 0 && typed[i] == typed[i - 1];
+        each(text, doubled ? 1 : i == 0 ? 6 : 3);
+    }
+}
+
+bool is_spellable(const std::string& word) {
+    const auto all = spellable_words();
+    return std::binary_search(all.begin(), all.end(), word);
+}
+
+}  // namespace
+
+std::vector<std::string> slips_of(std::string_view typed, std::span<const std::string> needed,
+                                  std::size_t most) {
+    std::vector<std::pair<int, std::string>> found;
+    if (typed.size() < 2 || typed.size() > LongestWord) return {};
+    for_slips(typed, [&](const std::string& word, int cost) {
+        if (word.size() < 3) return;
+        const bool is_needed = std::find(needed.begin(), needed.end(), word) != needed.end();
+        if (!is_needed && typed.size() < 3 && !has(Class::worn, word)) return;
+        if (!is_needed && !is_spellable(word)) {
+            if (typed.size() < 5 || !is_word(word)) return;
+            cost += 10;
+        }
+        if (is_needed) cost -= 2;
+        if (std::none_of(found.begin(), found.end(), [&](const auto& each) { return each.second == word; }))
+            found.emplace_back(cost, word);
+    });
+    std::stable_sort(found.begin(), found.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::vector<std::string> words;
+    for (auto& [cost, word] : found)
+        if (words.size() < most) words.push_back(std::move(word));
+    return words;
+}
+
+namespace {
+
+struct Evidence {
+    int foreign = 0, weak = 0, english = 0, unknown = 0;
+};
+
+/// Words by language; those of courtesy are left out before.
+Evidence evidence_of(const std::vector<std::string>& pieces) {
+    Evidence found;
+    std::vector<Word> words;
+    for (const auto& piece : pieces) words.push_back({piece, piece, piece, false});
+    for (std::size_t at = 0; at < words.size(); ++at) {
+        if (const auto polite = match(Class::courtesy, std::span(words).subspan(at))) {
+            at += polite.length - 1;
+            continue;
+        }
+        const auto& text = words[at].text;
+        if (std::isalpha(static_cast<unsigned char>(text[0])) == 0 &&
+            static_cast<unsigned char>(text[0]) < 0x80)
+            continue;
+        const bool weak = has(Class::foreign_weak, text), foreign = has(Class::foreign, text);
+        const bool english = is_word(text) || is_word(without_accents(text)) || has(Class::spelling, text);
+        if (foreign && !weak && !is_word(text)) ++found.foreign;
+        else if (weak || (foreign && is_word(text))) ++found.weak;
+        else if (english) ++found.english;
+        else ++found.unknown;
+    }
+    return found;
+}
+
+bool is_foreign(const std::vector<std::string>& pieces) {
+    const auto found = evidence_of(pieces);
+    if (found.foreign == 0) return false;
+    return found.foreign + found.unknown + found.weak > found.english || found.foreign >= 2;
+}
+
+}  // namespace
+
+SentenceWords sentence_words(std::string_view clean, std::span<const std::string> needed) {
+    SentenceWords found;
+    const auto pieces = pieces_of(clean);
+    if (is_foreign(pieces)) {
+        found.refused = reason::Language;
+        return found;
+    }
+    std::vector<std::string> words;
+    for (const auto& piece : pieces) spell(words, without_accents(piece));
+    for (std::size_t i = 0; i + 1 < words.size(); ++i) {  // "sun glasses"
+        const auto joined = words[i] + words[i + 1];
+        const bool apart = has(Class::worn, words[i] + " " + words[i + 1]) ||
+                           has(Class::compound, words[i] + " " + words[i + 1]);
+        if (apart || words[i].size() < 3 || words[i + 1].size() < 3) continue;
+        if (!has(Class::worn, joined) && !has(Class::thing, joined) && !has(Class::held, joined)) continue;
+        words[i] = joined;
+        words.erase(words.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+    }
+    for (auto& word : words) {
+        const bool letters = std::isalpha(static_cast<unsigned char>(word[0])) != 0;
+        const bool is_needed = std::find(needed.begin(), needed.end(), word) != needed.end();
+        if (letters && !is_word(word) && !is_needed && word.find('-') == std::string::npos) {
+            if (auto other = slips_of(word, needed, 1); !other.empty()) word = other.front();
+            else found.unknown.push_back(word);
+        }
+        auto made = word_of(word);
+        made.mark = !letters && std::isdigit(static_cast<unsigned char>(word[0])) == 0 && word != "'s" &&
+                    word != "%" && static_cast<unsigned char>(word[0]) < 0x80;
+        found.words.push_back(std::move(made));
+    }
+    const auto letters = static_cast<std::size_t>(
+        std::count_if(found.words.begin(), found.words.end(), [](const Word& word) { return !word.mark; }));
+    if (letters > 0 && found.unknown.size() * 2 >= letters) {
+        const bool pronounced =
+            std::any_of(found.unknown.begin(), found.unknown.end(),
+                        [](const std::string& word) { return static_cast<unsigned char>(word[0]) >= 0x80; });
+        found.refused = pronounced ? reason::Language : reason::NotASentence;
+    }
+    return found;
+}
+
+}  // namespace gse::language::plan
