@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "engine/language/plan/plan_sentence.h"
+#include "engine/language/plan/words/lexicon.h"
 #include "engine/language/words.h"
 
 namespace gse::edit {
@@ -86,6 +87,14 @@ bool is_never_drawn(Operation operation) {
            operation == Operation::Duplicate;
 }
 
+/// True for "behind the museum": the thing is a place, and there already.
+bool is_place(const std::string& preposition, const std::string& noun) {
+    if (!language::is_a(preposition, language::WordClass::Stop | language::WordClass::Beside)) return false;
+    constexpr auto Things = plan::Artifact | plan::Object | plan::Plant;
+    return (plan::kinds_of(noun) & Things) != 0 && !plan::has(plan::Class::part, noun) &&
+           !plan::has(plan::Class::body_place, noun) && !plan::has(plan::Class::whole_part, noun);
+}
+
 Error several(const std::vector<plan::Step>& steps) {
     std::string list;
     for (std::size_t i = 0; i < steps.size(); ++i)
@@ -108,10 +117,12 @@ plan::SceneWords assumed_scene(const EditRequest& request) {
     };
     const auto& words = sentence.words();
     const bool about_ground = scene.ground().has_value();
-    for (std::size_t i = 1; i < words.size(); ++i)
-        if (!about_ground && language::is_a(words[i], language::WordClass::Ground) &&
-            language::is_a(words[i - 1], language::WordClass::DefiniteArticle))
-            add(words[i], true);
+    for (std::size_t i = 1; i < words.size(); ++i) {
+        if (!language::is_a(words[i - 1], language::WordClass::DefiniteArticle)) continue;
+        const bool ground = language::is_a(words[i], language::WordClass::Ground);
+        if (ground && !about_ground) add(words[i], true);
+        if (!ground && i > 1 && is_place(words[i - 2], words[i])) add(words[i], false);
+    }
     if (about_ground)  // what stands on it is there too
         for (const auto& thing : sentence.things())
             if (!language::is_a(thing, language::WordClass::Ground)) {

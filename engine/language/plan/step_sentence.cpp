@@ -16,12 +16,16 @@ constexpr std::array<std::string_view, 14> Comparatives{"darker", "lighter", "br
 constexpr std::array<std::string_view, 7> Places{"beside", "left of",     "right of", "behind",
                                                  "above",  "in front of", "under"};
 
+constexpr std::array<std::string_view, 4> Burning{"on fire", "burning", "in flames", "aflame"};
+
 bool is_in(const auto& list, std::string_view word) {
     return std::find(list.begin(), list.end(), word) != list.end();
 }
 
+/// True for "wings", not for "bus", "cactus" or "dress".
 bool is_plural(const std::string& noun) {
-    return noun.size() > 2 && noun.back() == 's' && noun[noun.size() - 2] != 's';
+    const auto ends = [&](std::string_view with) { return noun.ends_with(with); };
+    return noun.size() > 2 && ends("s") && !ends("ss") && !ends("us") && !ends("is");
 }
 
 std::string joined(const std::vector<std::string>& words, const std::string& last) {
@@ -56,6 +60,7 @@ public:
             case Operation::Ground: return ground();
             case Operation::Replace: return replacement();
             case Operation::Add: return addition();
+            case Operation::Alter: return fire();
             default: return none_for_operation();
         }
     }
@@ -148,6 +153,17 @@ private:
                             joined(step_.thing.attributes, step_.thing.noun), EditMode::Replace};
     }
 
+    /// Flames are a thing that models add; any other look is not drawn from a plan.
+    std::optional<StepSentence> fire() {
+        if (!is_in(Burning, step_.text)) return none_for_operation();
+        const Thing* thing = subject();
+        if (thing == nullptr) return std::nullopt;
+        return StepSentence{
+            thing->noun,
+            phrase_of(described_thing(thing->noun)) + " in flames" + standing_on(scene_, thing->noun),
+            "flames", EditMode::Add};
+    }
+
     /// True, with the reason, where more than one new thing is asked for.
     bool several() {
         if (step_.thing.count.empty()) return false;
@@ -222,7 +238,7 @@ bool changes_look(Operation operation) {
 
 std::string phrase_of(const Thing& thing) {
     const std::string words = joined(thing.attributes, thing.noun);
-    if (is_plural(thing.noun)) return words;
+    if (is_plural(thing.noun) || is_a(thing.noun, WordClass::Ground)) return words;
     return (std::string_view("aeiou").find(words.front()) != std::string_view::npos ? "an " : "a ") + words;
 }
 
