@@ -33,9 +33,9 @@ float median_luminance(const std::vector<EditView>& views) {
 
 }  // namespace
 
-std::optional<std::array<float, 3>> usual_look(const language::EditSentence& sentence, EditMode mode,
-                                               const ModelTraits& traits) {
-    if (mode != EditMode::Modify || language::is_described(sentence.prompt(), sentence.target()))
+std::optional<std::array<float, 3>> usual_look(const language::EditSentence& sentence,
+                                               language::EditMode mode, const ModelTraits& traits) {
+    if (mode != language::EditMode::Modify || language::is_described(sentence.prompt(), sentence.target()))
         return std::nullopt;
     const auto found = traits.ground_colours.find(sentence.target());
     return found == traits.ground_colours.end() ? std::nullopt : std::optional(found->second);
