@@ -9,6 +9,17 @@ vec3 map_colour(float t) {
     return mix(stops[int(stop)], stops[int(stop) + 1], place - stop);
 }
 
+/// Tint over a colour: the frame's, or its complement where the colour has the same hue.
+vec3 tint_over(vec3 solid) {
+    const vec3 tint = frame.tint.rgb;
+    const vec3 hue = solid - vec3((solid.r + solid.g + solid.b) / 3.0);
+    const vec3 own = tint - vec3((tint.r + tint.g + tint.b) / 3.0);
+    const float chroma = length(hue);
+    const float cosine = dot(hue, own) / max(chroma * length(own), 1e-6);
+    const float alike = smoothstep(OtherHue, OwnHue, cosine) * smoothstep(LeastChroma, ClearChroma, chroma);
+    return mix(tint, vec3(1.0) - tint, alike);
+}
+
 /// rgb with alpha, not premultiplied; alpha is 1 unless the background is transparent.
 vec4 resolve(vec3 rgb, float alpha, float depth, float value, uint mode) {
     const vec3 background = frame.background.rgb;
@@ -29,7 +40,7 @@ vec4 resolve(vec3 rgb, float alpha, float depth, float value, uint mode) {
         const float grey = dot(solid, vec3(0.299, 0.587, 0.114)) * DimmedBeauty;
         shown = mix(vec3(grey), map_colour(share), MapCoverage * (0.25 + 0.75 * share));
     } else {
-        shown = mix(solid, frame.tint.rgb, share * frame.tint.w);
+        shown = mix(solid, tint_over(solid), share * frame.tint.w);
     }
     if (transparent) return vec4(shown, cover);
     return vec4(shown * cover + background * (1.0 - cover), 1.0);

@@ -66,6 +66,11 @@ GSE_CONSTANT(float, EllipsoidShade, 0.55f);  // how much darker the rim is than 
 GSE_CONSTANT(float, DimmedBeauty, 0.35f);    // brightness of the picture under a colour map
 GSE_CONSTANT(float, LeastSolid, 0.3f);       // alpha of a pixel to have a depth that can be picked
 GSE_CONSTANT(float, MapCoverage, 0.85f);     // how much of the map shows where the value is 1
+// What has the tint's own hue, as a red thing under orange, is tinted in the complementary colour instead.
+GSE_CONSTANT(float, OtherHue, 0.75f);     // cosine between the hues, up to which they are told apart,
+GSE_CONSTANT(float, OwnHue, 0.9f);        // and from which they are not
+GSE_CONSTANT(float, LeastChroma, 0.15f);  // distance from grey, up to which a colour has no hue,
+GSE_CONSTANT(float, ClearChroma, 0.35f);  // and from which it has
 
 struct FrameData {
     vec4 rotation[3];  // rows, world -> camera; w: eye, rounded to float

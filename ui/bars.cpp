@@ -163,10 +163,12 @@ void draw_tool_bar(Context& context) {
                      .tooltip = with_key(context, "Frame what is labelled, else the scene", Shortcut::Frame),
                      .why_off = why}))
         frame_selection(context);
-    if (icon_button(context, {.name = "tool.home",
-                              .icon = Icon::Home,
-                              .tooltip = with_key(context, "All of the scene", Shortcut::Home),
-                              .why_off = why}))
+    if (icon_button(context,
+                    {.name = "tool.home",
+                     .icon = Icon::Home,
+                     .tooltip = with_key(context, "Home: what is labelled, else what stands on the ground",
+                                         Shortcut::Home),
+                     .why_off = why}))
         go_home(context);
     gap(context);
     const bool undo = open && context.model.document->can_undo(),

@@ -49,10 +49,11 @@ struct Layout {
         bool open = true;
     };
     std::array<Place, PanelCount> places{};
-    std::array<int, AreaCount> front{};  // PanelId in front of each area
-    float right_em = 25;                 // width of the right column
-    float right_split = 0.62f;           // share of its height that the upper area takes
-    float bottom_share = 0.4f;           // of the height, taken by the bottom area
+    std::array<int, AreaCount> front{};         // PanelId in front of each area
+    float right_em = 25;                        // width of the right column
+    float right_split = 0.62f;                  // share of its height that the upper area takes
+    static constexpr float AskingShare = 0.4f;  // of the height, for a panel that the artist has to answer
+    float bottom_share = 0.19f;  // of the height, taken by the bottom area; the picture has two thirds
     bool panels_hidden = false;
 
     static Layout standard();

@@ -9,6 +9,7 @@
 #include "ui/keys/keyboard.h"
 #include "ui/state.h"
 #include "ui/widgets/controls.h"
+#include "ui/widgets/tooltips.h"
 
 namespace gse::ui {
 namespace {
@@ -41,8 +42,12 @@ void file_menu(Context& context) {
     if (item(context, {"menu.open", "Open...", keys_of(context, Shortcut::Open)})) ask_open(context);
     if (item(context, {"menu.sample", "Open sample"})) open_sample(context);
     if (ImGui::BeginMenu("Open recent", !context.model.recent.empty())) {
-        for (const auto& path : context.model.recent)
+        const auto& pictures = context.model.recent_pictures;
+        for (std::size_t index = 0; index < context.model.recent.size(); ++index) {
+            const auto& path = context.model.recent[index];
             if (ImGui::MenuItem(shortened(path, context.em * 30).c_str())) open_path(context, path);
+            if (index < pictures.size()) large_picture(context, pictures[index], path);
+        }
         ImGui::EndMenu();
     }
     ImGui::Separator();

@@ -18,6 +18,7 @@
 #include "ui/viewport/viewport.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/splitter.h"
+#include "ui/widgets/tooltips.h"
 
 namespace gse::ui {
 namespace {
@@ -67,13 +68,20 @@ void update_sentence(Context& context) {
     prompt.cut_at = std::move(facts.cut_at);
 }
 
+/// Brings a panel to the front that the artist has to answer, with the room that its pictures need.
+void ask_with(UiState& state, PanelId panel) {
+    show_panel(state, panel);
+    if (state.layout.place(panel).area == Area::Bottom)
+        state.layout.bottom_share = std::max(state.layout.bottom_share, Layout::AskingShare);
+}
+
 /// A search that came to nothing shows why.
 void show_failed_search(Context& context) {
     const auto& search = context.model.search;
     auto& shown = context.state.attention.problem_shown;
     if (search.problem == edit::SearchProblem::None || search.number == shown) return;
     shown = search.number;
-    show_panel(context.state, PanelId::Attention);
+    ask_with(context.state, PanelId::Attention);
 }
 
 /// An edit that waits for the artist's look at the redrawn views shows them.
@@ -82,7 +90,7 @@ void show_waiting_targets(Context& context) {
     const int round = context.model.targets_wait && !context.model.target_rounds.empty()
                           ? context.model.target_rounds.back().round
                           : -1;
-    if (round >= 0 && round != shown) show_panel(context.state, PanelId::Targets);
+    if (round >= 0 && round != shown) ask_with(context.state, PanelId::Targets);
     shown = round;
 }
 
@@ -91,6 +99,15 @@ void underline_tab(Context& context) {
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
     const float width = std::max(2.0f, std::round(context.em * 0.14f));
     ImGui::GetWindowDrawList()->AddRectFilled({low.x, high.y - width}, high, palette::Accent);
+}
+
+/// A double click on a tab of the bottom area gives it half of the height, another one takes it back.
+void grow_by_double_click(Layout& layout) {
+    constexpr float Large = 0.5f, HardlyMore = 0.05f;
+    tooltip("Double click: half of the window's height, and back");
+    if (!ImGui::IsItemHovered() || !ImGui::IsMouseDoubleClicked(0)) return;
+    const float usual = Layout::standard().bottom_share;
+    layout.bottom_share = layout.bottom_share > usual + HardlyMore ? usual : Large;
 }
 
 struct Box {
@@ -261,6 +278,7 @@ void Shell::draw_area(Context& context, Area area) {
         ImGui::PopStyleColor();
         if (shown) underline_tab(context);
         note(context, fmt::format("tab.{}", PanelTable[at].name));
+        if (area == Area::Bottom) grow_by_double_click(layout);
         draw_tab_menu(context, panel);
         if (!shown) continue;
         if (!bring) layout.front[index] = static_cast<int>(at);
@@ -338,6 +356,7 @@ std::vector<Command> Shell::draw(const ViewModel& model, Textures& textures) {
     show_waiting_targets(context);
     handle_keys(context);
     answer_requests(context);
+    keep_controls(context);
     state_->keyboard.stops.clear();  // their names are those of the widgets
     widgets_.clear();
     state_->pick.seen = false;
@@ -348,7 +367,7 @@ std::vector<Command> Shell::draw(const ViewModel& model, Textures& textures) {
     if (context.view_changed) context.emit(command::SetViewSettings{context.view});
     if (context.exports_changed) context.emit(command::SetExports{context.exports});
     if (context.model_settings_changed) context.emit(command::SetModelSettings{context.model_settings});
-    state_->animating |= !commands_.empty();
+    state_->animating |= !commands_.empty() || awaits_tooltip();
     return commands_.take();
 }
 

@@ -40,6 +40,8 @@ struct ViewportState {
     bool camera_known = false;
     double fov_setting = 0;  // last seen, to notice a change in Settings
     OrbitParameters home;    // last seen
+    std::optional<Bounds>
+        labelled_home;  // of the label that Home framed last; none = what stands on the ground
     Tool tool = Tool::Orbit;
     SetOperation operation = SetOperation::Add;  // without keys held
     bool stroke = false;                         // a tool's drag goes on
@@ -56,7 +58,8 @@ struct ViewportState {
     ImVec2 foot_low{};      // upper left corner of what floated at the foot; its y is that of `high` where
                             // nothing did
     double moved_at = -10;  // ImGui time of the last move
-    int drag_button = -1;   // mouse button that navigates, -1 = none
+    std::optional<bool> tint_before;  // the artist's, while a colour is picked
+    int drag_button = -1;             // mouse button that navigates, -1 = none
 };
 
 /// Facts about the sentence, kept until it changes.
@@ -109,8 +112,9 @@ struct LabelsState {
 struct PickState {
     int property = 0;
     bool within = false;
-    int frames_to_bring = 0;  // in which it is scrolled to, after it was unfolded
-    bool seen = false;        // in this frame: what is chosen is only shown while its controls are
+    int frames_to_bring = 0;         // in which it is scrolled to, after it was unfolded
+    std::uint64_t colour_taken = 0;  // number of the last ViewModel::seen_colour
+    bool seen = false;               // in this frame: what is chosen is only shown while its controls are
     std::array<localize::RowChoice, 4> choices{
         {{localize::RowProperty::Opacity, {}, 0.1f, false, false},
          {localize::RowProperty::Size,
@@ -142,6 +146,7 @@ struct KeysState {
 };
 
 struct ProgressState {
+    bool curves = false, cost = false;  // they are unfolded
     bool logarithmic = true;
     std::array<bool, 3> losses{true, true, true};
     std::array<bool, 2> norms{true, true};
@@ -157,6 +162,15 @@ struct LogState {
     std::string filter;
     std::size_t lines_seen = 0;
     bool follow = true;
+};
+
+struct ViewsState {
+    int renamed = -1;
+    std::string name;  // as it is typed
+    bool focus_name = false;
+    std::uint64_t asked_at = 0;      // revision of the document of which
+    std::vector<std::size_t> asked;  // these views were asked to be drawn
+    int names_from = -1;             // a view with this number is new, and named next; -1 = none is awaited
 };
 
 struct HistoryState {
@@ -196,6 +210,7 @@ struct UiState {
     TargetsState targets;
     LogState log;
     HistoryState history;
+    ViewsState views;
     FileBrowser files;
     Question question;
     KeyboardState keyboard;

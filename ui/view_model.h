@@ -192,6 +192,7 @@ struct RecoveryView {
 /// Settings of a picture or film to be written (Export panel and dialogs).
 struct ExportSettings {
     int width = 1920, height = 1080;
+    bool as_shown = true;  // the screenshot: size, crop, tint and comparison of the viewport
     bool transparent = false;
     std::string picture_path = "screenshot.png";
     std::string film_path = "turntable.mp4";  // .mp4, .webm, or a folder for PNGs
@@ -214,6 +215,8 @@ struct ExportSettings {
     template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         f("width", self.width, "Width in pixels.", Range{16, 16384});
         f("height", self.height, "Height in pixels.", Range{16, 16384});
+        f("as_shown", self.as_shown,
+          "The screenshot has the size, the crop, the tint and the comparison of the viewport.");
         f("transparent", self.transparent, "Transparent background (PNG).");
         f("picture_path", self.picture_path, "File of the screenshot.");
         f("film_path", self.film_path, "File of the turntable: .mp4, .webm, or a folder for PNG frames.");
@@ -275,6 +278,12 @@ struct EditReach {
     bool corrected = false;  // something of it was set by hand
 };
 
+/// Colour of a pixel of the picture, as it is seen.
+struct SeenColour {
+    std::uint64_t number = 0;       // another one for every answer to command::PickColour; 0 = none yet
+    std::array<float, 3> colour{};  // in [0,1]
+};
+
 /// Splats that are chosen by a property, shown before anything is done with them.
 struct PickedRows {
     bool shown = false;    // they take the place of the label's tint
@@ -303,11 +312,12 @@ struct DocumentPart {
     const Document* document = nullptr;  // null or empty() = nothing open
     SceneStatistics statistics;
     std::string scene_path, project_path;
-    std::string suggested_project;          // where a first save goes unless the artist says otherwise
-    bool unsaved = false;                   // a running or waiting edit counts
-    std::string saved_at;                   // "saved 14:02 (autosave on)"
-    std::vector<std::string> recent;        // paths, newest first
-    std::vector<RecoveryView> recoverable;  // newest first
+    std::string suggested_project;    // where a first save goes unless the artist says otherwise
+    bool unsaved = false;             // a running or waiting edit counts
+    std::string saved_at;             // "saved 14:02 (autosave on)"
+    std::vector<std::string> recent;  // paths, newest first
+    std::vector<std::shared_ptr<const Image>> recent_pictures;  // of them; null or missing = none
+    std::vector<RecoveryView> recoverable;                      // newest first
 };
 
 /// The viewport and its settings.
@@ -319,12 +329,16 @@ struct ViewportPart {
     std::shared_ptr<const Image> viewport_depth;  // [H,W,1] may be null; for front-only selection and picking
     Camera camera;                                // of the picture shown
     OrbitParameters orbit;                        // home: the fitted orbit,
-    Bounds framing;                               // and what is to be seen from there
+    Bounds home;                                  // and what is to be seen from there
+    Bounds framing;                               // of the whole scene
+    SeenColour seen_colour;
     double render_ms = 0;
     std::string renderer;    // "native AVX-512", "Vulkan: llvmpipe"
     std::size_t hidden = 0;  // splats of the scene that the artist does not want to see at present
     ViewSettings view;
     Comparison comparison = Comparison::None;
+    // Of the document's views; null = not drawn yet (command::DrawView).
+    std::vector<std::shared_ptr<const Image>> view_pictures;
     std::uint64_t compared_revision = 0;  // of the step that comparisons show as before; 0 = the usual
     std::string compared_name;            // of that step
 };

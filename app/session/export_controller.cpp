@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "app/engine_names.h"
+#include "app/session/shown_picture.h"
 #include "engine/base/desktop.h"
 #include "engine/base/error.h"
 #include "engine/io/cameras/camera_json.h"
@@ -144,6 +145,7 @@ void ExportController::start(const char* what, const std::filesystem::path& path
 template <> void ExportController::on(const command::SetExports& one) { settings_ = one.settings; }
 
 template <> void ExportController::on(const command::ExportPicture&) {
+    if (settings_.as_shown) return export_as_shown();
     if (!something_to_export()) return;
     const auto path = free_place(settings_.picture_path);
     auto settings = render_settings();
@@ -163,6 +165,28 @@ template <> void ExportController::on(const command::ExportPicture&) {
                   picture_text(recipe, recipe_json));
     };
     start("Screenshot", path, work, said_of_export());
+}
+
+void ExportController::export_as_shown() {
+    PictureRequest request = view_.wanted();
+    if (!workspace_.require_scene() || request.camera.width <= 0) return;
+    const auto path = free_place(settings_.picture_path);
+    request.transparent = settings_.transparent;
+    const auto recipe = search_.recipe();
+    auto recipe_json = recipe_to_json(recipe);
+    recipe_json["camera"] = camera_to_json(view_.shown_camera());
+    auto work = [=](const JobControl& control) {
+        control.report("rendering", 0, 1);
+        const Image picture = shown_picture(request);
+        control.report("writing", 1, 1);
+        write_png(path, picture, picture_text(recipe, recipe_json));
+    };
+    const auto mode = static_cast<ui::DisplayMode>(request.settings.mode);
+    const bool shapes = mode == ui::DisplayMode::Centres || mode == ui::DisplayMode::Rings ||
+                        mode == ui::DisplayMode::Ellipsoids;
+    start("Screenshot", path, work,
+          shapes ? fmt::format(", with splats for {}", ui::DisplayModeNames[static_cast<std::size_t>(mode)])
+                 : edits_.said_of_stage());
 }
 
 template <> void ExportController::on(const command::ExportTurntable&) {

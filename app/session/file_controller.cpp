@@ -13,7 +13,6 @@
 #include "engine/base/log.h"
 #include "engine/io/cameras/camera_json.h"
 #include "engine/io/cameras/cameras.h"
-#include "engine/io/files/user_files.h"
 #include "engine/io/image/image_file.h"
 #include "engine/pipeline/models/installed.h"
 #include "engine/pipeline/recipe/recipe.h"
@@ -32,14 +31,9 @@ constexpr int ThumbnailPx = 192;
 }  // namespace
 
 FileController::FileController(Workspace& workspace, const Parts& parts)
-    : workspace_(workspace), parts_(parts), recovery_(workspace), project_(workspace), counter_(workspace) {
-    list_recent();
+    : workspace_(workspace), parts_(parts), recovery_(workspace), project_(workspace), counter_(workspace),
+      recent_(workspace) {
     recovery_.list();
-}
-
-void FileController::list_recent() {
-    recent_.clear();
-    for (const auto& path : load_recent()) recent_.push_back(path.string());
 }
 
 // Opening
@@ -127,8 +121,7 @@ void FileController::take(OpenedWork opened) {
     counter_.take(state.current, opened.statistics);
     if (opened.project) parts_from_json(opened.data.ui);
     parts_.view.settle();
-    if (!opened.recovered) add_recent(opened.path);
-    list_recent();
+    if (!opened.recovered) recent_.add(opened.path, picture_of(state.current));
     const auto now = moment();
     using Moment = Recovery::Moment;
     const auto holds = opened.recovered ? std::nullopt : std::optional(Moment{now.revision, 0, now.keys});
@@ -256,8 +249,7 @@ template <> void FileController::on(const command::SaveProject& one) {
     project_.save(target, data, {now.revision, 0, now.keys}, [this, target, then = one.then] {
         recovery_.outdate();  // what is still unsaved is written anew
         if (!unsaved()) recovery_.forget_recovered();
-        add_recent(target);
-        list_recent();
+        recent_.add(target, thumbnail());
         if (then) then();
     });
 }
@@ -279,6 +271,12 @@ bool FileController::unsaved() const {
 /// Draws what the artist sees small, on the thread that calls it.
 std::function<std::shared_ptr<const Image>()> FileController::thumbnail() const {
     if (const auto known = recovery_.thumbnail()) return [known] { return known; };
+    const auto& drawn = parts_.view.drawn_set();
+    return picture_of(drawn.empty() ? workspace_.document.state().current : drawn);
+}
+
+/// Draws other splats so, from where the artist looks.
+std::function<std::shared_ptr<const Image>()> FileController::picture_of(const GaussianSet& set) const {
     const Camera& from = parts_.view.camera();
     if (from.width <= 0 || from.height <= 0) return [] { return std::shared_ptr<const Image>(); };
     const int height = std::clamp(ThumbnailPx * from.height / from.width, 16, ThumbnailPx);
@@ -286,12 +284,10 @@ std::function<std::shared_ptr<const Image>()> FileController::thumbnail() const 
     raster::Settings settings;
     settings.background = parse_colour(parts_.view.settings().background);
     settings.antialiased = state.info.antialiased;
-    const auto& drawn = parts_.view.drawn_set();
-    return
-        [set = drawn.empty() ? state.current : drawn, settings, camera = from.resized(ThumbnailPx, height)] {
-            Painter painter(1);
-            return std::make_shared<const Image>(painter.paint(set.spans(), camera, settings).colour);
-        };
+    return [set, settings, camera = from.resized(ThumbnailPx, height)] {
+        Painter painter(1);
+        return std::make_shared<const Image>(painter.paint(set.spans(), camera, settings).colour);
+    };
 }
 
 void FileController::write_autosave(std::function<void()> then) {
@@ -371,6 +367,7 @@ template <> void FileController::on(const command::RepairScene&) {
 
 void FileController::refresh() {
     auto& jobs = *workspace_.jobs;
+    recent_.refresh();
     if (workspace_.document.empty()) {
         if (!jobs.files.running()) recovery_.see_start_page();
         recovery_.refresh();
@@ -396,7 +393,7 @@ void FileController::show(ui::DocumentPart& model) const {
     model.suggested_project = document.empty() ? std::string() : default_project_path().string();
     model.unsaved = unsaved();
     model.saved_at = project_.saved_at();
-    model.recent = recent_;
+    recent_.show(model);
     recovery_.show(model);
 }
 

@@ -11,6 +11,7 @@
 #include "app/session/edit_controller.h"
 #include "app/session/export_controller.h"
 #include "app/session/files/opened_work.h"
+#include "app/session/files/recent_files.h"
 #include "app/session/files/recovery.h"
 #include "app/session/files/saved_project.h"
 #include "app/session/files/scene_counter.h"
@@ -60,13 +61,13 @@ private:
                        bool recovers);
     void take(OpenedWork opened);
     void ask_which(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& files);
-    void list_recent();
     std::filesystem::path default_project_path() const;
     std::shared_ptr<ProjectData> project_data() const;
     void parts_from_json(const nlohmann::json& json);
     bool unsaved() const;
     Recovery::Moment moment() const;
     std::function<std::shared_ptr<const Image>()> thumbnail() const;
+    std::function<std::shared_ptr<const Image>()> picture_of(const GaussianSet& set) const;
     void write_autosave(std::function<void()> then);
     void leave_when_stopped();
 
@@ -77,9 +78,9 @@ private:
     SceneCounter counter_;
     SceneSource source_;
     nlohmann::json unknown_ = nlohmann::json::object();
-    std::vector<std::string> recent_;  // newest first
-    nlohmann::json kept_edit_;         // of an edit that was stopped before its first step
-    std::optional<Leaving> leaving_;   // waits for the edit to stop
+    RecentFiles recent_;
+    nlohmann::json kept_edit_;        // of an edit that was stopped before its first step
+    std::optional<Leaving> leaving_;  // waits for the edit to stop
 };
 
 }  // namespace gse::app

@@ -17,7 +17,8 @@ struct PictureRequest {
     GaussianSet original;                              // the other side of comparisons
     std::shared_ptr<const std::vector<float>> values;  // [set.size()] in [0,1] for tints and maps, or null
     bool antialiased = false;
-    Camera camera;  // at the viewport's size
+    bool transparent = false;  // without the background; painted by shown_picture() alone
+    Camera camera;             // at the viewport's size
     ui::ViewSettings settings;
     ui::Comparison comparison = ui::Comparison::None;
     bool moving = false;        // resolution may drop

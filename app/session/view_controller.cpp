@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "app/engine_names.h"
+#include "app/session/shown_picture.h"
 #include "engine/base/clock.h"
+#include "engine/edit/placement/thing_bounds.h"
 #include "engine/io/cameras/camera_json.h"
 #include "engine/math/framing.h"
 #include "engine/pipeline/run/views.h"
@@ -30,9 +32,12 @@ RowValues from_bits(const std::vector<std::uint8_t>& bits) {
 void ViewController::take_document() {
     hidden_.show_all();
     compare_as_usual();
+    wanted_ = {};
+    pictures_.take_document();
     up_shown_ = state().info.up;
     orbit_ = scene_orbit(Scene{state().base, state().info, {}}, RenderParameters{});
     framing_ = framing_bounds(state().current);
+    home_ = edit::thing_bounds(state().current, normalized(state().info.up));
     camera_ = {};
 }
 
@@ -49,12 +54,13 @@ void ViewController::follow_document() {
 void ViewController::stand_up() {
     up_shown_ = state().info.up;
     orbit_ = scene_orbit(Scene{state().base, state().info, {}}, RenderParameters{});
+    home_ = edit::thing_bounds(state().current, normalized(state().info.up));
     go_home();
 }
 
 void ViewController::go_home() {
-    camera_ = home_camera(orbit_, framing_, settings_.fov_degrees * std::numbers::pi / 180,
-                          std::max(width_, 64), std::max(height_, 64));
+    camera_ = home_camera(orbit_, home_, settings_.fov_degrees * std::numbers::pi / 180, std::max(width_, 64),
+                          std::max(height_, 64));
 }
 
 bool ViewController::moving() const { return seconds_since(last_move_) < 2 * MovingSeconds; }
@@ -150,7 +156,9 @@ PictureRequest ViewController::request(const Stage& stage) {
 }
 
 void ViewController::draw(PreviewHost& preview, const Stage& stage) {
-    preview.want(request(stage));
+    wanted_ = request(stage);
+    preview.want(wanted_);
+    pictures_.refresh(drawn_.set, wanted_);
     shown_ = preview.state();
 }
 
@@ -161,6 +169,7 @@ void ViewController::show(ui::ViewportPart& model) const {
     model.compared_name = compared_.name;
     model.hidden = hidden_.count();
     model.orbit = orbit_;
+    model.home = home_;
     model.framing = framing_;
     model.viewport = shown_.texture;
     if (workspace_.document.empty()) return;
@@ -169,6 +178,8 @@ void ViewController::show(ui::ViewportPart& model) const {
     model.viewport_width = model.camera.width;
     model.viewport_height = model.camera.height;
     model.viewport_depth = shown_.depth;
+    model.view_pictures = pictures_.of_views();
+    model.seen_colour = seen_colour_;
     model.render_ms = shown_.render_ms;
     model.renderer = shown_.renderer;
 }
@@ -253,6 +264,20 @@ template <> void ViewController::on(const command::DeleteView& one) {
     DocumentState next = state();
     next.views.erase(next.views.begin() + static_cast<std::ptrdiff_t>(one.view));
     workspace_.document.apply("Delete view", std::move(next));
+}
+
+template <> void ViewController::on(const command::RenameView& one) {
+    if (!workspace_.require_scene() || one.view >= state().views.size()) return;
+    DocumentState next = state();
+    next.views[one.view].name = one.name;
+    workspace_.document.apply("Rename view", std::move(next));
+}
+
+template <> void ViewController::on(const command::DrawView& one) { pictures_.want(one.view); }
+
+template <> void ViewController::on(const command::PickColour& one) {
+    if (workspace_.document.empty() || wanted_.camera.width <= 0) return;
+    seen_colour_ = {seen_colour_.number + 1, seen_colour(wanted_, one.x, one.y)};
 }
 
 template <> void ViewController::on(const command::SetViewportSize& one) {

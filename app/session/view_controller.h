@@ -13,6 +13,7 @@
 #include "app/session/preview_host.h"
 #include "app/session/state/stage.h"
 #include "app/session/state/workspace.h"
+#include "app/session/view_pictures.h"
 
 namespace gse::app {
 
@@ -20,7 +21,8 @@ constexpr double MovingSeconds = 0.25;  // after the last movement of the camera
 
 class ViewController {
 public:
-    explicit ViewController(Workspace& workspace) : workspace_(workspace), hidden_(workspace) {}
+    explicit ViewController(Workspace& workspace)
+        : workspace_(workspace), hidden_(workspace), pictures_(workspace) {}
 
     void run(const ui::ViewCommand& command);
     /// Another document is open: its orbit. Nothing is hidden or compared with.
@@ -71,6 +73,8 @@ public:
     RowValues on_screen(const RowValues& values, const GaussianSet& set, const Stage& stage) const;
     /// The other side of comparisons.
     GaussianSet before_on_screen(const Stage& stage) const;
+    /// The picture as the last frame wanted it.
+    const PictureRequest& wanted() const { return wanted_; }
     /// The splats of the last picture, for thumbnails.
     const GaussianSet& drawn_set() const { return drawn_.set; }
 
@@ -113,13 +117,17 @@ private:
     int width_ = 1, height_ = 1;  // of the viewport
     Clock::time_point last_move_ = Clock::now() - std::chrono::seconds(10);
     OrbitParameters orbit_;  // home: the fitted orbit,
-    Bounds framing_;         // and what is to be seen from there
+    Bounds home_;            // and what is to be seen from there: what stands on the ground
+    Bounds framing_;         // of the whole scene
     Vec3 up_shown_{};        // that the orbit stands on
     ui::Comparison comparison_ = ui::Comparison::None;
     Comparing compared_;
     HiddenSplats hidden_;
     Drawn drawn_;
     PictureState shown_;
+    PictureRequest wanted_;  // of the last frame
+    ui::SeenColour seen_colour_;
+    ViewPictures pictures_;
 };
 
 }  // namespace gse::app

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <atomic>
-#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -13,41 +12,12 @@
 
 #include "app/engine_names.h"
 #include "app/session/preview_host.h"
+#include "app/session/shown_picture.h"
 #include "engine/base/mailbox.h"
 #include "engine/base/shared_queue.h"
-#include "engine/pipeline/scene/scene_tools.h"
 #include "engine/preview/moving_scale.h"
-#include "engine/preview/resolve.h"
 
 namespace gse::app {
-
-struct NativePicture {
-    std::vector<std::uint8_t> rgba;  // [height,width,4]
-    int width = 0, height = 0;
-    Camera camera;  // at the size of the request, not of the picture
-    Image depth;    // [height,width,1] alpha-normalised, 0 = nothing
-    double milliseconds = 0;
-    bool full = false;  // at the size asked for
-};
-
-/// Settings of the request in the preview's terms. Throws nothing: a colour that cannot be read is black.
-preview::Display display_of(const PictureRequest& request);
-
-/// One picture on the calling thread. Keeps its scratch between calls.
-class NativePainter {
-public:
-    explicit NativePainter(unsigned threads = 0) : painter_(threads) {}
-    /// At width x height; comparisons are put together from the columns of both sides.
-    void paint(const PictureRequest& request, int width, int height, NativePicture& picture);
-    std::string name() { return painter_.rasterizer().name(); }
-
-private:
-    void paint_part(const PictureRequest& request, bool original, const Camera& camera, int first_column,
-                    NativePicture& picture);
-    Painter painter_;
-    Image values_;
-    std::vector<std::uint8_t> part_;
-};
 
 /// Pictures that are used again: what the last holder lets go comes back, whichever thread that is.
 class PictureStore : public std::enable_shared_from_this<PictureStore> {

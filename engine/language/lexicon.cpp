@@ -75,6 +75,92 @@ constexpr PlaceList Places[] = {{"top", "hat crown cap helmet horns antlers halo
                                 {"neck", "scarf necklace collar tie beard bow"},
                                 {"around", "flames fire smoke wings snow"}};
 
+/// Words of one meaning stand in one line; lines of one kind follow each other.
+struct Meaning {
+    std::string_view kind, words;
+};
+
+constexpr Meaning Meanings[] = {
+    {"animal", "bear cub teddy grizzly panda"},
+    {"animal", "dog puppy hound poodle spaniel terrier wolf"},
+    {"animal", "cat kitten kitty tomcat"},
+    {"animal", "duck duckling goose swan"},
+    {"animal", "rabbit bunny hare"},
+    {"animal", "bird chicken hen rooster parrot eagle owl penguin pigeon crow raven"},
+    {"animal", "horse pony donkey zebra mule"},
+    {"animal", "cow bull ox calf bison"},
+    {"animal", "sheep lamb goat ram"},
+    {"animal", "lion tiger leopard panther"},
+    {"animal", "fox mouse rat squirrel hamster hedgehog"},
+    {"animal", "pig boar hog piglet"},
+    {"animal", "elephant giraffe rhino hippo camel"},
+    {"animal", "monkey ape gorilla"},
+    {"animal", "frog toad turtle lizard crocodile snake dinosaur dragon"},
+    {"animal", "fish shark whale dolphin"},
+    {"person", "man boy guy gentleman male"},
+    {"person", "woman girl lady female"},
+    {"person", "person child kid human baby people figure"},
+    {"vehicle", "car automobile auto sedan taxi vehicle"},
+    {"vehicle", "truck lorry van bus pickup"},
+    {"vehicle", "bike bicycle motorcycle motorbike scooter"},
+    {"vehicle", "boat ship yacht canoe"},
+    {"vehicle", "train tram locomotive"},
+    {"vehicle", "plane aeroplane airplane aircraft jet"},
+    {"seat", "chair armchair seat"},
+    {"seat", "sofa couch settee"},
+    {"seat", "stool bench"},
+    {"furniture", "table desk"},
+    {"furniture", "bed cot"},
+    {"furniture", "shelf bookcase cupboard cabinet wardrobe"},
+    {"vessel", "vase urn jug pitcher"},
+    {"vessel", "pot bowl cup mug pan kettle"},
+    {"vessel", "bottle jar glass"},
+    {"building", "house home hut cottage cabin building"},
+    {"building", "castle tower church temple"},
+    {"plant", "tree oak pine palm fir birch"},
+    {"plant", "bush shrub hedge"},
+    {"plant", "flower rose tulip daisy sunflower plant"},
+    {"plant", "mushroom toadstool fungus"},
+    {"plant", "apple pear orange lemon banana fruit"},
+    {"round thing", "ball sphere globe orb football basketball"},
+    {"sculpture", "statue sculpture bust figurine monument"},
+    {"headwear", "hat cap sombrero beanie beret fedora bonnet"},
+    {"headwear", "crown tiara diadem"},
+    {"headwear", "helmet hood"},
+    {"eyewear", "glasses spectacles goggles"},
+    {"eyewear", "sunglasses shades"},
+    {"neckwear", "scarf shawl"},
+    {"neckwear", "tie necktie bow"},
+    {"neckwear", "necklace collar chain"},
+    {"blaze", "flames flame fire blaze"},
+    {"wings", "wings wing"},
+    {"colour", "red crimson scarlet ruby cherry maroon burgundy vermilion"},
+    {"colour", "blue azure navy cobalt sapphire indigo cyan teal turquoise"},
+    {"colour", "green emerald lime olive mint jade"},
+    {"colour", "yellow amber lemon"},
+    {"colour", "orange tangerine apricot peach"},
+    {"colour", "purple violet lilac lavender magenta mauve"},
+    {"colour", "pink rose fuchsia"},
+    {"colour", "brown tan chestnut beige chocolate"},
+    {"colour", "black ebony jet"},
+    {"colour", "white ivory snowy"},
+    {"colour", "grey gray ash charcoal"},
+    {"metal", "golden gold gilded brass"},
+    {"metal", "silver chrome platinum"},
+    {"metal", "metal metallic iron steel aluminium bronze copper tin"},
+    {"wood", "wooden wood timber oaken pine"},
+    {"mineral", "stone rock granite marble concrete brick"},
+    {"mineral", "glass crystal ice"},
+    {"ground", "grass lawn meadow turf field"},
+    {"ground", "sand beach desert dune"},
+    {"ground", "snow ice frost"},
+    {"ground", "water lake sea ocean river pond"},
+    {"ground", "tiles tiled floor ground pavement carpet rug"}};
+
+constexpr std::pair<std::string_view, std::string_view> Irregular[] = {
+    {"men", "man"},     {"women", "woman"}, {"children", "child"}, {"people", "person"}, {"mice", "mouse"},
+    {"geese", "goose"}, {"feet", "foot"},   {"teeth", "tooth"},    {"oxen", "ox"},       {"sheep", "sheep"}};
+
 template <class F> void for_each_word(std::string_view words, F&& f) {
     for (std::size_t begin = 0; begin < words.size();) {
         const auto end = std::min(words.find(' ', begin), words.size());
@@ -116,6 +202,28 @@ const std::vector<std::string>& compound_prepositions() {
         return compounds;
     }();
     return all;
+}
+
+std::vector<std::string_view> kindred_groups(std::string_view word) {
+    const auto holds = [word](const Meaning& meaning) {
+        bool found = false;
+        for_each_word(meaning.words, [&](std::string_view each) { found = found || each == word; });
+        return found;
+    };
+    std::vector<std::string_view> groups;
+    for (const auto& meaning : Meanings)
+        if (holds(meaning)) groups.push_back(meaning.words);
+    const std::size_t same = groups.size();
+    for (const auto& meaning : Meanings) {
+        if (!holds(meaning)) continue;
+        for (const auto& other : Meanings)
+            if (other.kind == meaning.kind && !holds(other)) groups.push_back(other.words);
+    }
+    return same == 0 ? std::vector<std::string_view>() : groups;
+}
+
+std::string_view irregular_singular(std::string_view plural) {
+    return value_of(Irregular, plural).value_or(std::string_view());
 }
 
 std::optional<std::string_view> listed_place(std::string_view thing) {

@@ -59,6 +59,13 @@ std::optional<Relation> relation_named(std::string_view preposition);
 /// Prepositions of several words ("in front of", "next to").
 const std::vector<std::string>& compound_prepositions();
 
+/// Words of the same meaning ("cub" for "bear"), then those of the same kind (other animals), in groups; the
+/// word itself is among them. Empty for a word that is not listed.
+std::vector<std::string_view> kindred_groups(std::string_view word);
+
+/// The singular of an irregular plural ("men", "mice"); empty for other words.
+std::string_view irregular_singular(std::string_view plural);
+
 /// Place on its wearer that a thing usually takes: "top", "front", "neck" or "around"; nothing for a word
 /// that names no such thing.
 std::optional<std::string_view> listed_place(std::string_view thing);

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
+#include <cmath>
 #include <utility>
 
 #include "engine/base/spelling.h"
@@ -14,18 +14,58 @@
 namespace gse::language {
 namespace {
 
-// Share of the letters: "bears" and "baer" are near "bear", "sign" is near nothing.
-constexpr double MostDifferent = 0.4;
-constexpr double OfSwapped = 0.3;  // two letters that changed places, whatever the length
+constexpr std::size_t LeastSpelt = 3;  // letters of a word that may be misspelt: shorter ones are others
 
-/// Spelling distance in which two neighbours that changed places are no more than one slip.
-double slip(const std::string& a, const std::string& b) {
-    const double distance = spelling_distance(a, b);
-    if (a.size() != b.size()) return distance;
+/// Tells whether one letter was typed wrong, left out or added, or two neighbours changed places.
+bool one_letter_away(const std::string& a, const std::string& b) {
+    if (std::min(a.size(), b.size()) < LeastSpelt) return false;
+    const double letters = spelling_distance(a, b) * static_cast<double>(std::max(a.size(), b.size()));
+    if (std::lround(letters) <= 1) return true;
+    if (a.size() != b.size()) return false;
     const auto at = static_cast<std::size_t>(std::mismatch(a.begin(), a.end(), b.begin()).first - a.begin());
     std::string swapped = a;
     if (at + 1 < a.size()) std::swap(swapped[at], swapped[at + 1]);
-    return swapped == b ? std::min(distance, OfSwapped) : distance;
+    return swapped == b;
+}
+
+/// The word and what it may be the plural of: "berries" gives "berry" among others.
+std::vector<std::string> lemmas_of(const std::string& word) {
+    std::vector<std::string> lemmas{word};
+    if (const auto singular = irregular_singular(word); !singular.empty()) lemmas.emplace_back(singular);
+    const auto without = [&](std::string_view ending, std::string_view instead) {
+        if (word.size() > ending.size() + 1 && word.ends_with(ending))
+            lemmas.push_back(word.substr(0, word.size() - ending.size()) + std::string(instead));
+    };
+    if (!word.ends_with("ss")) without("s", "");
+    without("es", "");
+    without("ies", "y");
+    without("ves", "f");
+    without("ves", "fe");
+    return lemmas;
+}
+
+bool same_lemma(const std::string& a, const std::string& b) {
+    const auto of_a = lemmas_of(a), of_b = lemmas_of(b);
+    return std::any_of(of_a.begin(), of_a.end(), [&](const auto& lemma) { return contains(of_b, lemma); });
+}
+
+/// Adds the known words that `wanted` accepts, in the order of the vocabulary.
+template <class Wanted>
+void add_known(std::vector<std::string>& words, const std::vector<std::string>& known, Wanted&& wanted) {
+    for (const auto& candidate : known)
+        if (says_something(candidate) && !contains(words, candidate) && wanted(candidate))
+            words.push_back(candidate);
+}
+
+/// Known words of the same meaning as one of the lemmas; where there are none, those of the same kind.
+std::vector<std::string> kindred_words(const std::string& word, const std::vector<std::string>& known) {
+    std::vector<std::string> words;
+    for (const auto& lemma : lemmas_of(word))
+        for (const auto group : kindred_groups(lemma)) {
+            const auto listed = words_of(group);
+            add_known(words, known, [&](const auto& candidate) { return contains(listed, candidate); });
+        }
+    return words;
 }
 
 std::string quoted(const std::vector<std::string>& words) {
@@ -88,17 +128,12 @@ bool vocabulary_contains(const std::vector<std::string>& known, std::string_view
 
 std::vector<std::string> nearest_words(const std::string& word, const std::vector<std::string>& known,
                                        std::size_t most) {
-    std::vector<std::pair<double, std::string>> near;
-    for (const auto& candidate : known) {
-        if (!says_something(candidate)) continue;
-        const double distance = slip(word, candidate);
-        if (distance <= MostDifferent) near.emplace_back(distance, candidate);
-    }
-    std::stable_sort(near.begin(), near.end(),
-                     [](const auto& a, const auto& b) { return a.first < b.first; });
-    if (near.size() > most) near.resize(most);
     std::vector<std::string> words;
-    for (auto& entry : near) words.push_back(std::move(entry.second));
+    add_known(words, known, [&](const auto& candidate) { return same_lemma(word, candidate); });
+    if (words.empty()) words = kindred_words(word, known);
+    if (words.empty())
+        add_known(words, known, [&](const auto& candidate) { return one_letter_away(word, candidate); });
+    if (words.size() > most) words.resize(most);
     return words;
 }
 

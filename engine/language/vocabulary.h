@@ -27,8 +27,9 @@ bool vocabulary_contains(const std::vector<std::string>& known, std::string_view
 /// The first word of the phrase that is not in `known`; empty where all are, or `known` is empty.
 std::string unknown_word(const std::vector<std::string>& known, std::string_view phrase);
 
-/// Known words that name or describe something ("bear", "golden"; not "the" or "wearing"), spelt nearly like
-/// `word`, nearest first, at most `most`; empty when none is near.
+/// Known words to say instead of `word`, at most `most`, each naming or describing something. Its singular or
+/// plural if that is known; else words of its meaning, then of its kind; else those one letter away from it.
+/// Empty where none is: words that share letters by chance mean something else.
 std::vector<std::string> nearest_words(const std::string& word, const std::vector<std::string>& known,
                                        std::size_t most = 3);
 

@@ -26,8 +26,8 @@ struct Display {
     bool antialiased = false;  // for scenes trained with the opacity compensation
     float near_plane = 0;      // 0 = follows scene and camera (scene/depth_range.h)
     std::array<float, 3> background{0, 0, 0};
-    bool transparent = false;  // alpha instead of the background, not premultiplied
-    std::array<float, 3> tint{1.0f, 0.45f, 0.1f};
+    bool transparent = false;                      // alpha instead of the background, not premultiplied
+    std::array<float, 3> tint{1.0f, 0.45f, 0.1f};  // its complement over what has its own hue
     float tint_strength = 0;  // beauty, centres, rings, ellipsoids, labels: how strongly the value tints
     // World units in the middle of the depth colours; 0 = distance to the scene's middle.
     float depth_scale = 0;

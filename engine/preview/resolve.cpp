@@ -26,6 +26,30 @@ bool tints(const Display& display) {
     return display.tint_strength > 0 && (display.mode <= Mode::Ellipsoids || display.mode == Mode::Labels);
 }
 
+float smoothstep(float low, float high, float value) {
+    const float t = std::clamp((value - low) / (high - low), 0.0f, 1.0f);
+    return t * t * (3.0f - 2.0f * t);
+}
+
+/// The colour without its grey.
+Rgb hue_of(const Rgb& colour) {
+    const float grey = (colour[0] + colour[1] + colour[2]) / 3.0f;
+    return {colour[0] - grey, colour[1] - grey, colour[2] - grey};
+}
+
+float dot(const Rgb& a, const Rgb& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/// Tint over a colour: its own, or its complement where the colour has the same hue.
+Rgb tint_over(const Rgb& solid, const Rgb& tint) {
+    const Rgb hue = hue_of(solid), own = hue_of(tint);
+    const float chroma = std::sqrt(dot(hue, hue));
+    const float cosine = dot(hue, own) / std::max(chroma * std::sqrt(dot(own, own)), 1e-6f);
+    const float alike = smoothstep(shaders::OtherHue, shaders::OwnHue, cosine) *
+                        smoothstep(shaders::LeastChroma, shaders::ClearChroma, chroma);
+    return {mix(tint[0], 1.0f - tint[0], alike), mix(tint[1], 1.0f - tint[1], alike),
+            mix(tint[2], 1.0f - tint[2], alike)};
+}
+
 /// Common case, simple enough for the compiler to vectorise.
 void resolve_plain(const float* colour, const float* alpha, std::size_t count, const Rgb& background,
                    std::uint8_t* out) {
@@ -76,8 +100,8 @@ std::array<float, 4> resolve_pixel(const PixelSums& sums, const Display& display
         for (std::size_t k = 0; k < 3; ++k)
             shown[k] = mix(grey, map[k], shaders::MapCoverage * (0.25f + 0.75f * share));
     } else if (tints(display)) {
-        for (std::size_t k = 0; k < 3; ++k)
-            shown[k] = mix(solid[k], display.tint[k], share * display.tint_strength);
+        const Rgb tint = tint_over(solid, display.tint);
+        for (std::size_t k = 0; k < 3; ++k) shown[k] = mix(solid[k], tint[k], share * display.tint_strength);
     }
     if (display.transparent) return {shown[0], shown[1], shown[2], cover};
     for (std::size_t k = 0; k < 3; ++k) shown[k] = shown[k] * cover + display.background[k] * (1.0f - cover);

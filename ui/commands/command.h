@@ -170,6 +170,10 @@ struct PickRows {
     localize::RowChoice choice;
 };
 struct DropPicked {};
+/// Asks for the colour that the picture shows at a pixel of the viewport; it comes as ViewModel::seen_colour.
+struct PickColour {
+    int x = 0, y = 0;
+};
 struct UsePicked {
     PickedUse use = PickedUse::NewLabel;
 };
@@ -220,6 +224,14 @@ struct LookThrough {
 /// Adds the present camera to the viewpoints.
 struct AddView {};
 struct DeleteView {
+    std::size_t view = 0;
+};
+struct RenameView {
+    std::size_t view = 0;
+    std::string name;
+};
+/// Has a small picture of the scene drawn from there, for the list of views.
+struct DrawView {
     std::size_t view = 0;
 };
 struct SetViewportSize {
@@ -317,7 +329,8 @@ using LabelCommand =
 using ViewCommand =
     std::variant<command::HideLabel, command::IsolateLabel, command::ShowHidden, command::SetCamera,
                  command::SetViewSettings, command::SetComparison, command::CompareWith, command::LookThrough,
-                 command::AddView, command::DeleteView, command::SetViewportSize>;
+                 command::AddView, command::DeleteView, command::RenameView, command::DrawView,
+                 command::PickColour, command::SetViewportSize>;
 using ModelCommand =
     std::variant<command::SetModelSettings, command::ChooseModel, command::AddLora, command::SetLoraStrength,
                  command::RemoveLora, command::ChooseSegmenter, command::SetCacheMb, command::ClearCache>;

@@ -17,6 +17,13 @@
 namespace gse::ui {
 namespace {
 
+/// Bounds of what is labelled; nothing where nothing is.
+std::optional<Bounds> labelled_bounds(const Context& context) {
+    const NamedLabel* label = context.active_label();
+    if (label == nullptr || label->bits == nullptr || context.model.labelled == 0) return std::nullopt;
+    return framing_bounds(context.document().current, *label->bits);
+}
+
 constexpr double AskAfterSeconds = 30;           // of work, before a cancel is asked about
 constexpr std::uint64_t LargestSeed = 1u << 31;  // still easy to read and to type
 constexpr float SmallestScale = 0.6f, LargestScale = 4.0f;
@@ -378,16 +385,16 @@ void toggle_wipe(Context& context) {
 
 void frame_selection(Context& context) {
     if (!context.scene_open()) return;
-    const NamedLabel* label = context.active_label();
-    const bool any = label != nullptr && label->bits != nullptr && context.model.labelled > 0;
-    context.state.viewport.camera.frame(any ? framing_bounds(context.document().current, *label->bits)
-                                            : context.model.framing);
+    context.state.viewport.camera.frame(labelled_bounds(context).value_or(context.model.framing));
 }
 
 void go_home(Context& context) {
     if (!context.scene_open()) return;
-    context.state.viewport.camera.set_fov(context.view.fov_degrees * 3.14159265358979323846 / 180);
-    context.state.viewport.camera.home();
+    auto& viewport = context.state.viewport;
+    viewport.labelled_home = labelled_bounds(context);
+    viewport.camera.set_home(context.model.orbit, viewport.labelled_home.value_or(context.model.home));
+    viewport.camera.set_fov(context.view.fov_degrees * 3.14159265358979323846 / 180);
+    viewport.camera.home();
 }
 
 void step_view(Context& context, int step) {

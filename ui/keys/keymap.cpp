@@ -132,15 +132,33 @@ std::string Keymap::why_not(const Chord& chord) {
 
 std::optional<Shortcut> Keymap::bind(Shortcut command, const Chord& chord) {
     const auto had = user_of(chord);
-    if (had && *had != command) chords_[static_cast<std::size_t>(*had)] = {};
+    if (had && *had != command) {
+        chords_[static_cast<std::size_t>(*had)] = {};
+        chosen_[static_cast<std::size_t>(*had)] = false;
+    }
     chords_[static_cast<std::size_t>(command)] = chord;
+    chosen_[static_cast<std::size_t>(command)] = chord.key != 0;
     return had && *had != command ? had : std::nullopt;
+}
+
+void Keymap::reset(Shortcut command) {
+    bind(command, Keymap(preset_).of(command));
+    chosen_[static_cast<std::size_t>(command)] = false;
+}
+
+Keymap Keymap::in(KeyPreset preset) const {
+    Keymap other(preset);
+    for (const auto& line : KeyTable)
+        if (line.command != NoShortcut && chosen_[static_cast<std::size_t>(line.command)])
+            other.bind(line.command, of(line.command));
+    return other;
 }
 
 std::string Keymap::text() const {
     nlohmann::ordered_json json{{"preset", KeyPresetNames[static_cast<std::size_t>(preset_)]}};
     for (const auto& line : KeyTable)
-        if (line.command != NoShortcut && changed(line.command))
+        if (line.command != NoShortcut &&
+            (changed(line.command) || chosen_[static_cast<std::size_t>(line.command)]))
             json["keys"][line.name] = chord_text(of(line.command));
     return json.dump();
 }

@@ -28,6 +28,8 @@ public:
     explicit Keymap(KeyPreset preset = KeyPreset::Splat);
     /// Reads a text of text(). Unreadable entries keep their defaults.
     static Keymap parse(const std::string& json);
+    /// The keys of another convention, with the artist's own on top of it.
+    Keymap in(KeyPreset preset) const;
     /// Preset and its differences, as JSON.
     std::string text() const;
 
@@ -41,12 +43,15 @@ public:
     /// Gives a command its keys. The command that had them loses them, and is returned. Keys with a fixed
     /// meaning are refused: `why_not`.
     std::optional<Shortcut> bind(Shortcut command, const Chord& chord);
+    /// Gives a command the convention's keys again.
+    void reset(Shortcut command);
     /// Reason why these keys cannot be chosen: "W flies"; empty = they can.
     static std::string why_not(const Chord& chord);
 
 private:
     KeyPreset preset_;
     std::array<Chord, ShortcutCount> chords_{};
+    std::array<bool, ShortcutCount> chosen_{};  // by the artist, though a convention may have the same
 };
 
 /// The line of KeyTable of a command.

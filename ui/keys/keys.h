@@ -66,7 +66,7 @@ inline constexpr std::array<KeyHelp, 53> KeyTable{{
     {"Camera", "Double click", "Turn around what is under the cursor"},
     {"Camera", "W A S D, E up, Q down", "Fly (Shift fast, Alt slow)"},
     {"Camera", "F", "Frame what is labelled, else the scene", Shortcut::Frame, "frame"},
-    {"Camera", "Home", "Home", Shortcut::Home, "home"},
+    {"Camera", "Home", "Home: what is labelled, else what stands on the ground", Shortcut::Home, "home"},
     {"Camera", "Left, Right (nothing has the focus)", "Previous, next view"},
     {"Labels", "B", "Brush", Shortcut::Brush, "brush"},
     {"Labels", "R", "Rectangle", Shortcut::Rectangle, "rectangle"},

@@ -50,7 +50,7 @@ void draw_command_key(Context& context, const KeyHelp& line) {
         keys.note.clear();
     }
     if (!context.state.keymap.changed(line.command) || !ImGui::IsItemClicked(ImGuiMouseButton_Right)) return;
-    context.state.keymap.bind(line.command, Keymap(context.state.keymap.preset()).of(line.command));
+    context.state.keymap.reset(line.command);
     send(context);
 }
 
@@ -84,11 +84,11 @@ void centre_next(ImVec2 size) {
 void draw_key_preset(Context& context, const char* name) {
     row_label(context, "As in",
               "Splat: as splat editors have them. Blender: its letters. Maya: Alt and the mouse buttons move "
-              "the camera, with a tool in hand, too.");
+              "the camera, with a tool in hand, too. Keys that you chose stay.");
     int preset = static_cast<int>(context.state.keymap.preset());
     ImGui::BeginGroup();
     if (segmented(context, name, KeyPresetNames, preset)) {
-        context.state.keymap = Keymap(static_cast<KeyPreset>(preset));
+        context.state.keymap = context.state.keymap.in(static_cast<KeyPreset>(preset));
         context.state.keys.choosing.reset();
         context.state.keys.note.clear();
         send(context);

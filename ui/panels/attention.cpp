@@ -11,9 +11,14 @@
 #include "ui/viewport/viewport.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/icons.h"
+#include "ui/widgets/sheet.h"
 
 namespace gse::ui {
 namespace {
+
+constexpr float ThumbnailEm = 3, LargestThumbnailEm = 9;  // side of a view's thumbnail
+constexpr float StripGapEm = 0.25f;                       // between thumbnails
+constexpr float LeastPictureEm = 5;                       // side of a picture of the chosen view
 
 bool left_out(const AttentionView& view) { return view.step == edit::ViewStep::LeftOut; }
 
@@ -99,13 +104,17 @@ void draw_thumbnail(Context& context, int index, float side) {
     ImGui::PopID();
 }
 
-/// All views: a line that scrolls sideways, or (upright) a few columns that scroll down.
+/// All views: a line that scrolls sideways, or (upright) as large as they all fit, else columns that scroll
+/// down.
 void draw_strip(Context& context, ImVec2 size, bool upright) {
-    const float side = context.em * 3, gap = context.em * 0.25f;
-    const int columns =
-        upright
-            ? std::max(1, static_cast<int>((size.x - ImGui::GetStyle().ScrollbarSize + gap) / (side + gap)))
-            : 1 << 20;
+    const float gap = context.em * StripGapEm;
+    SheetPlan plan{1 << 20, context.em * ThumbnailEm};
+    if (upright)
+        plan = fitted_sheet({static_cast<int>(context.model.attention.size()), 1, 0, gap},
+                            size.x - ImGui::GetStyle().ScrollbarSize, size.y, context.em * ThumbnailEm,
+                            context.em * LargestThumbnailEm);
+    const int columns = plan.columns;
+    const float side = plan.side;
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(gap, gap));
     const auto flags = ImGuiWindowFlags_NavFlattened |
                        (upright ? ImGuiWindowFlags_None : ImGuiWindowFlags_HorizontalScrollbar);
@@ -176,6 +185,22 @@ void update_picture(Context& context, const AttentionView& view) {
     state.picture_threshold = threshold;
 }
 
+/// Buttons of the chosen view.
+void draw_view_row(Context& context) {
+    auto& state = context.state.attention;
+    draw_vote(context, "attention.votes", state.chosen);
+    flow(context.em * 5);
+    checkbox(context, "attention.points", "Points", state.points,
+             "Green: clicks inside, red: clicks outside");
+    flow(button_width("Look through"));
+    if (button(context, {.name = "attention.look",
+                         .text = "Look through",
+                         .tooltip = with_key(
+                             context, "Puts the camera where this view is, with its map over the picture",
+                             Shortcut::Evidence)}))
+        look_through_attention(context, state.chosen);
+}
+
 void draw_controls(Context& context, const AttentionView& view) {
     auto& state = context.state.attention;
     dim_text("Threshold of the attention");
@@ -198,17 +223,6 @@ void draw_controls(Context& context, const AttentionView& view) {
     dim_text(branch_words(view));
     if (!view.failed && view.mask != nullptr)
         if (const auto words = captured_words(view); !words.empty()) dim_text(words);
-    draw_vote(context, "attention.votes", state.chosen);
-    flow(context.em * 5);
-    checkbox(context, "attention.points", "Points", state.points,
-             "Green: clicks inside, red: clicks outside");
-    flow(button_width("Look through"));
-    if (button(context, {.name = "attention.look",
-                         .text = "Look through",
-                         .tooltip = with_key(
-                             context, "Puts the camera where this view is, with its map over the picture",
-                             Shortcut::Evidence)}))
-        look_through_attention(context, state.chosen);
 }
 
 /// Outcome of a search that labelled nothing, and the ways on.
@@ -291,7 +305,7 @@ void draw_arriving(Context& context) {
     tooltip(context.model.job.stage);
 }
 
-/// Word, mode and how many views vote.
+/// Word, mode, how many views vote, and how sure the search is.
 void draw_summary(Context& context) {
     const auto& views = context.model.attention;
     if (context.model.attention_arriving) return draw_arriving(context);
@@ -303,9 +317,14 @@ void draw_summary(Context& context) {
     ImGui::TextUnformatted(shortened(votes, ImGui::GetContentRegionAvail().x).c_str());
     tooltip(context.model.attention_mode);
     draw_confidence(context);
+}
+
+/// Front and ground that the search saw.
+void draw_findings(Context& context) {
+    if (context.model.attention_arriving) return;
+    ImGui::Dummy({0, 0});
     draw_front(context);
     draw_ground(context);
-    draw_problem(context);
     if (!context.model.attention_corrected) return;
     bullet_dot(palette::Warning);
     wrapped_text("The masks are from before your corrections: the label on the splats counts.");
@@ -329,7 +348,7 @@ void draw_pictures(Context& context, const AttentionView& view, ImVec2 space, in
     if (row && side_of(4) < std::min(context.em * 10, space.y - line)) first = 1;
     const int in_row = row ? 4 - first : columns;
     float side = side_of(in_row);
-    if (row) side = std::min(side, std::max(context.em * 5, space.y - line));
+    if (row) side = std::min(side, std::max(context.em * LeastPictureEm, space.y - line));
     for (int at = first; at < 4; ++at) {
         if ((at - first) % in_row != 0) ImGui::SameLine();
         draw_picture(context, view, *all[static_cast<std::size_t>(at)].first,
@@ -341,10 +360,14 @@ void draw_pictures(Context& context, const AttentionView& view, ImVec2 space, in
 void draw_wide(Context& context, const AttentionView& view) {
     const ImVec2 space = ImGui::GetContentRegionAvail();
     const float gap = ImGui::GetStyle().ItemSpacing.x;
-    const int columns = space.y < context.em * 18 ? 2 : 3;
-    const float strip = context.em * 3.25f * static_cast<float>(columns) + ImGui::GetStyle().ScrollbarSize;
+    const float columns = space.y < context.em * 18 ? 2 : 3, line = ImGui::GetTextLineHeightWithSpacing();
+    const float least_strip =
+        context.em * (ThumbnailEm + StripGapEm) * columns + ImGui::GetStyle().ScrollbarSize;
     const float controls = std::clamp(space.x * 0.26f, context.em * 13, context.em * 22);
-    const float pictures = space.x - strip - controls - 2 * gap;
+    // The pictures are as high as the panel; the views take the rest of its width.
+    const float pictures = std::min(space.x - least_strip - controls - 2 * gap,
+                                    4 * std::max(context.em * LeastPictureEm, space.y - line) + 3 * gap);
+    const float strip = space.x - pictures - controls - 2 * gap;
     draw_strip(context, {strip, space.y}, true);
     ImGui::SameLine();
     if (ImGui::BeginChild("pictures", {pictures, space.y}, false,
@@ -354,7 +377,10 @@ void draw_wide(Context& context, const AttentionView& view) {
     ImGui::SameLine();
     if (ImGui::BeginChild("controls", {0, space.y}, false, ImGuiWindowFlags_NavFlattened)) {
         draw_summary(context);
+        draw_problem(context);
+        draw_view_row(context);
         draw_controls(context, view);
+        draw_findings(context);
     }
     ImGui::EndChild();
 }
@@ -363,7 +389,10 @@ void draw_wide(Context& context, const AttentionView& view) {
 void draw_narrow(Context& context, const AttentionView& view) {
     draw_summary(context);
     draw_strip(context, {0, context.em * 3.1f + ImGui::GetStyle().ScrollbarSize}, false);
+    draw_problem(context);
+    draw_view_row(context);
     draw_controls(context, view);
+    draw_findings(context);
     draw_pictures(context, view, ImGui::GetContentRegionAvail(), 2);
 }
 

@@ -71,10 +71,17 @@ std::string why_not_write(const Context& context, const std::string& path,
     return fmt::format("The name must end in {}", endings_text(endings));
 }
 
-/// Sentence about the coming file, or in amber why there is none.
+/// Sentence about the coming file, or in amber why there is none. It takes the room of the longer one: while
+/// a file is written, nothing below moves.
 void say(const std::string& why, const std::string& what) {
-    if (why.empty()) return dim_text(what);
-    coloured_text(palette::Warning, why.ends_with('.') ? why : fmt::format("{}.", why));
+    const float width = ImGui::GetContentRegionAvail().x, top = ImGui::GetCursorPosY();
+    const auto height = [width](const std::string& text) {
+        return ImGui::CalcTextSize(broken_at_spaces(text, width).c_str()).y + ImGui::GetStyle().ItemSpacing.y;
+    };
+    const float room = std::max(height(what), height(why));
+    if (why.empty()) dim_text(what);
+    else coloured_text(palette::Warning, why.ends_with('.') ? why : fmt::format("{}.", why));
+    if (ImGui::GetCursorPosY() < top + room) ImGui::SetCursorPosY(top + room);
 }
 
 void draw_size(Context& context) {
@@ -106,19 +113,32 @@ void draw_size(Context& context) {
     }
 }
 
+/// "1280 x 720 pixels as the viewport shows them, with alpha".
+std::string picture_words(const Context& context) {
+    const bool shown = context.exports.as_shown;
+    return fmt::format("{} x {} pixels{}{}", shown ? context.model.viewport_width : context.exports.width,
+                       shown ? context.model.viewport_height : context.exports.height,
+                       shown ? " as the viewport shows them" : "",
+                       context.exports.transparent ? ", with alpha" : "");
+}
+
 void draw_picture(Context& context) {
     heading(context, "Screenshot");
-    draw_size(context);
+    if (checkbox(context, "export.as_shown", "As the viewport shows it", context.exports.as_shown,
+                 "Its size, crop, tint, display and comparison. Unticked, the scene alone in the size "
+                 "below."))
+        context.exports_changed = true;
+    if (!context.exports.as_shown) draw_size(context);
     if (checkbox(context, "export.transparent", "Transparent background", context.exports.transparent))
         context.exports_changed = true;
     path_row(context, "export.picture_path", &ExportSettings::picture_path, {".png"});
     std::string why = why_not_write(context, context.exports.picture_path, {".png"});
-    if (why.empty() && static_cast<double>(context.exports.width) * context.exports.height > LargestPixels)
+    const double pixels = static_cast<double>(context.exports.width) * context.exports.height;
+    if (why.empty() && !context.exports.as_shown && pixels > LargestPixels)
         why = "That many pixels cannot be written";
-    say(why, fmt::format("Writes a PNG of {} x {} pixels{} with the recipe inside: opening it again brings "
-                         "back prompt, seed and camera. Files that exist stay: the next name is numbered.",
-                         context.exports.width, context.exports.height,
-                         context.exports.transparent ? " with alpha" : ""));
+    say(why, fmt::format("Writes a PNG of {} with the recipe inside: opening it again brings back prompt, "
+                         "seed and camera. Files that exist stay: the next name is numbered.",
+                         picture_words(context)));
     if (button(context, {.name = "export.screenshot",
                          .text = "Save screenshot",
                          .why_off = why,
@@ -151,6 +171,7 @@ std::string why_not_film(const Context& context) {
 
 void draw_turntable(Context& context) {
     heading(context, "Turntable");
+    if (context.exports.as_shown) draw_size(context);
     const auto wanted = [](const char* name, const char*) {
         for (const char* field : {"frames", "fps", "degrees", "start_degrees", "ease", "radius_factor",
                                   "elevation_degrees", "around_label", "before_after"})

@@ -10,9 +10,12 @@
 #include "ui/state.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/icons.h"
+#include "ui/widgets/tooltips.h"
 
 namespace gse::ui {
 namespace {
+
+constexpr float EditPictureEm = 5.2f;  // as high as the controls beside it
 
 /// `where`: "outside", or in more words.
 std::string proof_text(const EditNode& edit, const char* where) {
@@ -74,9 +77,11 @@ void draw_edit(Context& context, std::size_t place, std::size_t count) {
     const EditNode& edit = context.document().stack[place];
     ImGui::PushID(static_cast<int>(edit.id));
     const ImVec2 low = ImGui::GetCursorScreenPos();
-    const float side = context.em * 3.2f;
+    const float side = context.em * EditPictureEm;
     if (edit.thumbnail != nullptr && edit.thumbnail->width > 0) {
         ImGui::Image(imgui_texture(context.textures.texture(edit.thumbnail)), {side, side});
+        note(context, fmt::format("history.picture.{}", edit.id));
+        large_picture(context, edit.thumbnail, edit.name);
     } else {
         ImGui::GetWindowDrawList()->AddRectFilled(low, {low.x + side, low.y + side}, palette::Raised,
                                                   context.em * 0.2f);

@@ -28,6 +28,23 @@ localize::RowChoice& choice_of(PickState& pick) {
     return pick.choices[static_cast<std::size_t>(pick.property)];
 }
 
+/// Begins, or leaves. While a colour is picked nothing is tinted: what is seen is what is taken.
+void pick_from_picture(Context& context, Tool& tool) {
+    tool = tool == Tool::PickColour ? Tool::Orbit : Tool::PickColour;
+    if (tool == Tool::PickColour) context.emit(command::DropPicked{});
+}
+
+/// Takes the colour that was clicked on. True when there is a new one.
+bool take_seen_colour(Context& context, localize::RowChoice& choice) {
+    const auto& seen = context.model.seen_colour;
+    auto& taken = context.state.pick.colour_taken;
+    if (seen.number == taken) return false;
+    taken = seen.number;
+    if (choice.property != RowProperty::Colour) return false;
+    choice.colour = seen.colour;
+    return true;
+}
+
 void draw_colour(Context& context, localize::RowChoice& choice, bool& changed) {
     if (choice.property != RowProperty::Colour) return;
     row_label(context, "Near to", "The colour that is looked for");
@@ -41,8 +58,8 @@ void draw_colour(Context& context, localize::RowChoice& choice, bool& changed) {
     if (button(context, {.name = "pick.colour.drop",
                          .text = "From the picture",
                          .why_off = why_no_drop,
-                         .tooltip = "Click where the colour is to be seen"}))
-        tool = tool == Tool::PickColour ? Tool::Orbit : Tool::PickColour;
+                         .tooltip = "Click a colour in the picture: it is taken as it is seen there"}))
+        pick_from_picture(context, tool);
     flow(button_width("That of the label"));
     std::string why = why_not_label(context);
     if (why.empty() && label_count(context) == 0) why = "Nothing is labelled";
@@ -115,12 +132,13 @@ void draw_pick(Context& context) {
         pick.frames_to_bring = FramesToBring;
         return;
     }
-    bool changed = !context.model.picked.shown;
+    bool changed = !context.model.picked.shown && tool != Tool::PickColour;
     if (segmented(context, "pick.property", PropertyNames, pick.property)) {
         changed = true;
         pick.frames_to_bring = FramesToBring;
     }
     auto& choice = choice_of(pick);
+    changed |= take_seen_colour(context, choice);
     draw_colour(context, choice, changed);
     draw_values(context, pick, choice, changed);
     int side = choice.above ? 1 : 0;

@@ -9,9 +9,12 @@
 #include "ui/state.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/plot.h"
+#include "ui/widgets/tooltips.h"
 
 namespace gse::ui {
 namespace {
+
+constexpr float CurvesEm = 11;  // least height of the unfolded curves
 
 void draw_job(Context& context) {
     const auto& job = context.model.job;
@@ -28,11 +31,6 @@ void draw_job(Context& context) {
     if (!job.running) return;
     const std::string steps =
         job.total > 0 ? fmt::format("{} / {}", job.step, job.total) : fmt::format("{}", job.step);
-    property(context, "Stage", job.paused ? job.stage + " (paused)" : job.stage);
-    property(context, "Step", steps);
-    property(context, "Time", duration_text(job.seconds));
-    property(context, "Left",
-             job.eta_seconds >= 0 ? "about " + duration_text(job.eta_seconds) : "not known yet");
     const bool paused = job.paused;
     if (button(context, {.name = "progress.pause",
                          .text = paused ? "Resume" : "Pause",
@@ -42,6 +40,11 @@ void draw_job(Context& context) {
     if (button(context,
                {.name = "progress.cancel", .text = "Cancel", .tooltip = "Esc", .look = Look::Danger}))
         cancel_job(context);
+    property(context, "Stage", job.paused ? job.stage + " (paused)" : job.stage);
+    property(context, "Step", steps);
+    property(context, "Time", duration_text(job.seconds));
+    property(context, "Left",
+             job.eta_seconds >= 0 ? "about " + duration_text(job.eta_seconds) : "not known yet");
 }
 
 /// The gate: the model's own drawing of a few views.
@@ -58,29 +61,46 @@ void draw_gate(Context& context) {
         ImGui::Image(imgui_texture(context.textures.texture(gate.pictures[i])), {side, side});
         note(context, fmt::format("progress.gate.{}", i));
         if (!ImGui::IsItemHovered()) continue;
-        ImGui::BeginTooltip();
-        ImGui::Image(imgui_texture(context.textures.texture(gate.pictures[i])),
-                     {context.em * 14, context.em * 14});
+        const ImVec2 large(context.em * 14, context.em * 14);
+        begin_tooltip(large);
+        ImGui::Image(imgui_texture(context.textures.texture(gate.pictures[i])), large);
         ImGui::EndTooltip();
     }
     if (!gate.verdict.empty()) coloured_text(gate.warns ? palette::Warning : palette::TextDim, gate.verdict);
 }
 
-/// Requests of the running or last job to the networks, and the way to its outcome.
+/// Requests of the running or last job to the networks.
 void draw_cost(Context& context) {
     const auto& cost = context.model.cost;
-    if (cost.unet > 0) {
-        property(context, "Networks",
-                 fmt::format("{} UNet, {} encoder, {} decoder passes", count_text(cost.unet),
-                             count_text(cost.encoder), count_text(cost.decoder)));
-        note(context, "progress.networks");
-        property(context, "Arithmetic", tflop_text(cost.tflop));
+    property(context, "Networks",
+             fmt::format("{} UNet, {} encoder, {} decoder passes", count_text(cost.unet),
+                         count_text(cost.encoder), count_text(cost.decoder)));
+    note(context, "progress.networks");
+    property(context, "Arithmetic", tflop_text(cost.tflop));
+}
+
+/// A button that unfolds what few want to see.
+void unfolds(Context& context, const char* name, const char* text, const char* help, bool& shown) {
+    flow(button_width(text));
+    if (button(context,
+               {.name = name, .text = text, .tooltip = help, .look = shown ? Look::Primary : Look::Quiet}))
+        shown = !shown;
+}
+
+/// The way to the outcome of the redrawing, and what is folded away: curves and cost.
+void draw_ways(Context& context) {
+    auto& state = context.state.progress;
+    if (!context.model.target_rounds.empty()) {
+        if (button(context, {.name = "progress.targets",
+                             .text = "Redrawn views",
+                             .tooltip = "What the scene is fitted to, view by view"}))
+            show_panel(context.state, PanelId::Targets);
     }
-    if (context.model.target_rounds.empty()) return;
-    if (button(context, {.name = "progress.targets",
-                         .text = "Redrawn views",
-                         .tooltip = "What the scene is fitted to, view by view"}))
-        show_panel(context.state, PanelId::Targets);
+    if (!context.model.losses.empty())
+        unfolds(context, "progress.curves", "Curves", "Losses and gradients, step by step", state.curves);
+    if (context.model.cost.unet > 0)
+        unfolds(context, "progress.cost", "Cost", "What the networks were asked for", state.cost);
+    if (state.cost && context.model.cost.unet > 0) draw_cost(context);
 }
 
 std::string why_not_branch(const Context& context, int iteration) {
@@ -205,25 +225,23 @@ void draw_curves(Context& context, float height) {
 }  // namespace
 
 void draw_progress_panel(Context& context) {
-    const float width = ImGui::GetContentRegionAvail().x;
+    const float width = ImGui::GetContentRegionAvail().x, height = ImGui::GetContentRegionAvail().y;
     const bool beside = width > context.em * 38;
-    const float left = std::clamp(width * 0.3f, context.em * 14, context.em * 24);
-    const float height = std::max(context.em * 8, ImGui::GetContentRegionAvail().y);
+    const float left = std::clamp(width * 0.42f, context.em * 14, context.em * 34);
     if (beside) ImGui::BeginChild("job", {left, height}, false, ImGuiWindowFlags_NavFlattened);
     draw_result_notice(context, "progress");
     draw_job(context);
-    draw_cost(context);
-    draw_snapshots(context);
-    draw_gate(context);
     if (beside) {
         ImGui::EndChild();
         ImGui::SameLine();
-        if (ImGui::BeginChild("curves", {0, height}, false, ImGuiWindowFlags_NavFlattened))
-            draw_curves(context, height);
-        ImGui::EndChild();
-    } else {
-        draw_curves(context, context.em * 16);
+        ImGui::BeginChild("states", {0, height}, false, ImGuiWindowFlags_NavFlattened);
     }
+    draw_ways(context);
+    if (context.state.progress.curves && !context.model.losses.empty())
+        draw_curves(context, std::max(context.em * CurvesEm, ImGui::GetContentRegionAvail().y));
+    draw_snapshots(context);
+    draw_gate(context);
+    if (beside) ImGui::EndChild();
 }
 
 }  // namespace gse::ui

@@ -290,7 +290,6 @@ std::string estimate_text(const Estimate& estimate) {
     if (estimate.seconds >= 0 && draft >= 0 && fine > draft)
         text += fmt::format(" (draft {}, normal {}, fine {})", duration_text(draft), duration_text(normal),
                             duration_text(fine));
-    if (estimate.tflop >= 0) text += fmt::format(", {}", tflop_text(estimate.tflop));
     if (estimate.memory_mb < 0) return text;
     text += ", " + bytes_text(estimate.memory_mb * 1e6);
     if (estimate.memory_free_mb >= 0)
@@ -314,7 +313,12 @@ std::string obstacle_text(const Context& context) {
 void draw_estimate(Context& context) {
     const std::string text = estimate_text(context.model.estimate),
                       warning = memory_warning(context.model.estimate);
-    if (!text.empty()) dim_text(text);
+    if (!text.empty()) {
+        dim_text(text);
+        note(context, "prompt.estimate");
+        if (context.model.estimate.tflop >= 0)
+            tooltip(fmt::format("Arithmetic of the networks: {}", tflop_text(context.model.estimate.tflop)));
+    }
     if (!warning.empty()) coloured_text(palette::Bad, warning);
 }
 

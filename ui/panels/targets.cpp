@@ -8,11 +8,15 @@
 #include "ui/panels/panels.h"
 #include "ui/state.h"
 #include "ui/widgets/controls.h"
+#include "ui/widgets/sheet.h"
+#include "ui/widgets/tooltips.h"
 
 namespace gse::ui {
 namespace {
 
 using edit::TargetChoice;
+
+constexpr float LargestEm = 24;  // side of a picture
 
 /// The shown round.
 const TargetRound& shown_round(Context& context) {
@@ -60,12 +64,15 @@ void draw_pair(Context& context, const TargetView& target, const std::string& na
     if (ImGui::IsMouseDoubleClicked(0)) return context.emit(command::SetCamera{target.camera});
     if (ImGui::IsAnyMouseDown()) return;
     const float large = std::min(context.em * 15, ImGui::GetIO().DisplaySize.x * 0.3f);
-    ImGui::BeginTooltip();
+    const auto& style = ImGui::GetStyle();
+    constexpr const char* Help = "Left the scene, right what it is fitted to. Double click: look through it.";
+    begin_tooltip({std::max(2 * large + style.ItemSpacing.x, ImGui::CalcTextSize(Help).x),
+                   large + style.ItemSpacing.y + ImGui::GetTextLineHeight()});
     for (const auto* picture : {&target.before, &target.after}) {
         if (picture == &target.after) ImGui::SameLine();
         ImGui::Image(imgui_texture(context.textures.texture(*picture)), {large, large});
     }
-    plain_text("Left the scene, right what it is fitted to. Double click: look through it.");
+    plain_text(Help);
     ImGui::EndTooltip();
 }
 
@@ -129,10 +136,10 @@ void draw_sheet(Context& context, const TargetRound& round) {
                 least = std::max(context.em * 4.2f, button_width("Accept") * 0.5f +
                                                         button_width("Redo") * 0.5f + context.em * 0.5f);
     if (ImGui::BeginChild("sheet", {0, 0}, false, ImGuiWindowFlags_NavFlattened)) {
-        const float width = ImGui::GetContentRegionAvail().x;
-        const int columns = std::max(1, static_cast<int>((width + gap) / (2 * least + gap)));
-        const float side = std::floor(
-            std::min(context.em * 8, ((width + gap) / static_cast<float>(columns) - gap) * 0.5f - 1));
+        const ImVec2 room = ImGui::GetContentRegionAvail();
+        const float below = ImGui::GetTextLineHeightWithSpacing() + ImGui::GetFrameHeightWithSpacing();
+        const auto [columns, side] = fitted_sheet({static_cast<int>(round.targets.size()), 2, below, gap},
+                                                  room.x - 1, room.y, least, context.em * LargestEm);
         const std::string why = why_not_change(context, round);
         for (std::size_t index = 0; index < round.targets.size(); ++index) {
             if (static_cast<int>(index) % columns != 0) ImGui::SameLine(0, gap);

@@ -11,6 +11,7 @@
 #include "ui/viewport/viewport.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/icons.h"
+#include "ui/widgets/tooltips.h"
 
 namespace gse::ui {
 namespace {
@@ -42,7 +43,7 @@ void end_foot(Context& context) {
     ImGui::End();
 }
 
-constexpr float ResultEm = 3.4f;  // width of one of several results
+constexpr float ResultEm = 6;  // width of one of several results
 
 /// All results that can be applied, small, above the bar. A click shows one.
 void draw_results(Context& context) {
@@ -58,7 +59,9 @@ void draw_results(Context& context) {
         const ImVec2 low = ImGui::GetCursorScreenPos(), high(low.x + side, low.y + side);
         if (ImGui::InvisibleButton("result", {side, side})) context.emit(command::ShowResult{i});
         note(context, fmt::format("result.{}", i));
-        tooltip(fmt::format("Result {} of {}, seed {}", i + 1, results.size(), results[i].seed));
+        const auto said = fmt::format("Result {} of {}, seed {}", i + 1, results.size(), results[i].seed);
+        if (results[i].thumbnail != nullptr) large_picture(context, results[i].thumbnail, said);
+        else tooltip(said);
         ImDrawList* list = ImGui::GetWindowDrawList();
         list->AddRectFilled(low, high, palette::Sunken, context.em * 0.2f);
         if (results[i].thumbnail != nullptr)

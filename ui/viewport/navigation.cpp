@@ -13,7 +13,6 @@ namespace gse::ui {
 namespace {
 
 constexpr float ClickTravelEm = 0.3f;  // a press that moves less is a click
-constexpr float AxisBallEm = 0.55f;
 constexpr double FlyFast = 4, FlySlow = 0.2;
 constexpr float ZoomDragEm = 2;  // of a drag that zooms, per notch of a wheel
 
@@ -50,6 +49,8 @@ void take_over(Context& context) {
     const Camera& shown = context.model.camera;
     if (shown.width <= 0 || !(shown.fx > 0)) return;
     if (state.camera_known && !state.sent.is_foreign(shown)) return;
+    state.labelled_home.reset();  // that of another camera
+    state.camera.set_home(context.model.orbit, context.model.home);
     state.camera.adopt(shown);
     state.camera_known = true;
     state.sent.clear();
@@ -82,20 +83,15 @@ void fly(Context& context) {
     context.state.viewport.camera.fly(direction, io.DeltaTime, speed);
 }
 
-/// Looks along the axis of a clicked ball; once more, from the other side.
+/// Looks from the end of an axis whose ball is clicked; once more, from the other side.
 bool look_along_axis(Context& context, ImVec2 mouse) {
-    if (!context.view.show_axes) return false;
-    for (int axis = 0; axis < 3; ++axis) {
-        const ImVec2 ball = axis_ball(context, axis);
-        if (std::hypot(ball.x - mouse.x, ball.y - mouse.y) > context.em * AxisBallEm) continue;
-        Vec3 from;
-        from[axis] = 1;
-        auto& camera = context.state.viewport.camera;
-        const bool there = dot(camera.camera().forward(), from) < -0.99;
-        camera.look_from(there ? -from : from);
-        return true;
-    }
-    return false;
+    const int end = context.view.show_axes ? axis_end_at(context, mouse) : -1;
+    if (end < 0) return false;
+    const Vec3 from = axis_direction(end);
+    auto& camera = context.state.viewport.camera;
+    const bool there = dot(camera.camera().forward(), from) < -0.99;
+    camera.look_from(there ? -from : from);
+    return true;
 }
 
 void release(Context& context, ImVec2 mouse) {
@@ -176,7 +172,7 @@ void update_camera(Context& context, bool keys_free) {
         state.camera_known = false;
         return;
     }
-    state.camera.set_home(context.model.orbit, context.model.framing);
+    state.camera.set_home(context.model.orbit, state.labelled_home.value_or(context.model.home));
     state.camera.set_size(static_cast<int>(std::lround(state.high.x - state.low.x)),
                           static_cast<int>(std::lround(state.high.y - state.low.y)));
     take_over(context);

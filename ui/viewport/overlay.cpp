@@ -18,7 +18,9 @@ constexpr std::array<ImU32, 3> AxisColours{IM_COL32(226, 104, 98, 255), IM_COL32
                                            IM_COL32(98, 150, 232, 255)};
 constexpr double FrustumShare = 0.07;  // length of a camera's drawn frustum, of the scene's radius
 constexpr double RateSeconds = 1;      // the frame rate is shown this long after the last move
-constexpr float AxesEm = 1.9f;
+constexpr float AxesEm = 2.05f;        // from the middle of the axes to a ball
+constexpr float AxisBallEm = 0.47f;    // radius of a ball
+constexpr float FarEndShare = 0.8f;    // of that radius, where an axis ends
 constexpr float PickRadiusEm = 0.8f;
 
 double near_of(const Context& context) { return std::max(1e-9, context.model.orbit.radius * 1e-3); }
@@ -52,26 +54,55 @@ ImVec2 axes_centre(const Context& context) {
     return {state.low.x + away, (covered ? std::min(state.high.y, state.foot_low.y) : state.high.y) - away};
 }
 
-/// The world's axes in the lower left corner, turned as the camera is.
+void shaded_text(Context& context, ImDrawList* list, ImVec2 at, const std::string& text,
+                 ImU32 colour = palette::Text) {
+    const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+    const float pad = context.em * 0.4f;
+    list->AddRectFilled({at.x, at.y}, {at.x + size.x + 2 * pad, at.y + size.y + pad}, palette::Shade,
+                        context.em * 0.2f);
+    list->AddText({at.x + pad, at.y + pad * 0.5f}, colour, text.c_str());
+}
+
+/// "x", "-x" and so on.
+std::string axis_name(int end) { return fmt::format("{}{}", end < 3 ? "" : "-", "xyz"[end % 3]); }
+
+/// How far an end points away from the eye, -1 to 1.
+double axis_depth(const Context& context, int end) {
+    return (context.model.camera.rotation * axis_direction(end)).z;
+}
+
+/// An end of a world axis: a ball with its letter, or a ring at the negative one.
+void draw_axis_end(Context& context, ImDrawList* list, int end, bool under_mouse) {
+    const ImVec2 centre = axes_centre(context), at = axis_ball(context, end);
+    const bool positive = end<3, behind = axis_depth(context, end)> 0.2;
+    const ImU32 colour = with_alpha(AxisColours[static_cast<std::size_t>(end % 3)], behind ? 0.55f : 1);
+    const float line = std::max(1.5f, context.em * 0.13f);
+    const float r = context.em * AxisBallEm * (positive ? 1.0f : FarEndShare);
+    if (positive) list->AddLine(centre, at, colour, line);
+    list->AddCircleFilled(at, r, positive ? colour : with_alpha(palette::Window, 0.75f));
+    if (!positive) list->AddCircle(at, r, colour, 0, line);
+    if (under_mouse) list->AddCircle(at, r + line, palette::Text, 0, line);
+    note_rect(context, fmt::format("viewport.axis.{}", axis_name(end)), {at.x - r, at.y - r},
+              {at.x + r, at.y + r});
+    if (!positive && !under_mouse) return;
+    const std::string name = axis_name(end);
+    const ImVec2 text = ImGui::CalcTextSize(name.c_str());
+    list->AddText({at.x - text.x * 0.5f, at.y - text.y * 0.54f},
+                  positive ? IM_COL32(20, 20, 22, 255) : palette::Text, name.c_str());
+}
+
+/// The world's axes in the lower left corner, turned as the camera is. Each end is a button.
 void draw_axes(Context& context, ImDrawList* list) {
-    const ImVec2 centre = axes_centre(context);
-    std::array<int, 3> order{0, 1, 2};
-    const Mat3& rotation = context.model.camera.rotation;
-    std::sort(order.begin(), order.end(),
-              [&](int a, int b) { return rotation(2, a) > rotation(2, b); });  // far ones first
-    for (const int axis : order) {
-        const ImVec2 end = axis_ball(context, axis);
-        const ImU32 colour =
-            with_alpha(AxisColours[static_cast<std::size_t>(axis)], rotation(2, axis) > 0.2 ? 0.55f : 1);
-        list->AddLine(centre, end, colour, std::max(1.5f, context.em * 0.13f));
-        list->AddCircleFilled(end, context.em * 0.46f, colour);
-        const float r = context.em * 0.46f;
-        note_rect(context, fmt::format("viewport.axis.{}", "xyz"[axis]), {end.x - r, end.y - r},
-                  {end.x + r, end.y + r});
-        const char letter[2] = {"xyz"[axis], 0};
-        const ImVec2 text = ImGui::CalcTextSize(letter);
-        list->AddText({end.x - text.x * 0.5f, end.y - text.y * 0.54f}, IM_COL32(20, 20, 22, 255), letter);
-    }
+    std::array<int, AxisEnds> order{0, 1, 2, 3, 4, 5};
+    std::sort(order.begin(), order.end(), [&](int a, int b) {
+        return axis_depth(context, a) > axis_depth(context, b);  // far ones first
+    });
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const int chosen = axis_end_at(context, mouse);
+    for (const int end : order) draw_axis_end(context, list, end, end == chosen);
+    if (chosen < 0 || context.state.viewport.stroke || context.state.viewport.drag_button >= 0) return;
+    shaded_text(context, list, {mouse.x + context.em, mouse.y - context.em * 2},
+                fmt::format("Look from {}", axis_name(chosen)));
 }
 
 void draw_bounds(Context& context, ImDrawList* list) {
@@ -117,15 +148,6 @@ void draw_views(Context& context, ImDrawList* list) {
     for (std::size_t index = 0; index < views.size(); ++index)
         draw_view(context, list, views[index],
                   static_cast<int>(index) == context.state.viewport.selected_view);
-}
-
-void shaded_text(Context& context, ImDrawList* list, ImVec2 at, const std::string& text,
-                 ImU32 colour = palette::Text) {
-    const ImVec2 size = ImGui::CalcTextSize(text.c_str());
-    const float pad = context.em * 0.4f;
-    list->AddRectFilled({at.x, at.y}, {at.x + size.x + 2 * pad, at.y + size.y + pad}, palette::Shade,
-                        context.em * 0.2f);
-    list->AddText({at.x + pad, at.y + pad * 0.5f}, colour, text.c_str());
 }
 
 /// Number of shown splats.
@@ -216,12 +238,27 @@ ImVec2 to_screen(const Context& context, double x_px, double y_px) {
         state.low.y + static_cast<float>(y_px / std::max(1, camera.height)) * (state.high.y - state.low.y)};
 }
 
-ImVec2 axis_ball(const Context& context, int axis) {
-    const Mat3& rotation = context.model.camera.rotation;
+Vec3 axis_direction(int end) {
+    Vec3 direction;
+    direction[end % 3] = end < 3 ? 1 : -1;
+    return direction;
+}
+
+ImVec2 axis_ball(const Context& context, int end) {
+    const Vec3 seen = context.model.camera.rotation * axis_direction(end);
     const ImVec2 centre = axes_centre(context);
     const float size = context.em * AxesEm;
-    return {centre.x + static_cast<float>(rotation(0, axis)) * size,
-            centre.y + static_cast<float>(rotation(1, axis)) * size};
+    return {centre.x + static_cast<float>(seen.x) * size, centre.y + static_cast<float>(seen.y) * size};
+}
+
+int axis_end_at(const Context& context, ImVec2 point) {
+    int nearest = -1;
+    for (int end = 0; end < AxisEnds; ++end) {
+        const ImVec2 ball = axis_ball(context, end);
+        if (std::hypot(ball.x - point.x, ball.y - point.y) > context.em * AxisBallEm * 1.1f) continue;
+        if (nearest < 0 || axis_depth(context, end) < axis_depth(context, nearest)) nearest = end;
+    }
+    return nearest;
 }
 
 int view_at(const Context& context, ImVec2 point) {

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/io/formats/scene_formats.h"
 #include "ui/commands/guarded.h"
@@ -10,11 +11,13 @@
 #include "ui/viewport/viewport.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/icons.h"
+#include "ui/widgets/sheet.h"
 
 namespace gse::ui {
 namespace {
 
 constexpr std::size_t MostRecent = 8;
+constexpr float RecentEm = 3;  // height of a recent file's row
 
 /// An edit of the sample of each kind.
 struct Example {
@@ -35,25 +38,38 @@ void draw_recoverable(Context& context) {
     }
 }
 
+/// Picture of a recent file, its name and its folder; a click opens it.
+void draw_recent_file(Context& context, std::size_t index) {
+    const auto& recent = context.model.recent[index];
+    const auto& pictures = context.model.recent_pictures;
+    const auto picture = index < pictures.size() ? pictures[index] : nullptr;
+    const auto path = path_of(recent);
+    const float height = context.em * RecentEm, width = std::round(height * 4 / 3);
+    ImGui::PushID(static_cast<int>(index));
+    const ImVec2 low = ImGui::GetCursorScreenPos();
+    if (ImGui::Selectable("##recent", false, 0, {0, height})) open_path(context, recent);
+    note(context, fmt::format("start.recent.{}", index));
+    tooltip(recent);
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const ImVec2 high(low.x + width, low.y + height);
+    list->AddRectFilled(low, high, palette::Sunken, context.em * 0.2f);
+    if (picture != nullptr) {
+        add_filling_picture(context, picture, low, high, context.em * 0.2f);
+        note_rect(context, fmt::format("start.recent.picture.{}", index), low, high);
+    }
+    const float left = high.x + context.em * 0.6f, room = ImGui::GetItemRectMax().x - left;
+    list->AddText({left, low.y + height * 0.5f - context.em * 1.1f}, palette::Text,
+                  shortened(utf8_of(path.filename()), room).c_str());
+    list->AddText({left, low.y + height * 0.5f + context.em * 0.1f}, palette::TextDim,
+                  shortened(utf8_of(path.parent_path()), room).c_str());
+    ImGui::PopID();
+}
+
 void draw_recent(Context& context) {
     if (context.model.recent.empty()) return;
     heading(context, "Recent");
     const std::size_t count = std::min(MostRecent, context.model.recent.size());
-    for (std::size_t index = 0; index < count; ++index) {
-        const auto& recent = context.model.recent[index];
-        const auto path = path_of(recent);
-        ImGui::PushID(static_cast<int>(index));
-        if (ImGui::Selectable(std::string(Shown(utf8_of(path.filename())).text()).c_str()))
-            open_path(context, recent);
-        note(context, fmt::format("start.recent.{}", index));
-        tooltip(recent);
-        ImGui::SameLine(context.em * 13);
-        ImGui::PushStyleColor(ImGuiCol_Text, palette::TextDim);
-        ImGui::TextUnformatted(
-            shortened(utf8_of(path.parent_path()), ImGui::GetContentRegionAvail().x).c_str());
-        ImGui::PopStyleColor();
-        ImGui::PopID();
-    }
+    for (std::size_t index = 0; index < count; ++index) draw_recent_file(context, index);
 }
 
 /// Sentences to begin with. They open the sample and fill the panel Prompt.
@@ -92,7 +108,7 @@ void draw_loading(Context& context) {
 void draw_start_page(Context& context) {
     const ImVec2 space = ImGui::GetContentRegionAvail();
     const float width = std::min(context.em * 32, space.x - context.em * 2);
-    const float lines = 15.0f + static_cast<float>(std::min(MostRecent, context.model.recent.size())) +
+    const float lines = 15.0f + 2.0f * static_cast<float>(std::min(MostRecent, context.model.recent.size())) +
                         7.0f * static_cast<float>(context.model.recoverable.size());
     const float top = std::max(context.em, (space.y - lines * ImGui::GetTextLineHeightWithSpacing()) * 0.4f);
     ImGui::SetCursorPos({std::max(0.0f, (space.x - width) * 0.5f), top});

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/scene/label_ops.h"
 #include "ui/commands/guarded.h"
 #include "ui/state.h"
 #include "ui/viewport/viewport.h"
@@ -88,22 +87,12 @@ void end_stroke(Context& context, ImVec2 mouse) {
     context.emit(command::Select{region, state.stroke_operation, true});
 }
 
-/// Base colour of the splats at a point, for "Select by property". The nearest one within a few pixels.
-void pick_colour(Context& context, ImVec2 mouse) {
-    constexpr float first_px = 2, most_px = 60;
-    const auto& set = context.document().current;
-    const auto depth = context.model.viewport_depth;  // stays alive for the call
-    PickOptions options;
-    options.depth = depth.get();
-    ScreenArea area;
-    area.circles.push_back(to_texture(context, {mouse.x, mouse.y}));
-    for (area.radius_px = first_px * texture_scale(context); area.radius_px < most_px; area.radius_px *= 2) {
-        const auto rows = rows_in_area(set, context.model.camera, area, options);
-        if (std::find(rows.begin(), rows.end(), std::uint8_t{1}) == rows.end()) continue;
-        auto& choice = context.state.pick.choices[static_cast<std::size_t>(localize::RowProperty::Colour)];
-        choice.colour = localize::mean_colour(set, rows);
-        return context.emit(command::PickRows{choice});
-    }
+/// Asks for the colour that is seen there. False where nothing is to be seen.
+bool pick_colour(Context& context, ImVec2 mouse) {
+    if (context.model.viewport_depth != nullptr && !(depth_at(context, mouse) > 0)) return false;
+    const auto at = to_texture(context, {mouse.x, mouse.y});
+    context.emit(command::PickColour{static_cast<int>(at[0]), static_cast<int>(at[1])});
+    return true;
 }
 
 /// True while the handle of the wipe is dragged or would be by a press.
@@ -193,10 +182,10 @@ bool use_tool(Context& context, bool hovered) {
         return false;
     if (state.tool == Tool::PickColour) {
         if (!hovered || !ImGui::IsMouseClicked(0)) return true;
-        pick_colour(context, mouse);
-        state.tool = Tool::Orbit;
+        if (pick_colour(context, mouse)) state.tool = Tool::Orbit;
         return true;
     }
+    if (!state.stroke && context.view.show_axes && axis_end_at(context, mouse) >= 0) return false;
     if (!state.stroke && hovered && ImGui::IsMouseClicked(0)) begin_stroke(context, mouse);
     if (!state.stroke) return true;
     if (!ImGui::IsMouseDown(0)) {

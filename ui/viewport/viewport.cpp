@@ -124,9 +124,22 @@ void draw_picture(Context& context, ImVec2 size) {
     list->PopClipRect();
 }
 
+/// While a colour is picked, no tint lies over the colours.
+void bare_colours(Context& context) {
+    auto& state = context.state.viewport;
+    const bool picks = state.tool == Tool::PickColour;
+    if (picks == state.tint_before.has_value()) return;
+    const bool before = state.tint_before.value_or(context.view.tint_labels);
+    if (picks) state.tint_before = before;
+    else state.tint_before.reset();
+    context.view.tint_labels = before && !picks;
+    context.view_changed = true;
+}
+
 }  // namespace
 
 void draw_viewport(Context& context) {
+    bare_colours(context);
     auto& state = context.state.viewport;
     draw_header(context);
     const ImVec2 space = ImGui::GetContentRegionAvail();

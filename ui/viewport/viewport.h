@@ -48,8 +48,13 @@ void draw_recovery(Context& context, const char* prefix, std::size_t index, bool
 double depth_at(const Context& context, ImVec2 point);
 /// Place in the window of a pixel of the shown camera.
 ImVec2 to_screen(const Context& context, double x_px, double y_px);
-/// Place of the ball of a world axis (0, 1, 2) in the corner.
-ImVec2 axis_ball(const Context& context, int axis);
+/// Ends of the world's axes in the corner: x, y, z, -x, -y, -z.
+constexpr int AxisEnds = 6;
+/// Unit vector of an end, and the place of its ball in the window.
+Vec3 axis_direction(int end);
+ImVec2 axis_ball(const Context& context, int end);
+/// End whose ball lies under the point, the nearest to the eye; -1 = none.
+int axis_end_at(const Context& context, ImVec2 point);
 /// Stored view whose drawing lies under the point, -1 = none.
 int view_at(const Context& context, ImVec2 point);
 

@@ -10,11 +10,13 @@
 
 #include "ui/glyphs.h"
 #include "ui/keys/keyboard.h"
+#include "ui/widgets/tooltips.h"
 
 namespace gse::ui {
 namespace {
 
 constexpr float TooltipDelay = 0.45f, TooltipForgets = 0.7f;  // seconds
+constexpr float TooltipEm = 24;                               // widest line
 constexpr float LabelShare = 0.42f;                           // of a row, for its label
 
 void push_look(Look look) {
@@ -119,9 +121,11 @@ void tooltip(std::string_view text) {
     const bool rested = now - storage->GetFloat(seen_id, -10) < TooltipForgets;
     if (!rested) storage->SetFloat(since_id, now);
     storage->SetFloat(seen_id, now);
-    if (now - storage->GetFloat(since_id, now) < TooltipDelay) return;
-    ImGui::BeginTooltip();
-    ImGui::PushTextWrapPos(ImGui::GetFontSize() * 24);
+    if (now - storage->GetFloat(since_id, now) < TooltipDelay) return await_tooltip();
+    const float width = ImGui::GetFontSize() * TooltipEm;
+    const Shown shown(text);
+    begin_tooltip(ImGui::CalcTextSize(shown.begin(), shown.end(), false, width));
+    ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + width);
     put_text(text);
     ImGui::PopTextWrapPos();
     ImGui::EndTooltip();

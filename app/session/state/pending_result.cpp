@@ -53,8 +53,11 @@ void fill_pending(EditJob& job, const nlohmann::ordered_json& report, PendingRes
     pending.changed_outside_label = result.changed_outside_label;
     pending.steps = edit::loop_steps(job.recipe().request, job.located().mode);
     if (result.stopped) pending.stopped_at = result.iterations;
-    constexpr int thumbnail_px = 96;
-    const Camera camera = orbit_camera(job.film_orbit(), job.film_front() + 0.35, thumbnail_px, thumbnail_px);
+    constexpr int ThumbnailPx = 288;  // large enough to judge
+    constexpr double Nearer = 0.8;    // of the film's distance: what was changed fills the picture
+    OrbitParameters orbit = job.film_orbit();
+    orbit.radius *= Nearer;
+    const Camera camera = orbit_camera(orbit, job.film_front() + 0.35, ThumbnailPx, ThumbnailPx);
     pending.thumbnail = std::make_shared<const Image>(
         job.painter().paint(job.drawn_result().spans(), camera, job.plan().settings).colour);
 }

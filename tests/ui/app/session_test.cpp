@@ -526,6 +526,7 @@ DOCTEST_TEST_CASE("pictures, films, scenes and camera paths are written; mistake
     session.app.run(command::OpenSample{});
     DOCTEST_REQUIRE(session.until([&] { return session.app.model().document != nullptr; }));
     auto exports = session.app.model().exports;
+    exports.as_shown = false;
     exports.width = 96;
     exports.height = 64;
     exports.frames = 4;

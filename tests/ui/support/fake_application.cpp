@@ -136,6 +136,10 @@ void FakeApplication::make_scene() {
     const auto synth = make_synth();
     model_.statistics = compute_statistics(synth.scene.gaussians);
     model_.framing = framing_bounds(synth.scene.gaussians);
+    std::vector<std::uint8_t> standing(synth.parts.size());
+    std::transform(synth.parts.begin(), synth.parts.end(), standing.begin(),
+                   [](synth::Part part) { return part == synth::Part::Ground ? 0 : 1; });
+    model_.home = framing_bounds(synth.scene.gaussians, standing);
     model_.statistics.invisible_rows = 12;
     model_.orbit = fit_orbit(model_.statistics, synth.scene.info.up);
     auto views = orbit_views(model_.orbit, ViewCount, ViewSide, ViewSide);

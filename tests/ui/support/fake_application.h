@@ -53,6 +53,9 @@ private:
     void take(const ui::command::AdjustColours& one);
     void take(const ui::command::PickRows& one);
     void take(const ui::command::DropPicked& one);
+    void take(const ui::command::PickColour& one);
+    void take(const ui::command::DrawView& one);
+    void take(const ui::command::AddView& one);
     void take(const ui::command::SetCamera& one);
     void take(const ui::command::SetViewSettings& one);
     void take(const ui::command::SetViewportSize& one);

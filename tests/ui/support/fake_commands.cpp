@@ -92,6 +92,9 @@ template <class C> std::string fields_of(const C& wanted) {
         [&](const command::CompareWith& one) { return text(one.position); },
         [&](const command::LookThrough& one) { return text(one.view); },
         [&](const command::DeleteView& one) { return text(one.view); },
+        [&](const command::RenameView& one) { return two(one.view, one.name); },
+        [&](const command::DrawView& one) { return text(one.view); },
+        [&](const command::PickColour& one) { return two(one.x, one.y); },
         [&](const command::SetViewportSize& one) { return two(one.width, one.height); },
         [&](const command::ChooseModel& one) { return text(one.path); },
         [&](const command::AddLora& one) { return text(one.text); },
@@ -178,6 +181,26 @@ void FakeApplication::take(const command::PickRows& one) {
 }
 
 void FakeApplication::take(const command::DropPicked&) { model_.picked = {}; }
+
+void FakeApplication::take(const command::PickColour& one) {
+    const auto& picture = viewport_picture_;
+    model_.seen_colour.number += 1;
+    if (picture == nullptr || one.x >= picture->width || one.y >= picture->height) return;
+    for (int c = 0; c < 3; ++c)
+        model_.seen_colour.colour[static_cast<std::size_t>(c)] = picture->at(one.x, one.y, c);
+}
+
+void FakeApplication::take(const command::DrawView& one) {
+    model_.view_pictures.resize(document_->state().views.size());
+    if (one.view >= model_.view_pictures.size() || model_.attention.empty()) return;
+    model_.view_pictures[one.view] = model_.attention[one.view % model_.attention.size()].render;
+}
+
+void FakeApplication::take(const command::AddView&) {
+    auto state = document_->state();
+    state.views.push_back({fmt::format("view {}", state.views.size() + 1), model_.camera, false});
+    document_->apply("Add view", state);
+}
 
 void FakeApplication::take(const command::SetCamera& one) { model_.camera = one.camera; }
 

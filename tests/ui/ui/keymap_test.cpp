@@ -44,6 +44,25 @@ DOCTEST_TEST_CASE("a chosen key is taken from the command that had it, and comes
         if (line.command != NoShortcut) DOCTEST_CHECK(again.of(line.command) == map.of(line.command));
 }
 
+DOCTEST_TEST_CASE("keys that were chosen survive a change of the convention, there and back") {
+    Keymap map(KeyPreset::Splat);
+    map.bind(Shortcut::Lasso, *parse_chord("J"));
+    map.bind(Shortcut::CutOut, *parse_chord("K"));  // as Blender has it anyway
+    map.bind(Shortcut::Wipe, *parse_chord("B"));    // Blender's box
+    const Keymap blender = Keymap::parse(map.in(KeyPreset::Blender).text());
+    DOCTEST_CHECK(blender.preset() == KeyPreset::Blender);
+    DOCTEST_CHECK(chord_text(blender.of(Shortcut::Lasso)) == "J");
+    DOCTEST_CHECK(chord_text(blender.of(Shortcut::Wipe)) == "B");
+    DOCTEST_CHECK(chord_text(blender.of(Shortcut::Brush)) == "C");  // not chosen: the convention's
+    DOCTEST_CHECK(blender.of(Shortcut::Rectangle) == Chord{});      // its key was chosen for another
+    Keymap back = Keymap::parse(blender.in(KeyPreset::Splat).text());
+    for (const auto command : {Shortcut::Lasso, Shortcut::CutOut, Shortcut::Wipe})
+        DOCTEST_CHECK(back.of(command) == map.of(command));
+    DOCTEST_CHECK(back.of(Shortcut::Rectangle) == Keymap().of(Shortcut::Rectangle));
+    back.reset(Shortcut::Lasso);
+    DOCTEST_CHECK(chord_text(back.in(KeyPreset::Blender).of(Shortcut::Lasso)) == "L");
+}
+
 DOCTEST_TEST_CASE("text that is no keymap changes nothing; keys with a fixed meaning are refused by name") {
     for (const char* text :
          {"", "{", "[]", "{\"preset\":7}",

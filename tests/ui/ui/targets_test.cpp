@@ -146,6 +146,8 @@ DOCTEST_TEST_CASE("what the job has asked of the networks stands beside its time
     Harness harness({Wide, High, 1, Situation::ResultWaiting, false});
     harness.shell.show(ui::PanelId::Progress);
     harness.frame(3);
+    harness.click("progress.cost");
+    harness.frame(2);
     DOCTEST_CHECK(harness.find("progress.networks") != nullptr);
 }
 

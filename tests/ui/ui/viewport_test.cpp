@@ -142,8 +142,9 @@ DOCTEST_TEST_CASE("keys fly, frame and go home") {
                   harness.application.model().orbit.radius);
     harness.key(ui::key::Home);
     harness.frame(90);
+    const auto& state = harness.application.document().state();
     DOCTEST_CHECK(length(harness.shell.state().viewport.camera.pose().pivot -
-                         harness.application.model().framing.centre()) < 1e-6);
+                         framing_bounds(state.current, *state.labels.at(0).bits).centre()) < 1e-6);
     // With Ctrl they are commands, not flight.
     before = camera.centre();
     harness.modifiers(false, true, false);
@@ -394,6 +395,46 @@ DOCTEST_TEST_CASE("a click on an axis looks along it, a second one from the othe
     }
 }
 
+DOCTEST_TEST_CASE("each end of an axis is a button, with a tool in hand, too") {
+    Harness harness({1280, 720, 1, Situation::Located, false});
+    const auto& camera = harness.application.model().camera;
+    for (const auto& [name, axis] :
+         {std::pair{"viewport.axis.-z", Vec3{0, 0, -1}}, std::pair{"viewport.axis.-x", Vec3{-1, 0, 0}},
+          std::pair{"viewport.axis.-y", Vec3{0, -1, 0}}, std::pair{"viewport.axis.x", Vec3{1, 0, 0}}}) {
+        harness.click(name);
+        harness.frame(90);
+        DOCTEST_CAPTURE(name);
+        DOCTEST_CHECK(dot(camera.forward(), axis) < -0.99);
+    }
+    harness.key('B');
+    harness.application.calls.clear();
+    harness.click("viewport.axis.z");
+    harness.frame(90);
+    DOCTEST_CHECK(dot(camera.forward(), Vec3{0, 0, 1}) < -0.99);
+    DOCTEST_CHECK(!harness.application.asked("select"));
+}
+
+DOCTEST_TEST_CASE("Home frames what is labelled, else what stands on the ground, never the lawn") {
+    Harness harness({1280, 720, 1, Situation::Located, false});
+    auto& model = harness.application.model();
+    const auto& pose = harness.shell.state().viewport.camera.pose();
+    harness.key(key::Home);
+    harness.frame(90);
+    const auto& state = harness.application.document().state();
+    const Bounds labelled = framing_bounds(state.current, *state.labels.at(0).bits);
+    DOCTEST_CHECK(length(pose.pivot - labelled.centre()) < 1e-6);
+    const double near = pose.distance;
+    auto unlabelled = state;
+    unlabelled.active_label = 1;  // empty
+    harness.application.document().apply("Choose a label", unlabelled);
+    model.labelled = 0;
+    harness.key(key::Home);
+    harness.frame(90);
+    DOCTEST_CHECK(length(pose.pivot - model.home.centre()) < 1e-6);
+    DOCTEST_CHECK(pose.distance == doctest::Approx(near).epsilon(0.3));  // the bear, with its hat
+    DOCTEST_CHECK(model.home.radius() < 0.7 * model.framing.radius());
+}
+
 DOCTEST_TEST_CASE("select by property takes a colour from the picture") {
     Harness harness({1280, 1440, 1, Situation::Located, true});
     harness.shell.show(ui::PanelId::Labels);
@@ -408,6 +449,7 @@ DOCTEST_TEST_CASE("select by property takes a colour from the picture") {
         harness.click("pick.colour.drop");
         harness.frame(2);
         DOCTEST_REQUIRE(harness.shell.state().viewport.tool == ui::Tool::PickColour);
+        DOCTEST_CHECK(!harness.application.model().view.tint_labels);  // what is seen is what is taken
         harness.application.calls.clear();
         const auto at = in_viewport(harness, x, y);
         harness.drag(at, at, 0);
@@ -417,13 +459,25 @@ DOCTEST_TEST_CASE("select by property takes a colour from the picture") {
         const auto& colour = harness.shell.state()
                                  .pick.choices[static_cast<std::size_t>(localize::RowProperty::Colour)]
                                  .colour;
+        DOCTEST_CHECK(harness.application.model().view.tint_labels);
+        const auto rect = harness.rect("viewport");
+        const Image* shown = harness.application.picture(harness.application.model().viewport);
+        DOCTEST_REQUIRE(shown != nullptr);
+        const int column = static_cast<int>(at.x - rect.x), row = static_cast<int>(at.y - rect.y);
         double sum = 0;
+        for (std::size_t c = 0; c < 3; ++c)
+            DOCTEST_CHECK(colour[c] == shown->at(column, row, static_cast<int>(c)));
         for (std::size_t c = 0; c < 3; ++c) sum += std::abs(static_cast<double>(colour[c]) - mean[c]);
         return sum;
     };
     const Vec3 thing = pixel(harness.application.model().camera,
                              framing_bounds(state.current, *state.labels.at(0).bits).centre());
-    DOCTEST_CHECK(away(static_cast<float>(thing.x), static_cast<float>(thing.y)) < away(0.5f, 0.8f));
+    const auto& depth = *harness.application.model().viewport_depth;
+    int lawn = depth.height - 1;  // the lowest row of the middle column that shows the ground
+    while (lawn > 0 && depth.at(depth.width / 2, lawn, 0) <= 0) --lawn;
+    const float ground = (static_cast<float>(lawn) - 10) / static_cast<float>(depth.height);
+    const double of_lawn = away(0.5f, ground);
+    DOCTEST_CHECK(away(static_cast<float>(thing.x), static_cast<float>(thing.y)) != of_lawn);
     harness.click("pick.colour.drop");
     harness.frame(2);
     harness.click("pick.property.Opacity");  // its button is gone

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "engine/edit/placement/ground_rows.h"
+#include "engine/edit/placement/thing_bounds.h"
+#include "engine/scene/framing.h"
 #include "tests/unit/edit/box_rows.h"
 
 namespace ground_rows_test {
@@ -90,6 +92,28 @@ DOCTEST_TEST_CASE(
     test::BoxRows nothing;
     nothing.box(-1, 1, 0, 1, -1, 1, 10, false);
     DOCTEST_CHECK(edit::lowest_layer(nothing.set(), nothing.bits, Up) == nothing.bits);
+}
+
+DOCTEST_TEST_CASE(
+    "a camera's home frames what stands on the ground; a scene without either is framed whole") {
+    constexpr double Room = 0.25;  // world units around the thing: its splats and the trimming
+    test::BoxRows lawn;
+    lawn.box(-4, 4, 0, 0.02, -4, 4, 8000, false, Green).box(1, 1.8, 0.05, 1.2, -0.4, 0.4, 2000, false, Red);
+    const Bounds thing = edit::thing_bounds(lawn.set(), Up);
+    DOCTEST_CHECK(thing.low.x > 1 - Room);
+    DOCTEST_CHECK(thing.high.x < 1.8 + Room);
+    DOCTEST_CHECK(thing.high.z < 0.4 + Room);
+    const auto same = [](const test::BoxRows& rows) {
+        const Bounds whole = framing_bounds(rows.set()), found = edit::thing_bounds(rows.set(), Up);
+        return length(whole.low - found.low) == 0 && length(whole.high - found.high) == 0;
+    };
+    test::BoxRows alone, flat, nothing;
+    alone.box(-0.5, 0.5, 0, 3, -0.5, 0.5, 1000, false, Red);
+    flat.box(-2, 2, 0, 0.02, -2, 2, 3000, false, Green);
+    nothing.box(-1, 1, 0, 1, -1, 1, 0, false);
+    DOCTEST_CHECK(same(alone));
+    DOCTEST_CHECK(same(flat));
+    DOCTEST_CHECK(same(nothing));
 }
 
 }  // namespace ground_rows_test

@@ -516,9 +516,22 @@ DOCTEST_TEST_CASE(
     const auto hat = refused(bear("bear", "a bear wearing a sombrero", "sombrero"), true);
     DOCTEST_CHECK_MESSAGE(hat.find("\"sombrero\"") != std::string::npos, hat);
     DOCTEST_CHECK(language::nearest_words("baer", known) == std::vector<std::string>{"bear"});
-    DOCTEST_CHECK(language::nearest_words("bears", known) == std::vector<std::string>{"bear", "pear"});
+    DOCTEST_CHECK(language::nearest_words("bears", known) == std::vector<std::string>{"bear"});
     DOCTEST_CHECK(language::nearest_words("hta", known) == std::vector<std::string>{"hat"});
     DOCTEST_CHECK(language::nearest_words("sign", known).empty());
+    // What means something of its own is not replaced by what looks like it.
+    const std::vector<std::string> looks{"beard", "brass", "car", "dog", "hat", "red", "vase", "flames"};
+    using Words = std::vector<std::string>;
+    DOCTEST_CHECK(language::nearest_words("bears", looks) == Words{"dog"});  // of its kind
+    DOCTEST_CHECK(language::nearest_words("cars", looks) == Words{"car"});
+    DOCTEST_CHECK(language::nearest_words("flame", looks) == Words{"flames"});
+    DOCTEST_CHECK(language::nearest_words("puppies", looks) == Words{"dog"});
+    DOCTEST_CHECK(language::nearest_words("automobile", looks) == Words{"car"});
+    DOCTEST_CHECK(language::nearest_words("sombrero", looks) == Words{"hat"});
+    DOCTEST_CHECK(language::nearest_words("crimson", looks) == Words{"red"});
+    DOCTEST_CHECK(language::nearest_words("vaze", looks) == Words{"vase"});
+    for (const char* other : {"boards", "grasp", "brains", "rod iron", "base line", "ha"})
+        DOCTEST_CHECK_MESSAGE(language::nearest_words(other, looks).empty(), other);
     edit::require_known_words(edit::check(bear("sign", "a jade sign", "jade")), {}, {},
                               false);  // an open vocabulary
 }

@@ -93,4 +93,30 @@ DOCTEST_TEST_CASE("labels tint in proportion, and what is transparent keeps its 
     DOCTEST_CHECK(none[3] == doctest::Approx(0.8));
 }
 
+DOCTEST_TEST_CASE("the tint shows on things of every colour, its own hue among them") {
+    constexpr float LeastSeen = 0.25f;  // of a channel: an eye sees a tenth at once, on a textured thing too
+    preview::Display display;
+    display.mode = preview::Mode::Labels;
+    display.tint_strength = 0.6f;  // as the window has it
+    using Colour = std::array<float, 3>;
+    for (const Colour& colour :
+         {Colour{0.8f, 0.1f, 0.1f}, Colour{0.5f, 0.05f, 0.05f}, Colour{1.0f, 0.45f, 0.1f},
+          Colour{0.9f, 0.35f, 0.25f}, Colour{0.83f, 0.62f, 0.2f}, Colour{0.2f, 0.3f, 0.9f},
+          Colour{0.2f, 0.7f, 0.2f}, Colour{0.5f, 0.5f, 0.5f}, Colour{0.45f, 0.3f, 0.2f}}) {
+        preview::PixelSums sums{colour[0], colour[1], colour[2], 1, 0, 0};
+        const auto plain = preview::resolve_pixel(sums, display, 1);
+        sums.value = 1;
+        const auto tinted = preview::resolve_pixel(sums, display, 1);
+        float change = 0, before = 0, after = 0;
+        for (std::size_t k = 0; k < 3; ++k) change = std::max(change, std::abs(tinted[k] - plain[k]));
+        DOCTEST_CAPTURE(colour[0]);
+        DOCTEST_CAPTURE(colour[1]);
+        DOCTEST_CHECK(change > LeastSeen);
+        before = plain[0] - plain[2], after = tinted[0] - tinted[2];
+        // What is red or orange already turns cooler; anything else turns warmer.
+        const bool warm = colour[0] - colour[2] > 0.4f;
+        DOCTEST_CHECK((warm ? after < before : after > before));
+    }
+}
+
 }  // namespace packing_test

@@ -9,6 +9,7 @@
 #include "engine/edit/interfaces/interfaces.h"
 #include "engine/edit/interfaces/model_traits.h"
 #include "engine/edit/interfaces/view_targets.h"
+#include "engine/edit/request/request.h"
 #include "engine/language/sentence.h"
 
 namespace gse::edit {
