@@ -168,8 +168,11 @@ bool says_itself(const EditRequest& request, const plan::StepSentence& words) {
         language::words_of(words.mode == EditMode::Replace ? sentence.replacement() : guessed.target);
     const auto wanted = language::words_of(words.target);
     if (words.mode != EditMode::Modify) return !wanted.empty() && language::contains(told, wanted.back());
-    return std::all_of(wanted.begin(), wanted.end(),
-                       [&](const auto& word) { return language::contains(told, word); });
+    const auto all_in = [](const auto& some, const auto& list) {
+        return std::all_of(some.begin(), some.end(),
+                           [&](const auto& word) { return language::contains(list, word); });
+    };
+    return !told.empty() && (all_in(wanted, told) || all_in(told, wanted));  // "spotted" of "pink spotted"
 }
 
 EditRequest request_of(EditRequest request, const plan::StepSentence& words) {

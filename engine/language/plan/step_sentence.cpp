@@ -150,7 +150,7 @@ private:
         const Thing* thing = subject();
         if (thing == nullptr || several()) return std::nullopt;
         return StepSentence{thing->noun, phrase_of(step_.thing) + standing_on(scene_, thing->noun),
-                            joined(step_.thing.attributes, step_.thing.noun), EditMode::Replace};
+                            step_.thing.noun, EditMode::Replace};
     }
 
     /// Flames are a thing that models add; any other look is not drawn from a plan.
@@ -179,11 +179,10 @@ private:
         const auto place = place_at(anchor);
         if (!place) return std::nullopt;
         const auto& [noun, joint, behind] = *place;
-        const std::string what = joined(step_.thing.attributes, step_.thing.noun);
         return StepSentence{noun,
                             phrase_of(described_thing(noun)) + " " + joint + " " + phrase_of(step_.thing) +
                                 behind + standing_on(scene_, noun),
-                            what, EditMode::Add};
+                            step_.thing.noun, EditMode::Add};
     }
 
     struct Place {

@@ -15,7 +15,7 @@ namespace gse::language::plan {
 struct StepSentence {
     std::string source;  // the thing that the edit is about
     std::string prompt;
-    std::string target;
+    std::string target;  // the look, or the noun of the new thing
     EditMode mode = EditMode::Modify;
 };
 

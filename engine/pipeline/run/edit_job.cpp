@@ -248,6 +248,7 @@ void EditJob::take(Located located) {
 }
 
 language::plan::SceneWords EditJob::words_shown(language::plan::SceneWords assumed) {
+    workplace_->ask_anew(recipe_.attention);
     return scene_words_shown(*workplace_, recipe_, *views_, std::move(assumed), control_);
 }
 

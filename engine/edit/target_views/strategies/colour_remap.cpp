@@ -139,7 +139,7 @@ Rgb dyed_gold(const Rgb& pixel, const ColourRemap& dye) {
 
 }  // namespace
 
-std::optional<ColourRemap> dye_of(const language::EditSentence& sentence, EditMode mode,
+std::optional<ColourRemap> dye_of(const language::EditSentence& sentence, language::EditMode mode,
                                   const std::vector<std::string>& known) {
     if (!lists_dye(known, PlainBase)) return std::nullopt;
     const auto& words = sentence.sentence().words();
@@ -147,7 +147,7 @@ std::optional<ColourRemap> dye_of(const language::EditSentence& sentence, EditMo
     if (target >= words.size()) return std::nullopt;
     const std::size_t begin = phrase_begin(words, target);
     std::size_t end = target + language::words_of(sentence.target()).size();
-    if (mode != EditMode::Modify) --end;  // the thing itself, whatever it is called
+    if (mode != language::EditMode::Modify) --end;  // the thing itself, whatever it is called
     for (std::size_t i = begin; i < end; ++i)
         if (auto dye = lists_dye(known, words[i]) ? std::nullopt : patterned(words, begin, i, end))
             return dye;

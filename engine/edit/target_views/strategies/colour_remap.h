@@ -32,7 +32,7 @@ struct ColourRemap {
 /// Colour to lay over an edit: a colour name in its target, or right before it. The name is not in `known`,
 /// or "dark" or its like stands before it. Objects that are added or replace others may be named like a
 /// colour. None where there is none, or dye_words() is empty.
-std::optional<ColourRemap> dye_of(const language::EditSentence& sentence, EditMode mode,
+std::optional<ColourRemap> dye_of(const language::EditSentence& sentence, language::EditMode mode,
                                   const std::vector<std::string>& known);
 
 /// The sentence (words as language::normalised_prompt() has them) with the dye's words replaced by its base,
