@@ -10,6 +10,7 @@
 #include "engine/base/error.h"
 #include "engine/edit/request/checked_request.h"
 #include "engine/edit/request/edit_method.h"
+#include "engine/edit/request/sentence_plan.h"
 #include "engine/edit/request/vocabulary.h"
 #include "engine/language/news.h"
 #include "engine/language/sentence.h"
@@ -60,6 +61,8 @@ std::string problem_of(const edit::EditRequest& request, const SentenceGround& g
         return "Describe the scene after the edit in one sentence";
     if (request.source.empty() && request.target.empty())
         return "Type what in the scene the edit is about, or click the word of the sentence that is new";
+    if (const auto problem = edit::single_edit_problem(request, {ground.said, ground.read_target}))
+        return fmt::format("{}: {}", first_letter_up(problem->message()), problem->hint());
     std::optional<edit::CheckedRequest> valid;
     try {
         valid = edit::check(request, {ground.said, ground.read_target});
@@ -70,6 +73,7 @@ std::string problem_of(const edit::EditRequest& request, const SentenceGround& g
     }
     const auto& words = valid->sentence();
     facts.guessed_target = request.target.empty() ? words.target() : std::string();
+    if (valid->prompt() != request.prompt) facts.told = valid->words();
     if (!facts.source_known && !ground.labelled_by_hand)  // the words to use stand beside the source already
         return unknown_source(words.source(), ground);
     const auto drawn = edit::method_of(request).draws_views() ? ground.drawn : std::vector<std::string>{};
@@ -81,7 +85,7 @@ std::string problem_of(const edit::EditRequest& request, const SentenceGround& g
                                        !drawn.empty(), error.hint()));
     }
     for (const auto& word : {words.source(), words.target()})
-        if (unread(request.prompt, word, ground))
+        if (unread(valid->prompt(), word, ground))
             return fmt::format(
                 "The model stops reading before \"{}\": shorten the sentence, or move the word forward",
                 word);

@@ -29,7 +29,8 @@ struct SentenceFacts {
     std::string source_help;  // what to use instead of it
     bool source_known = true;
     std::string guessed_target;  // the target when none is chosen
-    std::string cut_at;          // first word that the text encoder does not read; empty = it reads all
+    edit::EditWords told;  // words that the model is told in place of the typed ones; prompt empty = none
+    std::string cut_at;    // first word that the text encoder does not read; empty = it reads all
 };
 
 SentenceFacts facts_of(const edit::EditRequest& request, const SentenceGround& ground);

@@ -66,6 +66,7 @@ void update_sentence(Context& context) {
     prompt.source_help = std::move(facts.source_help);
     prompt.source_known = facts.source_known;
     prompt.guessed_target = std::move(facts.guessed_target);
+    prompt.told = std::move(facts.told);
     prompt.cut_at = std::move(facts.cut_at);
 }
 

@@ -74,6 +74,7 @@ struct PromptState {
     double typed_at = -1e9;       // time of ImGui when a letter of a field was typed last
     std::string settings_filter;  // what "All settings" is searched for
     std::string guessed_target;
+    edit::EditWords told;     // SentenceFacts::told
     std::string cut_at;       // first word that the text encoder does not read
     bool seed_locked = true;  // open: every edit gets another seed
     bool advanced = false;

@@ -86,7 +86,7 @@ int run_command_line(const Program& program, int argc, char** argv) {
         const int code = app.exit(error);
         return code == 0 ? 0 : 2;
     }
-    if (!app.get_subcommands().empty()) return 0;
+    if (!app.get_subcommands().empty()) return context.exit_code;
     if (program.without_command != nullptr) {
         program.without_command();
         return 0;

@@ -6,6 +6,7 @@
 
 #include "app/cli/cli.h"
 #include "app/cli/dreambooth_options.h"
+#include "app/cli/edit_steps.h"
 #include "app/engine_names.h"
 #include "app/session/state/edit_project.h"
 #include "engine/base/error.h"
@@ -16,6 +17,7 @@
 #include "engine/base/staged_folder.h"
 #include "engine/edit/request/checked_request.h"
 #include "engine/edit/request/edit_method.h"
+#include "engine/language/words.h"
 #include "engine/pipeline/models/model_settings.h"
 #include "engine/pipeline/models/tuning_json.h"
 #include "engine/pipeline/report/edit_output.h"
@@ -26,6 +28,8 @@
 namespace gse::app {
 namespace {
 
+constexpr int SomeLeftOut = 3;  // exit code: steps of a sentence were not done, as --partly allows
+
 struct EditOptions {
     EditRecipe recipe;
     std::filesystem::path recipe_file, output;
@@ -34,6 +38,8 @@ struct EditOptions {
     bool json = false;
     bool gate = true;
     bool no_cache = false;
+    bool partly = false;
+    std::string scene_words;
     int variations = 1;
     CLI::App* command = nullptr;
 };
@@ -111,6 +117,10 @@ void complete(EditOptions& options) {
         options.output = std::filesystem::path("out") /
                          (options.demo ? "demo" : std::filesystem::path(options.recipe.job.scene).stem());
     apply_model(options);
+}
+
+/// Completes the words of a sentence that is one edit.
+void complete_words(EditOptions& options) {
     auto& request = options.recipe.request;
     const auto checked = edit::check(request);
     request = checked.plain();
@@ -186,15 +196,23 @@ void require_finished(const EditJob& job, const std::filesystem::path& output) {
         throw Error(ErrorCode::Cancelled, "the edit was stopped; what it had reached is saved", "", output);
 }
 
-/// One edit, into the folder. What a finished one came to goes onto the sheet, too.
-nlohmann::ordered_json edit_into(const std::filesystem::path& output, const EditRecipe& recipe,
-                                 const EditOptions& options, const CommandContext& context,
-                                 VariationSheet* sheet) {
-    refuse_own_folder(recipe.job.scene, output);
+std::shared_ptr<DiskCache> answers(const EditOptions& options) {
+    return options.no_cache ? nullptr : open_answer_cache(load_cache_settings());
+}
+
+/// Results that an edit joins: variations on one sheet, earlier steps in one project.
+struct Company {
+    VariationSheet* sheet = nullptr;
+    ProjectData* project = nullptr;
+    bool prints = true;
+};
+
+/// One edit, into the folder.
+nlohmann::ordered_json edit_into(const std::filesystem::path& output, EditJob& job,
+                                 const EditOptions& options, const Company& company) {
     StagedFolder folder(output, {"report.json",
                                  {"scene.ply", "source.ply", "recipe.json", "report.json", "evidence",
                                   "before_after.mp4", "before_after.png", "edit.gsep", "lora.safetensors"}});
-    EditJob job(recipe, context.job(), options.no_cache ? nullptr : open_answer_cache(load_cache_settings()));
     folder.require_space(bytes_of_results(job));
     job.locate();
     require_search(job, output);
@@ -207,20 +225,35 @@ nlohmann::ordered_json edit_into(const std::filesystem::path& output, const Edit
     write_edit(folder.path(), job);
     job.times().end();
     auto report = make_report(job);
-    if (job.result().iterations > 0)
-        write_file(
-            folder.path() / "edit.gsep",
-            ProjectWriter().pack(std::filesystem::absolute(output) / "edit.gsep", project_of(job, report)));
+    if (job.result().iterations > 0) {
+        ProjectData project = company.project != nullptr ? project_with(*company.project, job, report)
+                                                         : project_of(job, report);
+        write_file(folder.path() / "edit.gsep",
+                   ProjectWriter().pack(std::filesystem::absolute(output) / "edit.gsep", project));
+        if (company.project != nullptr) *company.project = std::move(project);
+    }
     add_optional_parts(report, folder.path(), job, gate);
     if (const auto& verdict = job.edited().verdict) report["gate"] = verdict_to_json(*verdict);
     report["files"] = folder.listing();
     write_file(folder.path() / "report.json", json_text(report, 1) + "\n");
     folder.commit();
     if (!options.json) print_summary(report, output);
-    else if (options.variations == 1) print_json(report, 2);
-    if (sheet != nullptr) sheet->add(job, output.filename().string());
+    else if (company.prints) print_json(report, 2);
+    if (company.sheet != nullptr) company.sheet->add(job, output.filename().string());
     require_finished(job, output);
     return report;
+}
+
+/// Writes the last scene, a project with all steps, and their reports.
+void write_last(const std::filesystem::path& output, const EditJob& job, const ProjectData& project,
+                nlohmann::ordered_json report) {
+    StagedFolder folder(output, {"report.json", {"scene.ply", "edit.gsep", "report.json"}});
+    write_edited_scene(folder.path() / "scene.ply", job);
+    write_file(folder.path() / "edit.gsep",
+               ProjectWriter().pack(std::filesystem::absolute(output) / "edit.gsep", project));
+    report["files"] = folder.listing();
+    write_file(folder.path() / "report.json", json_text(report, 1) + "\n");
+    folder.commit();
 }
 
 /// The edit from several seeds, each in a folder of its own, and one picture of them all. Seeds that cannot
@@ -238,8 +271,8 @@ void run_variations(const EditOptions& options, const CommandContext& context) {
     for (int i = 0; i < options.variations; ++i)
         refuse_own_folder(options.recipe.job.scene, folder(i));  // before the first is begun
     for (int i = 0; i < options.variations; ++i) try {
-            reports.push_back(
-                edit_into(folder(i), variation_of(options.recipe, i), options, context, &sheet));
+            EditJob job(variation_of(options.recipe, i), context.job(), answers(options));
+            reports.push_back(edit_into(folder(i), job, options, {&sheet, nullptr, false}));
         } catch (const Error& error) {
             if (error.code() == ErrorCode::Model && (i + 1 < options.variations || !sheet.empty())) {
                 log::warning("variation {}: {}", i + 1, error.what());
@@ -251,14 +284,81 @@ void run_variations(const EditOptions& options, const CommandContext& context) {
     finish();
 }
 
-void run_edit_command(EditOptions& options, const CommandContext& context) {
+/// The steps of a sentence one after the other, each in a folder of its own, and the last scene beside them.
+void run_steps(const EditOptions& options, const EditSteps& steps, CommandContext& context) {
+    const auto folder = [&](std::size_t i) { return options.output / std::to_string(i + 1); };
+    refuse_own_folder(options.recipe.job.scene, options.output);
+    for (std::size_t i = 0; i < steps.steps.size(); ++i)
+        refuse_own_folder(options.recipe.job.scene, folder(i));
+    std::unique_ptr<EditJob> job;
+    ProjectData project;
+    std::vector<std::string> said;
+    auto report = plan_to_json(steps);
+    std::size_t done = 0;
+    for (std::size_t i = 0; i < steps.steps.size(); ++i) {
+        const auto& step = steps.steps[i];
+        auto& entry = report["steps"][i];
+        entry["done"] = false;
+        if (!step.words) {
+            log::warning("step {} is left out ({}): {}", i + 1, edit::step_text(step.step),
+                         step.problem.reason);
+            continue;
+        }
+        if (!options.json) print("step {} of {}, {}\n", i + 1, steps.steps.size(), step.words->prompt);
+        auto recipe = recipe_of_step(options.recipe, step);
+        auto next = job == nullptr
+                        ? std::make_unique<EditJob>(std::move(recipe), context.job(), answers(options))
+                        : std::make_unique<EditJob>(std::move(recipe), next_input(*job, said), context.job());
+        try {
+            entry["report"] = edit_into(folder(i), *next, options, {nullptr, &project, false});
+        } catch (const Error& error) {
+            if (!options.partly || error.code() == ErrorCode::Cancelled) throw;
+            log::warning("step {} was not done: {}", i + 1, error.what());
+            entry["reason"] = error.message();
+            continue;
+        }
+        entry["done"] = true;
+        job = std::move(next);
+        ++done;
+        for (auto& word : language::words_of(step.words->target)) said.push_back(std::move(word));
+    }
+    report["done"] = done;
+    if (job != nullptr) write_last(options.output, *job, project, report);
+    if (options.json) print_json(report, 2);
+    if (done == steps.steps.size()) return;
+    log::warning("{} of {} steps were done; the report says why the others were not: {}", done,
+                 steps.steps.size(), (options.output / "report.json").string());
+    context.exit_code = SomeLeftOut;
+}
+
+void run_edit_command(EditOptions& options, CommandContext& context) {
     complete(options);
+    const auto steps = steps_of_sentence(options.recipe, options.scene_words, options.partly, context.job(),
+                                         answers(options));
+    if (steps.nothing_to_change) {
+        if (options.json) print_json(plan_to_json(steps), 2);
+        else print("Nothing to change: the sentence asks for nothing that is not there already.\n");
+        return;
+    }
+    if (steps.steps.size() > 1) {
+        if (options.variations > 1)
+            throw Error(ErrorCode::InvalidArgument,
+                        fmt::format("the sentence asks for {} changes, and variations are of one",
+                                    steps.steps.size()),
+                        "make the changes one after another");
+        return run_steps(options, steps, context);
+    }
+    if (!steps.steps.empty()) options.recipe = recipe_of_step(options.recipe, steps.steps.front());
+    complete_words(options);
     if (options.variations > 1) return run_variations(options, context);
-    edit_into(options.output, options.recipe, options, context, nullptr);
+    refuse_own_folder(options.recipe.job.scene, options.output);
+    EditJob job(options.recipe, context.job(), answers(options));
+    edit_into(options.output, job, options, {});
 }
 
 void run_locate_command(EditOptions& options, const CommandContext& context) {
     complete(options);
+    complete_words(options);
     refuse_own_folder(options.recipe.job.scene, options.output);
     if (std::filesystem::exists(options.output / "scene.ply"))
         throw Error(ErrorCode::Unwritable,
@@ -266,8 +366,7 @@ void run_locate_command(EditOptions& options, const CommandContext& context) {
                     "choose another place with --out", options.output);
     StagedFolder folder(options.output,
                         {"report.json", {"source.ply", "recipe.json", "report.json", "evidence"}});
-    EditJob job(options.recipe, context.job(),
-                options.no_cache ? nullptr : open_answer_cache(load_cache_settings()));
+    EditJob job(options.recipe, context.job(), answers(options));
     job.locate();
     write_labelled_source(folder.path() / "source.ply", job);
     write_evidence(folder.path() / "evidence", job.painter().pool(), job.located(), job.views());
@@ -310,6 +409,13 @@ void add_edit_commands(CLI::App& app, CommandContext& context) {
                      "Make so many, each from the next seed, in folders 1, 2, ... of --out, and "
                      "variations.png to choose from")
         ->check(CLI::Range(1, MostVariations));
+    edit_command->add_flag("--partly", edit->partly,
+                           "Make the changes that can be made of a sentence with several; exit code 3 tells "
+                           "that some were not");
+    edit_command->add_option(
+        "--words", edit->scene_words,
+        "Things that the scene shows, with their colours, as \"red bear; grass\"; empty = "
+        "the source, and what pictures of the scene tell");
     edit_command->callback([edit, &context] { run_edit_command(*edit, context); });
 }
 

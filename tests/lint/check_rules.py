@@ -151,6 +151,7 @@ PARSE = re.compile(r"\b(Edit)?Sentence(\s+\w+)?\s*[({]|"
                    r"\s*[\w.:>()-]*\bprompt\b")
 PARSE_OWNERS = {
     "engine/edit/request/checked_request": "check(), and requests that follow from one that it made",
+    "engine/edit/request/sentence_plan": "the sentence of a request before it is checked",
     "engine/edit/request/unchecked_request": "words that are being typed, or were written by another version",
     "engine/edit/search/word_search": "the sentence of one word, to which those are added that compete with it",
     "app/session/edit/last_search": "whether words that are being typed are those of the search",

@@ -170,7 +170,12 @@ std::string why_not_save(const Context& context) {
 
 edit::EditRequest as_planned(const Context& context) {
     auto request = context.request;
-    if (request.target.empty()) request.target = context.state.prompt.guessed_target;
+    const auto& prompt = context.state.prompt;
+    if (request.target.empty() && !prompt.told.prompt.empty()) {
+        static_cast<edit::EditWords&>(request) = prompt.told;
+        return request;
+    }
+    if (request.target.empty()) request.target = prompt.guessed_target;
     return request;
 }
 

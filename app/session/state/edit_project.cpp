@@ -26,14 +26,20 @@ DocumentState labelled(const DocumentState& opened, const EditJob& job) {
 }  // namespace
 
 ProjectData project_of(EditJob& job, const nlohmann::ordered_json& report) {
-    ProjectData project;
-    const auto& scene = job.scene();
-    project.source = scene_source(std::filesystem::absolute(job.recipe().job.scene), scene.gaussians);
-    const DocumentState before = labelled(initial_state(scene, {}), job);
+    return project_with({}, job, report);
+}
+
+ProjectData project_with(const ProjectData& earlier, EditJob& job, const nlohmann::ordered_json& report) {
+    ProjectData project = earlier;
+    const bool first = earlier.state.stack.empty();
+    if (first)
+        project.source =
+            scene_source(std::filesystem::absolute(job.recipe().job.scene), job.scene().gaussians);
+    const DocumentState before = labelled(first ? initial_state(job.scene(), {}) : earlier.state, job);
     PendingResult result;
     fill_pending(job, report, result);
     EditNode node = node_of(result);
-    node.id = FirstEdit;
+    node.id = first ? FirstEdit : earlier.state.stack.back().id + 1;
     node.delta = std::make_shared<const SceneDelta>(
         make_delta(before.current, *before.row_ids, result.set, *result.base_to_new, node.id));
     project.state = with_result(before, std::move(node), result);

@@ -13,4 +13,8 @@ namespace gse::app {
 /// scene's file is read again for its fingerprint. Throws Error.
 ProjectData project_of(EditJob& job, const nlohmann::ordered_json& report);
 
+/// The project with another edit on its stack, of a job on the scene that it shows. An empty project becomes
+/// project_of().
+ProjectData project_with(const ProjectData& earlier, EditJob& job, const nlohmann::ordered_json& report);
+
 }  // namespace gse::app

@@ -7,6 +7,7 @@
 #include "engine/base/error.h"
 #include "engine/edit/request/edit_method.h"
 #include "engine/edit/request/excluded_views.h"
+#include "engine/edit/request/sentence_plan.h"
 #include "engine/language/news.h"
 #include "engine/language/words.h"
 
@@ -90,10 +91,14 @@ CheckedRequest check(EditRequest request, const News& news) {
     check_names(request);
     const bool open = request.target.empty();
     if (!request.source.empty()) request.source = phrase_of(request.source, "source");
+    if (const auto problem = single_edit_problem(request, news)) throw *problem;
+    request = in_plan_words(request, news);
+    const bool reworded = open && !request.target.empty();
+    if (reworded) sentence = language::Sentence(request.prompt);
     if (open && request.source.empty())
         throw Error(ErrorCode::InvalidArgument, "neither a source nor a target word is given",
                     "name what the edit is about, or the word of the sentence that is new");
-    if (open) request.target = guess(sentence, request.source, news);
+    if (request.target.empty()) request.target = guess(sentence, request.source, news);
     request.target = phrase_of(request.target, "target");
     if (!sentence.contains(request.target))
         throw Error(ErrorCode::InvalidArgument,
@@ -101,7 +106,7 @@ CheckedRequest check(EditRequest request, const News& news) {
                         request.target + "\"",
                     "use it in the sentence, or choose another target");
     if (request.source.empty()) request.source = request.target;
-    return {request, std::move(sentence), open};
+    return {request, std::move(sentence), open && !reworded};
 }
 
 EditRequest source_alone(EditRequest request) {

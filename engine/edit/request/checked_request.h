@@ -57,8 +57,10 @@ private:
 /// `news.read_target`, else the word of the sentence that is new beside `news.said`.
 EditRequest with_target(EditRequest request, const News& news);
 
-/// Completes the words and checks all values. Throws Error (InvalidArgument): an empty prompt, neither source
-/// nor target, a target that is not in the prompt, an unknown mode, method or quality.
+/// Completes the words and checks all values. A sentence with everything left open takes the words of its
+/// plan (sentence_plan.h). Throws Error (InvalidArgument) for an empty prompt, for neither source nor target,
+/// for a target that is not in the prompt, and for an unknown mode, method or quality. It throws, too, for a
+/// sentence that is no single edit.
 CheckedRequest check(EditRequest request, const News& news = {});
 
 /// The search for the source alone, for a sentence that cannot be edited by: "a bear".

@@ -209,12 +209,16 @@ nlohmann::ordered_json locate_report(EditJob& job) {
     return report;
 }
 
-void write_edit(const fs::path& folder, EditJob& job) {
+void write_edited_scene(const fs::path& path, const EditJob& job) {
     Scene edited = job.scene();
     edited.gaussians = job.result().set;
     edited.extra = gathered(edited.extra, sources_of(job.result().base_to_new, edited.gaussians.size()));
     edited.labels = {};
-    save_scene(folder / "scene.ply", edited, {.format = "ply"});
+    save_scene(path, edited, {.format = "ply"});
+}
+
+void write_edit(const fs::path& folder, EditJob& job) {
+    write_edited_scene(folder / "scene.ply", job);
     write_file(folder / "recipe.json", json_text(recipe_to_json(job.recipe().plain()), 2) + "\n");
     write_labelled_source(folder / "source.ply", job);
     write_evidence(folder / "evidence", job.painter().pool(), job.located(), job.views());

@@ -19,6 +19,9 @@ void write_evidence(const std::filesystem::path& folder, ThreadPool& threads,
 /// Writes the input as loaded, in its row order, with label and label_weight columns.
 void write_labelled_source(const std::filesystem::path& path, const EditJob& job);
 
+/// Writes the edited scene alone.
+void write_edited_scene(const std::filesystem::path& path, const EditJob& job);
+
 /// Writes the files of an edit but for its report: scene.ply, source.ply, recipe.json, evidence,
 /// before_after.mp4 and .png.
 void write_edit(const std::filesystem::path& folder, EditJob& job);

@@ -21,6 +21,7 @@
 #include "engine/localize/focus.h"
 #include "engine/pipeline/models/neural_loader.h"
 #include "engine/pipeline/models/probe.h"
+#include "engine/pipeline/run/scene_words.h"
 #include "engine/pipeline/scene/scene_loading.h"
 #include "engine/pipeline/select/cut_out.h"
 
@@ -244,6 +245,11 @@ void EditJob::take(Located located) {
     views_ = std::make_shared<const Views>(located.views);
     located_ = std::make_shared<const Located>(std::move(located));
     plan_.reset();
+}
+
+language::plan::SceneWords EditJob::words_shown(language::plan::SceneWords assumed) {
+    workplace_->ask_anew(recipe_.attention);
+    return scene_words_shown(*workplace_, recipe_, *views_, std::move(assumed), control_);
 }
 
 void EditJob::locate() {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/language/plan/words/scene_words.h"
 #include "engine/neural/api/api.h"
 #include "engine/pipeline/models/installed.h"
 #include "engine/pipeline/models/model_words.h"
@@ -45,6 +46,8 @@ public:
     /// DreamBooth: from here on this job works with a model of its own, which learned the scene from renders
     /// of its views. locate() begins with it when the recipe asks for it.
     void tune();
+    /// Words of the scene with what pictures of it show (scene_words.h). Nothing is looked for.
+    language::plan::SceneWords words_shown(language::plan::SceneWords assumed);
     /// Works out which word is new where the recipe does not say, looks from all views, moves in on what was
     /// found, looks again. With a label made by hand, a word that the model does not know is not looked for,
     /// and one that is not found does no harm. A search that comes to nothing is a result too: see found().
@@ -129,6 +132,8 @@ public:
     /// Azimuth on it, radians, from which the front is seen where one is known; 0 otherwise.
     double film_front() const;
     neural::TextToImage& model() { return workplace_->model(); }
+    /// The model, for a job on what this one came to.
+    std::shared_ptr<neural::TextToImage> shared_model() const { return workplace_->shared_model(); }
     Painter& painter() { return workplace_->painter(); }
     StageTimes& times() { return times_; }
     const StageTimes& times() const { return times_; }

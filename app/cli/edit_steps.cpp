@@ -1,0 +1,100 @@
+// Sentences on the command line as lists of steps.
+#include "app/cli/edit_steps.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/base/error.h"
+#include "engine/base/log.h"
+#include "engine/language/words.h"
+#include "engine/scene/row_values.h"
+
+namespace gse::app {
+namespace {
+
+namespace plan = language::plan;
+
+/// The scene's words: those that were given, else the source and what pictures show of it.
+plan::SceneWords words_of_scene(const EditRecipe& recipe, const std::string& given, const JobControl& control,
+                                std::shared_ptr<DiskCache> cache) {
+    if (!given.empty()) return plan::scene_words(given);
+    auto scene = edit::assumed_scene(recipe.request);
+    if (!edit::pictures_decide(recipe.request)) return scene;
+    EditRecipe looking = recipe;
+    looking.request = edit::source_alone(looking.request);
+    looking.use_dreambooth = false;
+    EditJob job(std::move(looking), control, std::move(cache));
+    return job.words_shown(std::move(scene));
+}
+
+void require_all(const EditSteps& steps) {
+    const auto undone =
+        std::find_if(steps.steps.begin(), steps.steps.end(), [](const auto& step) { return !step.words; });
+    if (undone == steps.steps.end()) return;
+    const auto text = edit::step_text(undone->step);
+    throw Error(
+        ErrorCode::InvalidArgument,
+        steps.steps.size() == 1
+            ? fmt::format("{} ({})", undone->problem.reason, text)
+            : fmt::format("step {} of {} cannot be done ({}): {}", undone - steps.steps.begin() + 1,
+                          steps.steps.size(), text, undone->problem.reason),
+        undone->problem.remedy + (steps.steps.size() > 1 ? ", or use --partly to make the other steps" : ""));
+}
+
+}  // namespace
+
+EditSteps steps_of_sentence(const EditRecipe& recipe, const std::string& scene_words, bool partly,
+                            const JobControl& control, std::shared_ptr<DiskCache> cache) {
+    if (!edit::is_planned(recipe.request) || recipe.job.brings_label()) return {};
+    const auto scene = words_of_scene(recipe, scene_words, control, std::move(cache));
+    EditSteps result;
+    result.plan = edit::plan_of(recipe.request, scene);
+    result.nothing_to_change = result.plan.steps.front().operation == plan::Operation::None;
+    if (result.nothing_to_change) return result;
+    if (const auto refused = edit::refusal_of(result.plan, recipe.request.source)) throw *refused;
+    result.steps = edit::planned_steps(result.plan, scene);
+    const bool any = std::any_of(result.steps.begin(), result.steps.end(),
+                                 [](const auto& step) { return step.words.has_value(); });
+    if (!partly || !any) require_all(result);
+    if (result.steps.size() == 1 && edit::says_itself(recipe.request, *result.steps.front().words))
+        result.steps.clear();
+    return result;
+}
+
+EditRecipe recipe_of_step(EditRecipe recipe, const edit::PlannedStep& step) {
+    recipe.request = edit::request_of(std::move(recipe.request), *step.words);
+    recipe.guidance.before_prompt.clear();
+    return recipe;
+}
+
+pipeline::EditJobInput next_input(EditJob& job, std::vector<std::string> said) {
+    pipeline::EditJobInput input;
+    input.scene = job.scene();
+    const auto& result = job.result();
+    input.scene.extra = gathered(input.scene.extra, sources_of(result.base_to_new, result.set.size()));
+    input.scene.gaussians = result.set;
+    input.scene.labels = {};
+    if (!job.automatic_views()) input.cameras = job.views();
+    input.model = job.shared_model();
+    input.said = std::move(said);
+    input.segmenters = pipeline::open_segmenters(job.recipe().job, nullptr);
+    return input;
+}
+
+nlohmann::ordered_json plan_to_json(const EditSteps& steps) {
+    nlohmann::ordered_json json;
+    json["plan"] = plan::to_string(steps.plan);
+    json["steps"] = nlohmann::ordered_json::array();
+    for (const auto& step : steps.steps) {
+        nlohmann::ordered_json entry{{"step", plan::to_string(step.step)},
+                                     {"text", edit::step_text(step.step)}};
+        if (step.words) entry["prompt"] = step.words->prompt;
+        else entry["reason"] = step.problem.reason;
+        json["steps"].push_back(std::move(entry));
+    }
+    return json;
+}
+
+}  // namespace gse::app

@@ -1,0 +1,262 @@
+// Plans of requests: scenes assumed, steps described, refusals in words.
+#include "engine/edit/request/sentence_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "engine/language/plan/plan_sentence.h"
+#include "engine/language/plan/words/lexicon.h"
+#include "engine/language/words.h"
+
+namespace gse::edit {
+namespace {
+
+namespace plan = language::plan;
+using plan::Operation;
+
+struct Refusal {
+    std::string_view reason;  // of the notation
+    const char* message;
+    const char* hint;
+};
+
+constexpr const char* DescribeScene = "describe the scene after the edit in one English sentence";
+constexpr std::array<Refusal, 9> Refusals{{
+    {plan::reason::Empty, "the sentence says nothing", DescribeScene},
+    {plan::reason::NotASentence, "the sentence is not understood", DescribeScene},
+    {plan::reason::Question, "the sentence asks a question, and no change", DescribeScene},
+    {plan::reason::Language, "the sentence is not English", DescribeScene},
+    {plan::reason::Contradiction, "the sentence contradicts itself", "leave one of its wishes out"},
+    {plan::reason::Ambiguous, "the sentence may mean several things", "name the thing that is to change"},
+    {plan::reason::Incomplete, "the sentence does not say what is to become of the thing",
+     "say how it looks after the edit"},
+    {plan::reason::NotAnEdit, "the sentence asks for no change of the scene", DescribeScene},
+    {plan::reason::NotInScene, "the sentence is about something else than the source",
+     "say what in the scene it is about"},
+}};
+
+constexpr std::array<std::pair<Operation, const char*>, 13> Titles{{
+    {Operation::Recolour, "colour"},
+    {Operation::Material, "material"},
+    {Operation::Pattern, "pattern"},
+    {Operation::Transform, "move, turn or resize"},
+    {Operation::Pose, "pose"},
+    {Operation::Alter, "look"},
+    {Operation::Ground, "ground"},
+    {Operation::Remove, "remove"},
+    {Operation::Replace, "replace"},
+    {Operation::Add, "add"},
+    {Operation::Duplicate, "copy"},
+    {Operation::Style, "style"},
+    {Operation::Environment, "surroundings"},
+}};
+
+/// Words of a step that are news: the look, or the new thing.
+std::vector<std::string> news_of(const plan::Step& step) {
+    auto words = language::words_of(step.text + " " + step.text2);
+    if (step.thing.noun.empty()) return words;
+    words = language::words_of(step.thing.noun);
+    for (const auto& attribute : step.thing.attributes)
+        for (auto& word : language::words_of(attribute)) words.push_back(std::move(word));
+    return words;
+}
+
+bool is_said(const plan::Step& step, const std::vector<std::string>& said) {
+    const auto words = news_of(step);
+    return !words.empty() && std::all_of(words.begin(), words.end(),
+                                         [&](const auto& word) { return language::contains(said, word); });
+}
+
+std::vector<plan::Step> news_among(std::vector<plan::Step> steps, const News& news) {
+    std::erase_if(steps, [&](const auto& step) { return is_said(step, news.said); });
+    return steps;
+}
+
+/// True for a look that the sentence names right before the thing: the scene may show it already.
+bool describes(const plan::Step& step, const language::Sentence& sentence) {
+    if (!plan::changes_look(step.operation) || step.subject.links.size() != 1) return false;
+    return sentence.contains(language::normalised_prompt(step.text + " " + step.subject.links[0].noun));
+}
+
+/// True for operations that no model is asked to draw.
+bool is_never_drawn(Operation operation) {
+    return operation == Operation::Remove || operation == Operation::Transform ||
+           operation == Operation::Duplicate;
+}
+
+/// True for "behind the museum": the thing is a place, and there already.
+bool is_place(const std::string& preposition, const std::string& noun) {
+    if (!language::is_a(preposition, language::WordClass::Stop | language::WordClass::Beside)) return false;
+    constexpr auto Things = plan::Artifact | plan::Object | plan::Plant;
+    return (plan::kinds_of(noun) & Things) != 0 && !plan::has(plan::Class::part, noun) &&
+           !plan::has(plan::Class::body_place, noun) && !plan::has(plan::Class::whole_part, noun);
+}
+
+Error several(const std::vector<plan::Step>& steps) {
+    std::string list;
+    for (std::size_t i = 0; i < steps.size(); ++i)
+        list += fmt::format("{}{} {}", i > 0 ? " · " : "", i + 1, step_text(steps[i]));
+    return Error(ErrorCode::InvalidArgument,
+                 fmt::format("the sentence asks for {} changes ({})", steps.size(), list),
+                 "make them one after another");
+}
+
+}  // namespace
+
+plan::SceneWords assumed_scene(const EditRequest& request) {
+    const auto source = language::normalised_prompt(request.source);
+    auto scene = plan::scene_words(source);
+    const language::Sentence sentence(request.prompt);
+    const auto add = [&](const std::string& noun, bool is_ground) {
+        const bool known = std::any_of(scene.things.begin(), scene.things.end(),
+                                       [&](const auto& thing) { return thing.noun == noun; });
+        if (!known) scene.things.push_back({noun, {}, is_ground, false});
+    };
+    const auto& words = sentence.words();
+    const bool about_ground = scene.ground().has_value();
+    for (std::size_t i = 1; i < words.size(); ++i) {
+        if (!language::is_a(words[i - 1], language::WordClass::DefiniteArticle)) continue;
+        const bool ground = language::is_a(words[i], language::WordClass::Ground);
+        if (ground && !about_ground) add(words[i], true);
+        if (!ground && i > 1 && is_place(words[i - 2], words[i])) add(words[i], false);
+    }
+    if (about_ground)  // what stands on it is there too
+        for (const auto& thing : sentence.things())
+            if (!language::is_a(thing, language::WordClass::Ground)) {
+                add(thing, false);
+                break;
+            }
+    return scene;
+}
+
+plan::Plan plan_of(const EditRequest& request, const plan::SceneWords& scene) {
+    return plan::plan_sentence(request.prompt, scene, language::normalised_prompt(request.source));
+}
+
+std::vector<PlannedStep> planned_steps(const plan::Plan& plan, plan::SceneWords scene) {
+    std::vector<PlannedStep> result;
+    for (const auto& step : plan.steps) {
+        if (step.operation == Operation::None) continue;
+        PlannedStep planned{step, std::nullopt, {}};
+        if (step.operation == Operation::Refuse) {
+            if (const auto error = refusal_of({{step}}, {}))
+                planned.problem = {error->message(), error->hint()};
+        } else {
+            planned.words = plan::sentence_of(step, scene, &planned.problem);
+        }
+        scene = plan::after(step, std::move(scene));
+        result.push_back(std::move(planned));
+    }
+    return result;
+}
+
+bool is_planned(const EditRequest& request) {
+    return request.target.empty() && request.mode == "auto" && request.instruction.empty() &&
+           !request.source.empty();
+}
+
+bool says_itself(const EditRequest& request, const plan::StepSentence& words) {
+    const auto guessed = with_target(request, {});
+    const language::EditSentence sentence(language::Sentence(request.prompt),
+                                          language::normalised_prompt(request.source), guessed.target);
+    if (sentence.source() != words.source || decide_mode(sentence, std::nullopt).first != words.mode)
+        return false;
+    const auto told =
+        language::words_of(words.mode == EditMode::Replace ? sentence.replacement() : guessed.target);
+    const auto wanted = language::words_of(words.target);
+    if (words.mode != EditMode::Modify) return !wanted.empty() && language::contains(told, wanted.back());
+    const auto all_in = [](const auto& some, const auto& list) {
+        return std::all_of(some.begin(), some.end(),
+                           [&](const auto& word) { return language::contains(list, word); });
+    };
+    return !told.empty() && (all_in(wanted, told) || all_in(told, wanted));  // "spotted" of "pink spotted"
+}
+
+EditRequest request_of(EditRequest request, const plan::StepSentence& words) {
+    request.source = words.source;
+    request.prompt = words.prompt;
+    request.target = words.target;
+    request.mode = mode_name(words.mode);
+    return request;
+}
+
+bool pictures_decide(const EditRequest& request) {
+    if (!is_planned(request)) return false;
+    const auto scene = assumed_scene(request);
+    const auto plan = plan_of(request, scene);
+    const language::Sentence sentence(request.prompt);
+    const bool looks =
+        plan.steps.size() > 1 && std::any_of(plan.steps.begin(), plan.steps.end(),
+                                             [&](const auto& step) { return describes(step, sentence); });
+    const auto ground = scene.ground();
+    return looks || (ground && scene.things[*ground].noun != language::normalised_prompt(request.source));
+}
+
+EditRequest in_plan_words(const EditRequest& request, const News& news) {
+    if (!is_planned(request)) return request;
+    const auto scene = assumed_scene(request);
+    auto plan = plan_of(request, scene);
+    plan.steps = news_among(std::move(plan.steps), news);
+    if (plan.steps.size() != 1) return request;
+    const auto words = plan::sentence_of(plan.steps.front(), scene);
+    return words && !says_itself(request, *words) ? request_of(request, *words) : request;
+}
+
+std::optional<Error> single_edit_problem(const EditRequest& request, const News& news) {
+    if (!is_planned(request)) return std::nullopt;
+    const language::Sentence sentence(request.prompt);
+    const auto plan = plan_of(request, assumed_scene(request));
+    if (auto refused = refusal_of(plan, request.source)) return refused;
+    const auto steps = news_among(plan.steps, news);
+    if (steps.empty()) return std::nullopt;  // the same edit once more
+    for (const auto& step : steps) {
+        plan::StepProblem problem;
+        if (!is_never_drawn(step.operation) || plan::sentence_of(step, {}, &problem)) continue;
+        return Error(ErrorCode::InvalidArgument, problem.reason + " (" + step_text(step) + ")",
+                     problem.remedy);
+    }
+    const auto certain = std::count_if(steps.begin(), steps.end(),
+                                       [&](const auto& step) { return !describes(step, sentence); });
+    if (certain > 1) return several(steps);
+    return std::nullopt;
+}
+
+std::optional<Error> refusal_of(const plan::Plan& plan, const std::string& source) {
+    if (!plan.is_refusal()) return std::nullopt;
+    const auto& step = plan.steps.front();
+    if (step.operation == Operation::None)
+        return Error(ErrorCode::InvalidArgument, "the sentence asks for nothing that is not there already",
+                     "say what is to be different");
+    for (const auto& refusal : Refusals)
+        if (refusal.reason == step.text) {
+            if (step.text == plan::reason::NotInScene && !step.text2.empty())
+                return Error(ErrorCode::InvalidArgument,
+                             fmt::format("\"{}\" is not known to be in the scene{}", step.text2,
+                                         source.empty() ? "" : ", and the edit is about \"" + source + "\""),
+                             refusal.hint);
+            return Error(ErrorCode::InvalidArgument, refusal.message, refusal.hint);
+        }
+    return Error(ErrorCode::InvalidArgument, "the sentence is not understood", DescribeScene);
+}
+
+std::string step_text(const plan::Step& step) {
+    const auto title = std::find_if(Titles.begin(), Titles.end(),
+                                    [&](const auto& entry) { return entry.first == step.operation; });
+    if (title == Titles.end()) return step.text;
+    std::string details = step.subject.links.empty() ? "" : to_string(step.subject);
+    const auto add = [&](const std::string& text) {
+        if (!text.empty()) details += (details.empty() ? "" : ", ") + text;
+    };
+    if (step.operation == Operation::Ground) add(step.text2 == "-" ? "" : step.text2);
+    if (!step.thing.noun.empty()) add(plan::phrase_of(step.thing));
+    add(step.text);
+    if (step.operation == Operation::Pattern) add(step.text2);
+    add(step.relation);
+    for (const auto& anchor : step.anchors) add(to_string(anchor));
+    return std::string(title->second) + ": " + details;
+}
+
+}  // namespace gse::edit

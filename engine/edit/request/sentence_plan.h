@@ -1,0 +1,62 @@
+// Plan of a request's sentence: the operations that it asks for, and which of them an edit can do.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/edit/request/checked_request.h"
+#include "engine/language/plan/notation/plan.h"
+#include "engine/language/plan/step_sentence.h"
+#include "engine/language/plan/words/scene_words.h"
+
+namespace gse::edit {
+
+/// A step of a plan as an edit of its own.
+struct PlannedStep {
+    language::plan::Step step;
+    std::optional<language::plan::StepSentence> words;  // nothing = it cannot be done
+    language::plan::StepProblem problem;                // why not
+};
+
+/// Words of the scene as far as the request tells them: the source, and grounds that the sentence takes for
+/// known ("on the grass").
+language::plan::SceneWords assumed_scene(const EditRequest& request);
+
+/// The operations that the sentence asks for in a scene of these words.
+language::plan::Plan plan_of(const EditRequest& request, const language::plan::SceneWords& scene);
+
+/// The steps, each described in the scene that the earlier ones leave. Refusals among them are steps that
+/// cannot be done.
+std::vector<PlannedStep> planned_steps(const language::plan::Plan& plan, language::plan::SceneWords scene);
+
+/// True for a request whose sentence says everything: source named; target, mode and instruction left open.
+bool is_planned(const EditRequest& request);
+
+/// True where the typed sentence is read as the step already, by source, kind of change and new words.
+bool says_itself(const EditRequest& request, const language::plan::StepSentence& words);
+
+/// The request in a step's words.
+EditRequest request_of(EditRequest request, const language::plan::StepSentence& words);
+
+/// True where pictures of the scene decide what the sentence asks for. A look stands before the source's name
+/// beside another change ("a blue bear wearing a hat"), or a ground is named in passing.
+bool pictures_decide(const EditRequest& request);
+
+/// Reason why the request is no single edit, by its words alone: nothing to change, an operation that no edit
+/// does, several changes. Nothing where target, mode or instruction were chosen. Looks before the source's
+/// name count as shown where something else is asked for, since pictures tell them (pictures_decide()).
+std::optional<Error> single_edit_problem(const EditRequest& request, const News& news);
+
+/// The request in the words of its plan, where that is one step which the typed sentence does not say itself
+/// ("give it a hat"). Else as it is.
+EditRequest in_plan_words(const EditRequest& request, const News& news);
+
+/// Sentence for a plan that changes nothing, or refuses. Nothing for another plan.
+std::optional<Error> refusal_of(const language::plan::Plan& plan, const std::string& source);
+
+/// "colour: bear, blue".
+std::string step_text(const language::plan::Step& step);
+
+}  // namespace gse::edit

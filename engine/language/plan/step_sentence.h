@@ -1,0 +1,41 @@
+// One step of a plan as a description of the scene after it, in words that a text-to-image model is told.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/language/plan/notation/plan.h"
+#include "engine/language/plan/words/scene_words.h"
+#include "engine/language/sentence.h"
+
+namespace gse::language::plan {
+
+/// A step as an edit: `prompt` describes the scene after it and contains `target`.
+struct StepSentence {
+    std::string source;  // the thing that the edit is about
+    std::string prompt;
+    std::string target;  // the look, or the noun of the new thing
+    EditMode mode = EditMode::Modify;
+};
+
+/// Reason why a step cannot be done, and what to do instead; both are parts of a sentence.
+struct StepProblem {
+    std::string reason;
+    std::string remedy;
+};
+
+/// The step's description; nothing where none would bring it about. Then `problem` says why.
+std::optional<StepSentence> sentence_of(const Step& step, const SceneWords& scene,
+                                        StepProblem* problem = nullptr);
+
+/// The scene's words once the step is done.
+SceneWords after(const Step& step, SceneWords scene);
+
+/// Noun phrase with its article: "a red hat", "an owl", "sunglasses".
+std::string phrase_of(const Thing& thing);
+
+/// True for an operation that changes nothing but the look of what is there.
+bool changes_look(Operation operation);
+
+}  // namespace gse::language::plan

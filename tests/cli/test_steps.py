@@ -1,0 +1,73 @@
+"""Sentences with several changes, with none, and with some that no edit makes."""
+import json
+import pathlib
+import unittest
+
+from program import ProgramTest, run
+
+ASSETS = pathlib.Path(__file__).resolve().parents[2] / "assets"
+QUICK = ["--turntable-frames", 3, "--turntable-size", 64]
+
+
+@unittest.skipUnless((ASSETS / "models/starter/model_index.json").exists(), "[skip] the starter is not there")
+class Steps(ProgramTest):
+    def edit(self, prompt, *arguments):
+        self.out = self.folder / "out"
+        return run("-q", "edit", ASSETS / "scenes/bear/scene.ply", "--source", "bear", "--prompt", prompt,
+                   "--out", self.out, *QUICK, *arguments)
+
+    def report(self):
+        return json.loads((self.out / "report.json").read_text())
+
+    def test_two_changes_are_two_edits_of_one_project(self):
+        process = self.edit("a blue bear wearing a yellow hat on the grass")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        report = self.report()
+        self.assertEqual(report["done"], 2)
+        self.assertEqual(report["plan"], "recolour(bear, blue) ; add(hat{yellow}, worn by, bear)")
+        for step in report["steps"]:
+            self.assertTrue(step["done"])
+            self.assertEqual(step["report"]["changed_outside_label"], 0)
+        self.assertGreater(report["steps"][1]["report"]["added"], 0)
+        listing = run("project", self.out / "edit.gsep", "--json")
+        self.assertEqual(listing.returncode, 0, listing.stderr)
+        self.assertEqual([edit["name"] for edit in json.loads(listing.stdout)["edits"]],
+                         ["a blue bear on the grass", "a blue bear wearing a yellow hat on the grass"])
+        exported = self.folder / "exported.ply"
+        self.assertEqual(run("project", self.out / "edit.gsep", "--export", exported).returncode, 0)
+        self.assertEqual(self.info(exported)["splats"], self.info(self.out / "scene.ply")["splats"])
+        self.assertEqual(self.info(self.out / "scene.ply")["splats"], report["steps"][1]["report"]["splats"])
+
+    def test_a_step_that_cannot_be_done_stops_all_of_them(self):
+        process = self.edit("make the bear golden and move it to the left")
+        self.assertEqual(process.returncode, 2)
+        self.assertIn("step 2 of 2", process.stderr)
+        self.assertIn("--partly", process.stderr)
+        self.assertFalse(self.out.exists())
+
+    def test_a_part_is_done_where_that_is_asked_for(self):
+        process = self.edit("make the bear golden and move it to the left", "--partly")
+        self.assertEqual(process.returncode, 3, process.stderr)
+        report = self.report()
+        self.assertEqual([step["done"] for step in report["steps"]], [True, False])
+        self.assertIn("not moved", report["steps"][1]["reason"])
+
+    def test_nothing_to_change_changes_nothing(self):
+        for prompt in ["a red bear on the grass", "a bear without a hat", "leave the bear as it is"]:
+            process = self.edit(prompt, "--words", "red bear; grass")
+            self.assertEqual(process.returncode, 0, process.stderr)
+            self.assertIn("Nothing to change", process.stdout)
+            self.assertFalse(self.out.exists())
+
+    def test_what_is_no_edit_is_refused_in_one_sentence(self):
+        for prompt, word in [("remove the bear", "not removed"), ("ein blauer Bär auf dem Gras", "English"),
+                             ("undo", "no change"), ("rotate the bear 90 degrees", "turned")]:
+            process = self.edit(prompt)
+            self.assertEqual(process.returncode, 2, prompt)
+            self.assertIn(word, process.stderr)
+            self.assertEqual(len(process.stderr.strip().splitlines()), 1, process.stderr)
+            self.assertFalse(self.out.exists())
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,131 @@
+// Sentences as plans of edits: what one edit can do, in which words, and what is refused.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include <string>
+
+#include "engine/base/error.h"
+#include "engine/edit/request/sentence_plan.h"
+
+namespace sentence_plan_test {
+
+using namespace gse;
+namespace plan = language::plan;
+
+namespace {
+
+edit::EditRequest request(const std::string& prompt, const std::string& source = "bear") {
+    edit::EditRequest result;
+    result.prompt = prompt;
+    result.source = source;
+    return result;
+}
+
+std::string refused(const edit::EditRequest& wanted) {
+    try {
+        edit::check(wanted);
+    } catch (const Error& error) {
+        DOCTEST_CHECK(error.code() == ErrorCode::InvalidArgument);
+        DOCTEST_CHECK(!error.hint().empty());
+        return error.message();
+    }
+    return {};
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("a description with one change is told as it is typed") {
+    for (const std::string prompt :
+         {"a golden bear on the grass", "a blue bear", "a bear wearing a red hat on the grass",
+          "a red cat on the grass", "a bear made of stone", "a bear in flames", "a pink spotted bear",
+          "a bear with a ball beside it"}) {
+        DOCTEST_CAPTURE(prompt);
+        const auto checked = edit::check(request(prompt));
+        DOCTEST_CHECK(checked.prompt() == prompt);
+        DOCTEST_CHECK(checked.target_open());
+    }
+    const auto ground = edit::check(request("a bear on the snow", "grass"));
+    DOCTEST_CHECK(ground.prompt() == "a bear on the snow");
+    DOCTEST_CHECK(ground.target() == "snow");
+}
+
+DOCTEST_TEST_CASE("an order becomes the description of the scene after it") {
+    const auto hat = edit::check(request("give it a red hat"));
+    DOCTEST_CHECK(hat.prompt() == "a bear wearing a red hat");
+    DOCTEST_CHECK(hat.target() == "hat");
+    DOCTEST_CHECK(hat.mode == edit::EditMode::Add);
+    const auto cat = edit::check(request("swap the bear for a black cat"));
+    DOCTEST_CHECK(cat.sentence().replacement() == "cat");
+    DOCTEST_CHECK(cat.mode == edit::EditMode::Replace);
+    const auto blue = edit::check(request("could you please paint it blue?"));
+    DOCTEST_CHECK(blue.source() == "bear");
+    DOCTEST_CHECK(blue.target() == "blue");
+    DOCTEST_CHECK(language::decide_mode(blue.sentence(), blue.mode).first == edit::EditMode::Modify);
+}
+
+DOCTEST_TEST_CASE("what no edit does is refused in words, and not done otherwise") {
+    DOCTEST_CHECK(refused(request("remove the bear")).find("not removed") != std::string::npos);
+    DOCTEST_CHECK(refused(request("make the bear bigger")).find("resized") != std::string::npos);
+    DOCTEST_CHECK(!refused(request("don't touch the bear")).empty());
+    DOCTEST_CHECK(refused(request("mach den Bären blau")).find("English") != std::string::npos);
+    DOCTEST_CHECK(!refused(request("undo the last change")).empty());
+    DOCTEST_CHECK(refused(request("paint the bear blue and give it a hat")).find("2 changes") !=
+                  std::string::npos);
+}
+
+DOCTEST_TEST_CASE("words that were chosen are taken as they are") {
+    auto wanted = request("remove the bear");
+    wanted.target = "bear";
+    DOCTEST_CHECK(refused(wanted).empty());
+    auto mode = request("paint the bear blue and give it a hat");
+    mode.mode = "add";
+    DOCTEST_CHECK(refused(mode).empty());
+    auto without = request("a blue bear", "");
+    without.target = "blue";
+    DOCTEST_CHECK(refused(without).empty());
+}
+
+DOCTEST_TEST_CASE("each step is described in the scene that the steps before it leave") {
+    const auto scene = plan::scene_words("red bear; grass");
+    const auto steps =
+        edit::planned_steps(edit::plan_of(request("a blue bear wearing a red hat"), scene), scene);
+    DOCTEST_REQUIRE(steps.size() == 2);
+    DOCTEST_REQUIRE(steps[0].words);
+    DOCTEST_CHECK(steps[0].words->prompt == "a blue bear on the grass");
+    DOCTEST_CHECK(steps[0].words->target == "blue");
+    DOCTEST_REQUIRE(steps[1].words);
+    DOCTEST_CHECK(steps[1].words->prompt == "a blue bear wearing a red hat on the grass");
+    DOCTEST_CHECK(steps[1].words->target == "hat");
+    DOCTEST_CHECK(steps[1].words->mode == edit::EditMode::Add);
+    DOCTEST_CHECK(edit::step_text(steps[0].step) == "colour: bear, blue");
+}
+
+DOCTEST_TEST_CASE("every step that can be done is an edit whose words pass the check as they are") {
+    const auto scene = plan::scene_words("red bear; grass");
+    for (const std::string prompt :
+         {"a blue bear wearing a red hat", "turn the bear into a wooden cat and give it sunglasses",
+          "make the bear golden and put snow on the ground", "a striped bear with a ball beside it",
+          "replace the bear with a dog, and make it black"}) {
+        DOCTEST_CAPTURE(prompt);
+        for (const auto& step : edit::planned_steps(edit::plan_of(request(prompt), scene), scene)) {
+            DOCTEST_CAPTURE(edit::step_text(step.step));
+            if (!step.words) {
+                DOCTEST_CHECK(!step.problem.reason.empty());
+                DOCTEST_CHECK(!step.problem.remedy.empty());
+                continue;
+            }
+            const auto checked = edit::check(edit::request_of(request(prompt), *step.words));
+            DOCTEST_CHECK(checked.prompt() == step.words->prompt);
+            DOCTEST_CHECK(checked.target() == step.words->target);
+        }
+    }
+}
+
+DOCTEST_TEST_CASE("pictures are asked where a look or a ground may be there already, and only there") {
+    DOCTEST_CHECK(edit::pictures_decide(request("a blue bear wearing a red hat")));
+    DOCTEST_CHECK(edit::pictures_decide(request("a golden bear on the snow")));
+    DOCTEST_CHECK(!edit::pictures_decide(request("a golden bear")));
+    DOCTEST_CHECK(!edit::pictures_decide(request("paint the bear blue and give it a hat")));
+}
+
+}  // namespace sentence_plan_test
