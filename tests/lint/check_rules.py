@@ -65,7 +65,7 @@ SUB_ROOMS = {
         "plan/notation": set(),
         "plan/words": {"plan/notation"},
         "plan/grammar": {"plan/notation", "plan/words"},
-        "plan": {"plan/notation", "plan/words", "plan/grammar"},
+        "plan": {"", "plan/notation", "plan/words", "plan/grammar"},
     },
     "laboratory": {
         "synth": {"synth/objects"},
