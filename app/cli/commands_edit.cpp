@@ -17,6 +17,7 @@
 #include "engine/base/staged_folder.h"
 #include "engine/edit/request/checked_request.h"
 #include "engine/edit/request/edit_method.h"
+#include "engine/language/plan/plan_text.h"
 #include "engine/language/words.h"
 #include "engine/pipeline/models/model_settings.h"
 #include "engine/pipeline/models/tuning_json.h"
@@ -300,7 +301,7 @@ void run_steps(const EditOptions& options, const EditSteps& steps, CommandContex
         auto& entry = report["steps"][i];
         entry["done"] = false;
         if (!step.words) {
-            log::warning("step {} is left out ({}): {}", i + 1, edit::step_text(step.step),
+            log::warning("step {} is left out ({}): {}", i + 1, language::plan::step_text(step.step),
                          step.problem.reason);
             continue;
         }

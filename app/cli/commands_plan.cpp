@@ -14,7 +14,7 @@
 #include "engine/io/project/load_scene.h"
 #include "engine/language/plan/plan_sentence.h"
 #include "engine/language/plan/plan_text.h"
-#include "engine/pipeline/run/scene_loading.h"
+#include "engine/pipeline/scene/scene_loading.h"
 
 namespace gse::app {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/log.h"
+#include "engine/language/plan/plan_text.h"
 #include "engine/language/words.h"
 #include "engine/scene/row_values.h"
 
@@ -33,7 +34,7 @@ void require_all(const EditSteps& steps) {
     const auto undone =
         std::find_if(steps.steps.begin(), steps.steps.end(), [](const auto& step) { return !step.words; });
     if (undone == steps.steps.end()) return;
-    const auto text = edit::step_text(undone->step);
+    const auto text = language::plan::step_text(undone->step);
     throw Error(
         ErrorCode::InvalidArgument,
         steps.steps.size() == 1
@@ -89,7 +90,7 @@ nlohmann::ordered_json plan_to_json(const EditSteps& steps) {
     json["steps"] = nlohmann::ordered_json::array();
     for (const auto& step : steps.steps) {
         nlohmann::ordered_json entry{{"step", plan::to_string(step.step)},
-                                     {"text", edit::step_text(step.step)}};
+                                     {"text", language::plan::step_text(step.step)}};
         if (step.words) entry["prompt"] = step.words->prompt;
         else entry["reason"] = step.problem.reason;
         json["steps"].push_back(std::move(entry));

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "engine/language/plan/plan_sentence.h"
+#include "engine/language/plan/plan_text.h"
 #include "engine/language/plan/words/lexicon.h"
 #include "engine/language/words.h"
 
@@ -36,22 +37,6 @@ constexpr std::array<Refusal, 9> Refusals{{
     {plan::reason::NotAnEdit, "the sentence asks for no change of the scene", DescribeScene},
     {plan::reason::NotInScene, "the sentence is about something else than the source",
      "say what in the scene it is about"},
-}};
-
-constexpr std::array<std::pair<Operation, const char*>, 13> Titles{{
-    {Operation::Recolour, "colour"},
-    {Operation::Material, "material"},
-    {Operation::Pattern, "pattern"},
-    {Operation::Transform, "move, turn or resize"},
-    {Operation::Pose, "pose"},
-    {Operation::Alter, "look"},
-    {Operation::Ground, "ground"},
-    {Operation::Remove, "remove"},
-    {Operation::Replace, "replace"},
-    {Operation::Add, "add"},
-    {Operation::Duplicate, "copy"},
-    {Operation::Style, "style"},
-    {Operation::Environment, "surroundings"},
 }};
 
 /// Words of a step that are news: the look, or the new thing.
@@ -98,7 +83,7 @@ bool is_place(const std::string& preposition, const std::string& noun) {
 Error several(const std::vector<plan::Step>& steps) {
     std::string list;
     for (std::size_t i = 0; i < steps.size(); ++i)
-        list += fmt::format("{}{} {}", i > 0 ? " · " : "", i + 1, step_text(steps[i]));
+        list += fmt::format("{}{} {}", i > 0 ? " · " : "", i + 1, plan::step_text(steps[i]));
     return Error(ErrorCode::InvalidArgument,
                  fmt::format("the sentence asks for {} changes ({})", steps.size(), list),
                  "make them one after another");
@@ -215,7 +200,7 @@ std::optional<Error> single_edit_problem(const EditRequest& request, const News&
     for (const auto& step : steps) {
         plan::StepProblem problem;
         if (!is_never_drawn(step.operation) || plan::sentence_of(step, {}, &problem)) continue;
-        return Error(ErrorCode::InvalidArgument, problem.reason + " (" + step_text(step) + ")",
+        return Error(ErrorCode::InvalidArgument, problem.reason + " (" + plan::step_text(step) + ")",
                      problem.remedy);
     }
     const auto certain = std::count_if(steps.begin(), steps.end(),
@@ -240,23 +225,6 @@ std::optional<Error> refusal_of(const plan::Plan& plan, const std::string& sourc
             return Error(ErrorCode::InvalidArgument, refusal.message, refusal.hint);
         }
     return Error(ErrorCode::InvalidArgument, "the sentence is not understood", DescribeScene);
-}
-
-std::string step_text(const plan::Step& step) {
-    const auto title = std::find_if(Titles.begin(), Titles.end(),
-                                    [&](const auto& entry) { return entry.first == step.operation; });
-    if (title == Titles.end()) return step.text;
-    std::string details = step.subject.links.empty() ? "" : to_string(step.subject);
-    const auto add = [&](const std::string& text) {
-        if (!text.empty()) details += (details.empty() ? "" : ", ") + text;
-    };
-    if (step.operation == Operation::Ground) add(step.text2 == "-" ? "" : step.text2);
-    if (!step.thing.noun.empty()) add(plan::phrase_of(step.thing));
-    add(step.text);
-    if (step.operation == Operation::Pattern) add(step.text2);
-    add(step.relation);
-    for (const auto& anchor : step.anchors) add(to_string(anchor));
-    return std::string(title->second) + ": " + details;
 }
 
 }  // namespace gse::edit

@@ -56,7 +56,4 @@ EditRequest in_plan_words(const EditRequest& request, const News& news);
 /// Sentence for a plan that changes nothing, or refuses. Nothing for another plan.
 std::optional<Error> refusal_of(const language::plan::Plan& plan, const std::string& source);
 
-/// "colour: bear, blue".
-std::string step_text(const language::plan::Step& step);
-
 }  // namespace gse::edit

@@ -6,6 +6,7 @@
 
 #include "engine/base/error.h"
 #include "engine/edit/request/sentence_plan.h"
+#include "engine/language/plan/plan_text.h"
 
 namespace sentence_plan_test {
 
@@ -97,7 +98,7 @@ DOCTEST_TEST_CASE("each step is described in the scene that the steps before it 
     DOCTEST_CHECK(steps[1].words->prompt == "a blue bear wearing a red hat on the grass");
     DOCTEST_CHECK(steps[1].words->target == "hat");
     DOCTEST_CHECK(steps[1].words->mode == edit::EditMode::Add);
-    DOCTEST_CHECK(edit::step_text(steps[0].step) == "colour: bear, blue");
+    DOCTEST_CHECK(plan::step_text(steps[0].step) == "colour: bear, blue");
 }
 
 DOCTEST_TEST_CASE("every step that can be done is an edit whose words pass the check as they are") {
@@ -108,7 +109,7 @@ DOCTEST_TEST_CASE("every step that can be done is an edit whose words pass the c
           "replace the bear with a dog, and make it black"}) {
         DOCTEST_CAPTURE(prompt);
         for (const auto& step : edit::planned_steps(edit::plan_of(request(prompt), scene), scene)) {
-            DOCTEST_CAPTURE(edit::step_text(step.step));
+            DOCTEST_CAPTURE(plan::step_text(step.step));
             if (!step.words) {
                 DOCTEST_CHECK(!step.problem.reason.empty());
                 DOCTEST_CHECK(!step.problem.remedy.empty());
