@@ -50,9 +50,8 @@ constexpr double SameThing = 0.2;  // IoU of what a glance found and of what is 
                                    // label among what was found
 // Multiple of the distance of a sure glance. Anything that would be framed from farther off is no object.
 constexpr double MostBack = 1.25;
-// Multiple of the distance where the edges of the pictures cut off what was found; a step each.
-constexpr std::array<double, 2> StepsOff{1.5, 2.25};
-constexpr std::size_t FrontViews = 12;  // in which the front of a scene is looked for
+constexpr std::array<double, 2> StepsOff{1.5, 2.25};  // of the distance, where pictures cut a finding off
+constexpr std::size_t FrontViews = 12;                // in which the front of a scene is looked for
 
 /// Room for an addition around the source; beside it more than on it.
 double room_around(language::Relation relation) {
@@ -227,7 +226,7 @@ private:
         CheckedRecipe scan = recipe_;
         scan.request.views = std::min(scan.request.views, ScanViews);
         for (const double step : StepsOff) {
-            const double cut = cut_of(located);
+            const double cut = cut_of(located), sure = located.result.confidence.value;
             if (cut <= edit::MostCut) break;
             log::info("\"{}\" goes on beyond the pictures; it is looked for from farther off",
                       located.result.word);
@@ -236,7 +235,8 @@ private:
             if (glance.problem != edit::SearchProblem::None || !same_thing(glance, located.result)) continue;
             Located whole = seen_from(
                 faced(views_on(focused_on(thing_of(glance), glance.mode, off.orbit, off.front), recipe_)));
-            if (shows_finding(whole) && cut_of(whole) < cut) located = std::move(whole);
+            if (shows_finding(whole) && 2 * whole.result.confidence.value >= sure && cut_of(whole) < cut)
+                located = std::move(whole);
         }
         return located;
     }
