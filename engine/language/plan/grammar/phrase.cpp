@@ -127,8 +127,9 @@ bool Cursor::ends_phrase(std::size_t ahead, bool after_noun) const {
         if (peek(kind, ahead)) return true;
     if (!after_noun) return peek(Class::copula, ahead).length > 0 && noun_length(ahead) == 0;
     const bool thing = (kinds_of(word(ahead).text) & Concrete) != 0;
+    const bool owner = at + ahead > 0 && is_scene_noun(words_[at + ahead - 1].singular);  // "the bear fly"
     for (const auto kind : EndingAfterNoun)
-        if (peek(kind, ahead) && !(thing && kind == Class::verb_pose)) return true;
+        if (peek(kind, ahead) && !(thing && kind == Class::verb_pose && !owner)) return true;
     return false;
 }
 

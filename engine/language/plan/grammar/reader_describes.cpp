@@ -320,7 +320,8 @@ bool Reader::describe_more() {
 /// "blue", "bigger", "on snow", "wearing a hat": of the thing that the sentence is about.
 bool Reader::attribute_clause() {
     const std::size_t start = c_.at;
-    const auto target = described_ && described_->found() ? *described_ : d_.focus();
+    const bool made = (frame_ == Frame::Replace || frame_ == Frame::Add) && d_.last() && d_.last()->step;
+    const auto target = made ? *d_.last() : described_ && described_->found() ? *described_ : d_.focus();
     Attribute attribute;
     Cursor ahead = c_;
     ahead.take(Class::article);

@@ -207,9 +207,11 @@ bool Reader::keep_clause() {
             d_.nothing_asked();
             return true;
         }
-        while (object.take(Class::conjunction) || object.take_mark(',')) {
+        while (true) {
             Cursor more = object;
-            if (starts_verb(more.at - c_.at) || !more.take_phrase(phrase)) break;
+            more.take_mark(',');
+            more.take(Class::conjunction);
+            if (more.at == object.at || starts_verb(more.at - c_.at) || !more.take_phrase(phrase)) break;
             object.at = more.at;
         }
         // "leave the bear green": nothing to do either way; "leave out the hat" is a removal
