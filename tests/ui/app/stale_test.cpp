@@ -25,8 +25,9 @@ std::string text_of(const auto& settings) { return fields_to_json(settings).dump
 
 void show(Shown& shown, const ui::DocumentPart& part) {
     const auto& [document, opened, statistics, scene_path, project_path, suggested, unsaved, saved_at, recent,
-                 recoverable, embeds, linked, lost] = part;
-    static_cast<void>(opened), static_cast<void>(recent);  // of the window
+                 recent_pictures, recoverable, embeds, linked, lost] = part;
+    static_cast<void>(opened), static_cast<void>(recent),
+        static_cast<void>(recent_pictures);  // of the window
     shown["document.steps"] = document == nullptr ? "none" : fmt::format("{}", document->names().size());
     shown["document.splats"] = fmt::format("{}", statistics.count);
     shown["document.paths"] = fmt::format("{} {} {}", scene_path, project_path, suggested);
@@ -37,13 +38,14 @@ void show(Shown& shown, const ui::DocumentPart& part) {
 }
 
 void show(Shown& shown, const ui::ViewportPart& part) {
-    const auto& [picture, original, width, height, depth, camera, orbit, framing, milliseconds, renderer,
-                 hidden, view, comparison, compared_revision, compared_name] = part;
+    const auto& [picture, original, width, height, depth, camera, orbit, home, framing, colour, milliseconds,
+                 renderer, hidden, view, comparison, pictures, compared_revision, compared_name] = part;
     static_cast<void>(picture), static_cast<void>(original), static_cast<void>(depth);  // of the device
-    static_cast<void>(milliseconds), static_cast<void>(renderer);
+    static_cast<void>(milliseconds), static_cast<void>(renderer), static_cast<void>(colour);
     shown["view.size"] = fmt::format("{} {}", width, height);
     shown["view.camera"] = fmt::format("{} {}", camera.translation.x, camera.translation.z);
-    shown["view.orbit"] = fmt::format("{} {}", orbit.radius, framing.high.x);
+    shown["view.orbit"] = fmt::format("{} {} {}", orbit.radius, home.high.x, framing.high.x);
+    shown["view.pictures"] = fmt::format("{}", pictures.size());
     shown["view.hidden"] = fmt::format("{}", hidden);
     shown["view.settings"] = text_of(view);
     shown["view.comparison"] =
