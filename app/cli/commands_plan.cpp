@@ -111,7 +111,8 @@ plan::SceneWords words_of_scene(const PlanOptions& options) {
 void plan_prompt(const PlanOptions& options) {
     const auto made = plan::plan_sentence(options.prompt, words_of_scene(options), options.source);
     if (!options.json) {
-        print("{}", plan::plan_text(made));
+        for (std::size_t i = 0; i < made.steps.size(); ++i)
+            print("{} {}\n", i + 1, plan::step_text(made.steps[i]));
         return;
     }
     Json steps = Json::array();

@@ -52,11 +52,4 @@ std::string step_text(const Step& step) {
     return step.anchors.empty() ? text : text + " " + said(step.anchors);
 }
 
-std::string plan_text(const Plan& plan) {
-    std::string text;
-    for (std::size_t i = 0; i < plan.steps.size(); ++i)
-        text += std::to_string(i + 1) + " " + step_text(plan.steps[i]) + "\n";
-    return text;
-}
-
 }  // namespace gse::language::plan

@@ -10,7 +10,4 @@ namespace gse::language::plan {
 /// One step: "colour: bear, blue", "add: hat (red), worn by bear".
 std::string step_text(const Step& step);
 
-/// One line for each step, numbered.
-std::string plan_text(const Plan& plan);
-
 }  // namespace gse::language::plan
