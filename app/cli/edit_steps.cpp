@@ -52,6 +52,7 @@ EditSteps steps_of_sentence(const EditRecipe& recipe, const std::string& scene_w
     const auto scene = words_of_scene(recipe, scene_words, control, std::move(cache));
     EditSteps result;
     result.plan = edit::plan_of(recipe.request, scene);
+    if (edit::is_told_as_typed(recipe.request, result.plan)) return {};
     result.nothing_to_change = result.plan.steps.front().operation == plan::Operation::None;
     if (result.nothing_to_change) return result;
     if (const auto refused = edit::refusal_of(result.plan, recipe.request.source)) throw *refused;

@@ -171,7 +171,8 @@ void JobThread::run(Job job, const std::stop_token& stop) {
         const double seconds = std::chrono::duration<double>(Clock::now() - start_ - paused_time_).count();
         status_.running = status_.paused = false;
         status_.seconds = seconds;
-        if (!failure) status_.outcome = "done";
+        // A stopped job may hand over what it had reached.
+        if (!failure) status_.outcome = stop.stop_requested() ? "stopped" : "done";
         else if (failure->code() == ErrorCode::Cancelled) status_.outcome = "stopped";
         else status_.outcome = "failed", status_.error = failure->what();
         *handing_over_ = true;

@@ -66,6 +66,26 @@ bool describes(const plan::Step& step, const language::Sentence& sentence) {
     return sentence.contains(language::normalised_prompt(step.text + " " + step.subject.links[0].noun));
 }
 
+/// True for a sentence that describes the scene after the edit, and is no order.
+bool is_description(const language::Sentence& sentence) {
+    return !sentence.empty() && language::is_a(sentence.words().front(), language::Article);
+}
+
+/// True for an addition that a description names: the scene may show it already.
+bool may_be_shown(const plan::Step& step, const language::Sentence& sentence) {
+    return describes(step, sentence) || (step.operation == Operation::Add && is_description(sentence));
+}
+
+/// True where the sentence is about what wears the source, or stands on it, and does not name it: "a bear
+/// wearing a crown" for a hat. Which of its words is new, pictures say.
+bool is_around_source(const EditRequest& request, const language::Sentence& sentence) {
+    const auto source = language::normalised_prompt(request.source);
+    const auto scene = plan::scene_words(source);
+    const bool carried =
+        scene.ground() || language::listed_place(source) || (plan::kinds_of(source) & plan::Worn) != 0;
+    return carried && !sentence.contains(source);
+}
+
 /// True for operations that no model is asked to draw.
 bool is_never_drawn(Operation operation) {
     return operation == Operation::Remove || operation == Operation::Transform ||
@@ -168,6 +188,12 @@ EditRequest request_of(EditRequest request, const plan::StepSentence& words) {
     return request;
 }
 
+bool is_told_as_typed(const EditRequest& request, const plan::Plan& plan) {
+    const language::Sentence sentence(request.prompt);
+    if (is_around_source(request, sentence)) return true;
+    return is_description(sentence) && plan.steps.front().text == plan::reason::NotASentence;
+}
+
 bool pictures_decide(const EditRequest& request) {
     if (!is_planned(request)) return false;
     const auto scene = assumed_scene(request);
@@ -181,7 +207,7 @@ bool pictures_decide(const EditRequest& request) {
 }
 
 EditRequest in_plan_words(const EditRequest& request, const News& news) {
-    if (!is_planned(request)) return request;
+    if (!is_planned(request) || is_around_source(request, language::Sentence(request.prompt))) return request;
     const auto scene = assumed_scene(request);
     auto plan = plan_of(request, scene);
     plan.steps = news_among(std::move(plan.steps), news);
@@ -194,7 +220,10 @@ std::optional<Error> single_edit_problem(const EditRequest& request, const News&
     if (!is_planned(request)) return std::nullopt;
     const language::Sentence sentence(request.prompt);
     const auto plan = plan_of(request, assumed_scene(request));
-    if (auto refused = refusal_of(plan, request.source)) return refused;
+    if (auto refused = refusal_of(plan, request.source)) {
+        if (is_told_as_typed(request, plan)) return std::nullopt;
+        return refused;
+    }
     const auto steps = news_among(plan.steps, news);
     if (steps.empty()) return std::nullopt;  // the same edit once more
     for (const auto& step : steps) {
@@ -204,8 +233,8 @@ std::optional<Error> single_edit_problem(const EditRequest& request, const News&
                      problem.remedy);
     }
     const auto certain = std::count_if(steps.begin(), steps.end(),
-                                       [&](const auto& step) { return !describes(step, sentence); });
-    if (certain > 1) return several(steps);
+                                       [&](const auto& step) { return !may_be_shown(step, sentence); });
+    if (certain > 1 && !is_around_source(request, sentence)) return several(steps);
     return std::nullopt;
 }
 

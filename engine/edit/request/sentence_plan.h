@@ -34,6 +34,10 @@ std::vector<PlannedStep> planned_steps(const language::plan::Plan& plan, languag
 /// True for a request whose sentence says everything: source named; target, mode and instruction left open.
 bool is_planned(const EditRequest& request);
 
+/// True for a sentence that is told as it is typed, whatever its plan: a description that no plan is made of,
+/// or one of what is around the source.
+bool is_told_as_typed(const EditRequest& request, const language::plan::Plan& plan);
+
 /// True where the typed sentence is read as the step already, by source, kind of change and new words.
 bool says_itself(const EditRequest& request, const language::plan::StepSentence& words);
 

@@ -2,6 +2,7 @@
 #include "engine/pipeline/run/scene_words.h"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -42,6 +43,28 @@ std::vector<std::string> of_class(const std::vector<std::string>& known, languag
     return result;
 }
 
+/// Thing that the scene's first thing wears, with its look; nothing where the sentence without fits best.
+std::optional<language::plan::SceneThing> worn_shown(edit::VocabularyRanker& ranker,
+                                                     const std::vector<std::string>& known,
+                                                     const language::plan::SceneWords& scene,
+                                                     const std::vector<const Image*>& pictures) {
+    const auto& subject = scene.things.front();
+    if (subject.is_ground || subject.attributes.empty()) return std::nullopt;
+    const auto place = scene.ground();
+    const std::string thing = "a " + subject.attributes.front() + " " + subject.noun;
+    const std::string on = place ? " on the " + scene.things[*place].noun : std::string();
+    double most = ranker.fit(thing + on, pictures);
+    std::optional<language::plan::SceneThing> best;
+    for (const auto& worn : known)
+        if (language::listed_place(worn))
+            for (const auto& look :
+                 of_class(known, language::WordClass::Colour | language::WordClass::Material)) {
+                const double fit = ranker.fit(thing + " wearing a " + look + " " + worn + on, pictures);
+                if (fit > most) most = fit, best = {worn, {look}, false, true};
+            }
+    return best;
+}
+
 }  // namespace
 
 language::plan::SceneWords scene_words_shown(RunContext& context, const CheckedRecipe& recipe,
@@ -74,6 +97,10 @@ language::plan::SceneWords scene_words_shown(RunContext& context, const CheckedR
                     pictures, [&](const auto& word) { return "a " + word + " " + subject.noun + on; });
         if (!look.word.empty()) subject.attributes = {look.word};
         log::info("the scene shows \"{} {}\"{} (lead {:.4f})", look.word, subject.noun, on, look.lead);
+    }
+    if (const auto worn = worn_shown(ranker, known, scene, pictures)) {
+        log::info("it wears \"{}\"", worn->noun);
+        scene.things.push_back(*worn);
     }
     return scene;
 }

@@ -98,6 +98,23 @@ DOCTEST_TEST_CASE("one job at a time; cancel ends it and says stopped") {
     DOCTEST_CHECK(jobs.status().error.empty());
 }
 
+DOCTEST_TEST_CASE("a job that hands over what it had reached when it was cancelled says stopped") {
+    MainQueue queue;
+    JobThread jobs(queue);
+    bool ended = false, failed = true;
+    const auto reaches = [](const JobControl& job) {
+        while (!job.stop_requested()) std::this_thread::sleep_for(1ms);
+    };
+    DOCTEST_REQUIRE(jobs.start({"reaches", reaches, [&](const Error* error) {
+                                    ended = true;
+                                    failed = error != nullptr;
+                                }}));
+    jobs.cancel();
+    DOCTEST_REQUIRE(wait_for(queue, [&] { return ended; }));
+    DOCTEST_CHECK_FALSE(failed);
+    DOCTEST_CHECK(jobs.status().outcome == "stopped");
+}
+
 DOCTEST_TEST_CASE("a paused job stands still, goes on, and can be cancelled while paused") {
     MainQueue queue;
     JobThread jobs(queue);

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <string>
+#include <utility>
 
 #include "engine/base/error.h"
 #include "engine/edit/request/sentence_plan.h"
@@ -72,6 +73,20 @@ DOCTEST_TEST_CASE("what no edit does is refused in words, and not done otherwise
     DOCTEST_CHECK(!refused(request("undo the last change")).empty());
     DOCTEST_CHECK(refused(request("paint the bear blue and give it a hat")).find("2 changes") !=
                   std::string::npos);
+}
+
+DOCTEST_TEST_CASE("what a description may only repeat is left to pictures of the scene") {
+    for (const auto& [prompt, source] :
+         {std::pair{"a red bear wearing a hat and a scarf on the snow", "bear"},
+          std::pair{"a bear wearing a golden crown", "hat"},
+          std::pair{"a blue cat wearing a purple crown on the sand", "snow"},
+          std::pair{"a bear standing on the grass wearing a red hat", "bear"}}) {
+        const std::string typed = prompt;
+        DOCTEST_CAPTURE(typed);
+        const auto checked = edit::check(request(typed, source));
+        DOCTEST_CHECK(checked.prompt() == typed);
+        DOCTEST_CHECK(checked.target_open());
+    }
 }
 
 DOCTEST_TEST_CASE("words that were chosen are taken as they are") {

@@ -146,6 +146,16 @@ void Reader::skip_rest() {
     Phrase other;
     Attribute attribute;
     const bool changes = frame_ == Frame::Make || frame_ == Frame::Paint || frame_ == Frame::Turn;
+    Cursor place = c_;  // "paint the bear golden on the grass": the grass is there
+    if (const auto relation = place.take(Class::relation);
+        changes && (relation.value == "on" || relation.value == "in")) {
+        Phrase ground;
+        if (place.take_phrase(ground) && ground.definite && is_ground(ground) && place.at_end_of_clause() &&
+            !d_.things_named(ground).empty()) {
+            c_.at = place.at;
+            return;
+        }
+    }
     if (!changes || (!ahead.take(Class::rather_than) && !ahead.take(Class::except))) return;
     Cursor thing = ahead;
     if (thing.take_phrase(other) && d_.resolve(other).found()) c_.at = thing.at;

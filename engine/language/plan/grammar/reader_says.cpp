@@ -393,7 +393,9 @@ bool Reader::predicate(const Targets& subjects) {
     if (const auto read = has_something(subjects)) return *read || back();
     if (c_.peek(Class::emerging) && c_.peek(Class::relation, c_.peek(Class::emerging).length)) {
         c_.take(Class::emerging);
-        return related(subjects.front()) || back();
+        if (!related(subjects.front())) return back();
+        posts(subjects.front());  // "stands on the grass wearing a hat"
+        return true;
     }
     if (c_.peek(Class::copula) || c_.peek(Class::look_word) || c_.peek(Class::verb_become) || modal) {
         return is_somehow(subjects) || back();

@@ -262,6 +262,7 @@ bool Reader::paint_clause() {
     if (!carve && gold.take_attribute(metal, false) && metal.quality == Quality::Material) {
         c_.at = gold.at;
         for (const auto& target : targets) d_.step(Operation::Recolour, target, metal.value);
+        skip_rest();
         return true;
     }
     return complement(targets);
