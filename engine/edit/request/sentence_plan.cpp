@@ -163,8 +163,8 @@ bool is_planned(const EditRequest& request) {
            !request.source.empty();
 }
 
-bool says_itself(const EditRequest& request, const plan::StepSentence& words) {
-    const auto guessed = with_target(request, {});
+bool says_itself(const EditRequest& request, const plan::StepSentence& words, const News& news) {
+    const auto guessed = with_target(request, news);
     const language::EditSentence sentence(language::Sentence(request.prompt),
                                           language::normalised_prompt(request.source), guessed.target);
     if (sentence.source() != words.source || decide_mode(sentence, std::nullopt).first != words.mode)
@@ -213,7 +213,7 @@ EditRequest in_plan_words(const EditRequest& request, const News& news) {
     plan.steps = news_among(std::move(plan.steps), news);
     if (plan.steps.size() != 1) return request;
     const auto words = plan::sentence_of(plan.steps.front(), scene);
-    return words && !says_itself(request, *words) ? request_of(request, *words) : request;
+    return words && !says_itself(request, *words, news) ? request_of(request, *words) : request;
 }
 
 std::optional<Error> single_edit_problem(const EditRequest& request, const News& news) {

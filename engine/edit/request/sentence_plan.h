@@ -39,7 +39,8 @@ bool is_planned(const EditRequest& request);
 bool is_told_as_typed(const EditRequest& request, const language::plan::Plan& plan);
 
 /// True where the typed sentence is read as the step already, by source, kind of change and new words.
-bool says_itself(const EditRequest& request, const language::plan::StepSentence& words);
+bool says_itself(const EditRequest& request, const language::plan::StepSentence& words,
+                 const News& news = {});
 
 /// The request in a step's words.
 EditRequest request_of(EditRequest request, const language::plan::StepSentence& words);

@@ -89,6 +89,14 @@ DOCTEST_TEST_CASE("what a description may only repeat is left to pictures of the
     }
 }
 
+DOCTEST_TEST_CASE("what earlier edits said is no change of its own") {
+    const edit::News news{{"a", "bear", "hat"}};
+    const auto checked = edit::check(request("a red bear wearing a hat on the snow"), news);
+    DOCTEST_CHECK(checked.prompt() == "a red bear wearing a hat on the snow");
+    DOCTEST_CHECK(checked.target() == "red");
+    DOCTEST_CHECK(checked.target_open());
+}
+
 DOCTEST_TEST_CASE("words that were chosen are taken as they are") {
     auto wanted = request("remove the bear");
     wanted.target = "bear";
