@@ -127,6 +127,12 @@ SentenceFacts facts_of(const edit::EditRequest& request, const SentenceGround& g
     }
     facts.problem = problem_of(request, ground, facts);
     facts.locate_problem = locate_problem_of(language::normalised_prompt(request.source), ground, facts);
+    const auto& told = facts.told.prompt;
+    for (auto& chip : facts.chips) {  // words of an order are not for the model; a slip is still offered
+        const bool slip = !chip.suggestion.empty() && language::has_phrase(told, chip.suggestion);
+        if (!told.empty() && !slip && !language::has_phrase(told, chip.text))
+            chip.known = true, chip.suggestion.clear();
+    }
     const auto& target = request.target.empty() ? facts.guessed_target : request.target;
     for (std::size_t index = 0; index < facts.chips.size(); ++index) {
         auto& chip = facts.chips[index];

@@ -342,6 +342,14 @@ std::string reach_text(const Context& context) {
     return fmt::format("Will search for \"{}\" first.", word);
 }
 
+/// reach_text() behind the sentence that the model is told, where that is not the typed one.
+std::string plan_text(const Context& context) {
+    const std::string reach = reach_text(context);
+    const auto& told = context.state.prompt.told.prompt;
+    if (reach.empty() || told.empty() || !context.request.target.empty()) return reach;
+    return fmt::format("Read as \"{}\". {}", told, reach);
+}
+
 /// The other way; empty = there is none.
 std::string other_reach(const Context& context) {
     const auto& reach = context.model.reach;
@@ -360,7 +368,7 @@ bool reach_in_line(const std::string& text, const std::string& other) {
 }
 
 float reach_height(const Context& context) {
-    const std::string text = reach_text(context), other = other_reach(context);
+    const std::string text = plan_text(context), other = other_reach(context);
     if (text.empty()) return 0;
     const float gap = ImGui::GetStyle().ItemSpacing.y,
                 button_row = other.empty() ? 0 : ImGui::GetFrameHeight() + gap;
@@ -370,7 +378,7 @@ float reach_height(const Context& context) {
 }
 
 void draw_reach(Context& context) {
-    const std::string text = reach_text(context), other = other_reach(context);
+    const std::string text = plan_text(context), other = other_reach(context);
     if (text.empty()) return;
     const bool in_line = !other.empty() && reach_in_line(text, other);
     if (in_line) ImGui::AlignTextToFramePadding();

@@ -242,6 +242,27 @@ DOCTEST_TEST_CASE("where the text encoder stops reading is said, and a target be
     DOCTEST_CHECK(facts.problem.empty());
 }
 
+DOCTEST_TEST_CASE("an order is told as a description, and its own words are not marked as unknown") {
+    edit::EditRequest request;
+    request.source = "bear";
+    request.prompt = "give it a red hat";
+    ui::SentenceGround ground;
+    ground.known = {"bear", "hat", "red", "a", "wearing"};
+    const auto facts = ui::facts_of(request, ground);
+    DOCTEST_CHECK(facts.problem.empty());
+    DOCTEST_CHECK(facts.told.prompt == "a bear wearing a red hat");
+    DOCTEST_CHECK(facts.guessed_target == "hat");
+    for (const auto& chip : facts.chips) DOCTEST_CHECK_MESSAGE(chip.known, chip.text);
+    request.prompt = "give it a red fez";  // nothing that the model can make
+    DOCTEST_CHECK_FALSE(ui::facts_of(request, ground).problem.empty());
+    request.prompt = "remove the bear";
+    DOCTEST_CHECK(ui::facts_of(request, ground).problem.find("not removed") != std::string::npos);
+    request.prompt = "paint it red and give it a hat";
+    DOCTEST_CHECK(ui::facts_of(request, ground).problem.find("2 changes") != std::string::npos);
+    request.prompt = "ein roter Hut";
+    DOCTEST_CHECK(ui::facts_of(request, ground).problem.find("English") != std::string::npos);
+}
+
 DOCTEST_TEST_CASE("the thresholded picture keeps what is above and darkens the rest") {
     Image render(40, 30, 3, 0.5f), map(20, 15, 1, 0.1f);
     for (int y = 4; y < 10; ++y)
