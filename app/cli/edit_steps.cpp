@@ -20,7 +20,7 @@ namespace plan = language::plan;
 /// The scene's words: those that were given, else the source and what pictures show of it.
 plan::SceneWords words_of_scene(const EditRecipe& recipe, const std::string& given, const JobControl& control,
                                 std::shared_ptr<DiskCache> cache) {
-    if (!given.empty()) return plan::scene_words(given);
+    if (!given.empty()) return plan::scene_words(edit::with_source(given, recipe.request));
     auto scene = edit::assumed_scene(recipe.request);
     if (!edit::pictures_decide(recipe.request)) return scene;
     EditRecipe looking = recipe;

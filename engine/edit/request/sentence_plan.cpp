@@ -137,6 +137,16 @@ plan::SceneWords assumed_scene(const EditRequest& request) {
     return scene;
 }
 
+std::string with_source(const std::string& words, const EditRequest& request) {
+    const auto source = language::normalised_prompt(request.source);
+    const auto noun = plan::scene_words(source);
+    const auto scene = plan::scene_words(words);
+    const bool named = std::any_of(scene.things.begin(), scene.things.end(), [&](const auto& thing) {
+        return !noun.things.empty() && thing.noun == noun.things.front().noun;
+    });
+    return named ? words : source + "; " + words;
+}
+
 plan::Plan plan_of(const EditRequest& request, const plan::SceneWords& scene) {
     return plan::plan_sentence(request.prompt, scene, language::normalised_prompt(request.source));
 }

@@ -24,6 +24,9 @@ struct PlannedStep {
 /// known ("on the grass").
 language::plan::SceneWords assumed_scene(const EditRequest& request);
 
+/// The scene's words with the request's source first, where none of them names it.
+std::string with_source(const std::string& words, const EditRequest& request);
+
 /// The operations that the sentence asks for in a scene of these words.
 language::plan::Plan plan_of(const EditRequest& request, const language::plan::SceneWords& scene);
 

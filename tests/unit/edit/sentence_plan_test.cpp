@@ -145,6 +145,16 @@ DOCTEST_TEST_CASE("every step that can be done is an edit whose words pass the c
     }
 }
 
+DOCTEST_TEST_CASE("the source is among the scene's words, whatever they leave out") {
+    const auto wanted = request("make it golden");
+    DOCTEST_CHECK(edit::with_source("red bear; grass", wanted) == "red bear; grass");
+    for (const std::string words : {";;", "grass", "red house; grass"}) {
+        DOCTEST_CAPTURE(words);
+        const auto scene = plan::scene_words(edit::with_source(words, wanted));
+        DOCTEST_CHECK(to_string(edit::plan_of(wanted, scene)) == "material(bear, golden)");
+    }
+}
+
 DOCTEST_TEST_CASE("pictures are asked where a look or a ground may be there already, and only there") {
     DOCTEST_CHECK(edit::pictures_decide(request("a blue bear wearing a red hat")));
     DOCTEST_CHECK(edit::pictures_decide(request("a golden bear on the snow")));
