@@ -66,7 +66,7 @@ GSE_CONSTANT(float, EllipsoidShade, 0.55f);  // how much darker the rim is than 
 GSE_CONSTANT(float, DimmedBeauty, 0.35f);    // brightness of the picture under a colour map
 GSE_CONSTANT(float, LeastSolid, 0.3f);       // alpha of a pixel to have a depth that can be picked
 GSE_CONSTANT(float, MapCoverage, 0.85f);     // how much of the map shows where the value is 1
-// What has the tint's own hue, as a red thing under orange, is hatched in the complementary colour.
+// A surface of the tint's own hue (red under orange) is hatched in the complementary colour.
 GSE_CONSTANT(uint, HatchPeriod, 10u);     // px, of the hatching's diagonal lines
 GSE_CONSTANT(uint, HatchWidth, 4u);       // px
 GSE_CONSTANT(float, OtherHue, 0.75f);     // cosine between the hues, up to which they are told apart,

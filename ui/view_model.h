@@ -357,7 +357,7 @@ struct ViewportPart {
     std::size_t hidden = 0;  // splats of the scene that the artist does not want to see at present
     ViewSettings view;
     Comparison comparison = Comparison::None;
-    // Of the document's views; null = not drawn yet (command::DrawView).
+    // Pictures of the document's views; null = not drawn yet (command::DrawView).
     std::vector<std::shared_ptr<const Image>> view_pictures;
     std::uint64_t compared_revision = 0;  // of the step that comparisons show as before; 0 = the usual
     std::string compared_name;            // of that step

@@ -15,7 +15,7 @@
 namespace gse::pipeline {
 namespace {
 
-constexpr std::size_t ReadingViews = 6;  // of all sides; more changed no reading of the drawn scenes
+constexpr std::size_t ReadingViews = 6;  // of all sides
 
 /// The entry whose sentence fits the pictures best, and its lead over the next one.
 struct Reading {

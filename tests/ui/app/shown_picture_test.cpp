@@ -57,7 +57,7 @@ DOCTEST_TEST_CASE("a screenshot shows what the viewport shows: its size, its tin
     app.run(command::SetViewSettings{view});
     const Image plain = written("plain.png");
     DOCTEST_CHECK(difference(tinted, plain, 0, 320) > 0.2f);
-    // What is seen at a pixel is what is picked there.
+    // The colour seen at a pixel is picked there.
     app.run(command::PickColour{150, 110});
     for (int c = 0; c < 3; ++c)
         DOCTEST_CHECK(std::abs(app.model().seen_colour.colour[static_cast<std::size_t>(c)] -

@@ -81,7 +81,7 @@ DOCTEST_TEST_CASE("curves and figures of the cost are folded away until they are
     harness.frame(3);
     for (const char* hidden : {"progress.losses", "progress.norms", "progress.networks"})
         DOCTEST_CHECK(harness.find(hidden) == nullptr);
-    // What a running edit is stopped by stays in sight.
+    // Buttons that stop a running edit stay in sight.
     for (const char* shown : {"progress.pause", "progress.cancel", "progress.snapshot"})
         DOCTEST_CHECK(harness.rect(shown).visible);
     harness.click("progress.cost");

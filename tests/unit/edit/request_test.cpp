@@ -519,7 +519,7 @@ DOCTEST_TEST_CASE(
     DOCTEST_CHECK(language::nearest_words("bears", known) == std::vector<std::string>{"bear"});
     DOCTEST_CHECK(language::nearest_words("hta", known) == std::vector<std::string>{"hat"});
     DOCTEST_CHECK(language::nearest_words("sign", known).empty());
-    // What means something of its own is not replaced by what looks like it.
+    // A word with a meaning of its own is not replaced by one of like letters.
     const std::vector<std::string> looks{"beard", "brass", "car", "dog", "hat", "red", "vase", "flames"};
     using Words = std::vector<std::string>;
     DOCTEST_CHECK(language::nearest_words("bears", looks) == Words{"dog"});  // of its kind

@@ -135,7 +135,7 @@ DOCTEST_TEST_CASE("the tint shows on things of every colour, its own hue among t
         DOCTEST_CAPTURE(colour[1]);
         DOCTEST_CHECK(change > LeastSeen);
         before = plain[0] - plain[2], after = tinted[0] - tinted[2];
-        // What is red or orange already turns cooler; anything else turns warmer.
+        // Red and orange turn cooler; any other colour turns warmer.
         const bool warm = colour[0] - colour[2] > 0.4f;
         DOCTEST_CHECK((warm ? after < before : after > before));
     }

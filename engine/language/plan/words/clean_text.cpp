@@ -93,8 +93,8 @@ struct Rule {
 
 /// Marks of programs: what has them is no sentence of an artist.
 const std::regex& code_pattern() {
-    static const std::regex Pattern(
-        R"(\$\(|%[snxd]%|\.\./|https?://|www\.|</?[a-z]+>|;\s*drop |\{\s*'?[a-z_]+'?\s*:|\\x|<\?|\[\[|\w\(\)|&&|\|\||==)");
+    static const std::regex Pattern(R"(\$\(|%[snxd]%|\.\./|https?://|www\.|</?[a-z]+>|;\s*drop |)"
+                                    R"(\{\s*'?[a-z_]+'?\s*:|\\x|<\?|\[\[|\w\(\)|&&|\|\||==)");
     return Pattern;
 }
 
