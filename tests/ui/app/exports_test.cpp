@@ -71,11 +71,7 @@ DOCTEST_TEST_CASE("a label that was made by hand is exported, too") {
     Session session;
     session.open_bear();
     auto& app = session.app;
-    ui::ScreenRegion stroke;
-    stroke.circles = {{160, 120}};
-    stroke.radius_px = 20;
-    app.run(command::AddLabel{"mine"});
-    app.run(command::Select{stroke, ui::SetOperation::Add, true});
+    session.label_the_middle();
     auto exports = app.model().exports;
     exports.scene_path = (place.folder / "scene.ply").string();
     exports.with_labels = true;

@@ -53,11 +53,7 @@ DOCTEST_TEST_CASE("a scene far from the origin is exported to its place, with th
     app.run(command::Open{place.folder / "far.ply"});
     DOCTEST_REQUIRE(session.until([&] { return app.model().document != nullptr; }));
     DOCTEST_CHECK(session.until([&] { return said(app, "coordinates are large"); }, 10));
-    ui::ScreenRegion stroke;
-    stroke.circles = {{160, 120}};
-    stroke.radius_px = 20;
-    app.run(command::AddLabel{"mine"});
-    app.run(command::Select{stroke, ui::SetOperation::Add, true});
+    session.label_the_middle();
     app.run(command::DeleteLabelledSplats{});
     app.run(command::AddView{});
     auto exports = app.model().exports;

@@ -79,6 +79,14 @@ struct Session {
         DOCTEST_REQUIRE(until([&] { return app.model().document != nullptr; }));
         ask_for_blue();
     }
+    /// A new label "mine" over what a brush of that radius covers in the middle of the viewport.
+    void label_the_middle(float radius_px = 20) {
+        ui::ScreenRegion stroke;
+        stroke.circles = {{160, 120}};
+        stroke.radius_px = radius_px;
+        app.run(command::AddLabel{"mine"});
+        app.run(command::Select{stroke, ui::SetOperation::Add, true});
+    }
     void ask_for_blue() {
         auto request = app.model().request;
         request.source = "bear";

@@ -34,11 +34,7 @@ DOCTEST_TEST_CASE("a screenshot shows what the viewport shows: its size, its tin
     Session session;
     session.open_bear();
     auto& app = session.app;
-    ui::ScreenRegion stroke;
-    stroke.circles = {{160, 120}};
-    stroke.radius_px = 40;
-    app.run(command::AddLabel{"mine"});
-    app.run(command::Select{stroke, ui::SetOperation::Add, true});
+    session.label_the_middle(40);
     auto exports = app.model().exports;
     DOCTEST_CHECK(exports.as_shown);  // unless the artist says otherwise
     const auto written = [&](const char* name) {
