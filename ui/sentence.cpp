@@ -13,6 +13,7 @@
 #include "engine/edit/request/sentence_plan.h"
 #include "engine/edit/request/vocabulary.h"
 #include "engine/language/news.h"
+#include "engine/language/plan/plan_text.h"
 #include "engine/language/sentence.h"
 #include "engine/language/vocabulary.h"
 #include "engine/language/words.h"
@@ -55,12 +56,65 @@ bool within(const std::string& sentence, const std::string& phrase, std::size_t 
     return index >= first && index < first + language::words_of(phrase).size();
 }
 
+/// Why the model cannot draw or find the request's words; empty = it can.
+std::string words_problem(const edit::CheckedRequest& valid, const SentenceGround& ground, bool labelled) {
+    const auto& words = valid.sentence();
+    const bool draws = edit::method_of(valid).draws_views();
+    const auto drawn = draws ? ground.drawn : std::vector<std::string>{};
+    try {
+        edit::require_known_words(valid, ground.known, drawn, labelled);
+    } catch (const Error& error) {
+        return fmt::format("{}: {}", first_letter_up(error.message()),
+                           what_to_say(words.target(), language::promptable_vocabulary(ground.known, drawn),
+                                       !drawn.empty(), error.hint()));
+    }
+    for (const auto& word : {words.source(), words.target()})
+        if (unread(valid.prompt(), word, ground))
+            return fmt::format(
+                "The model stops reading before \"{}\": shorten the sentence, or move the word forward",
+                word);
+    return {};
+}
+
+StepFacts step_facts(const edit::EditRequest& request, const edit::PlannedStep& planned,
+                     const SentenceGround& ground) {
+    StepFacts facts{language::plan::step_text(planned.step),
+                    language::plan::to_string(planned.step),
+                    {},
+                    planned.may_be_shown,
+                    {}};
+    if (!planned.words) {
+        facts.problem =
+            fmt::format("{}: {}", first_letter_up(planned.problem.reason), planned.problem.remedy);
+        return facts;
+    }
+    const bool labelled =
+        ground.labelled_by_hand && planned.words->source == language::normalised_prompt(request.source);
+    try {
+        const auto valid = edit::check(edit::request_of(request, *planned.words), {ground.said, {}});
+        facts.problem = words_problem(valid, ground, labelled);
+        if (facts.problem.empty()) facts.told = valid.words();
+    } catch (const Error& error) { facts.problem = first_letter_up(error.message()); }
+    return facts;
+}
+
+/// Obstacle of a sentence with several changes: none of them can be done. Fills the words of the first.
+std::string problem_of_steps(SentenceFacts& facts) {
+    const auto first = std::find_if(facts.steps.begin(), facts.steps.end(),
+                                    [](const auto& step) { return step.problem.empty(); });
+    if (first == facts.steps.end()) return facts.steps.front().problem;
+    facts.told = first->told;
+    facts.guessed_target = first->told.target;
+    return {};
+}
+
 /// Sentence of the engine, in the window's words if they are clearer.
 std::string problem_of(const edit::EditRequest& request, const SentenceGround& ground, SentenceFacts& facts) {
     if (request.prompt.empty() || facts.chips.empty())
         return "Describe the scene after the edit in one sentence";
     if (request.source.empty() && request.target.empty())
         return "Type what in the scene the edit is about, or click the word of the sentence that is new";
+    if (facts.steps.size() > 1) return problem_of_steps(facts);
     if (const auto problem = edit::single_edit_problem(request, {ground.said, ground.read_target}))
         return fmt::format("{}: {}", first_letter_up(problem->message()), problem->hint());
     std::optional<edit::CheckedRequest> valid;
@@ -76,20 +130,7 @@ std::string problem_of(const edit::EditRequest& request, const SentenceGround& g
     if (valid->prompt() != request.prompt) facts.told = valid->words();
     if (!facts.source_known && !ground.labelled_by_hand)  // the words to use stand beside the source already
         return unknown_source(words.source(), ground);
-    const auto drawn = edit::method_of(request).draws_views() ? ground.drawn : std::vector<std::string>{};
-    try {
-        edit::require_known_words(*valid, ground.known, drawn, ground.labelled_by_hand);
-    } catch (const Error& error) {
-        return fmt::format("{}: {}", first_letter_up(error.message()),
-                           what_to_say(words.target(), language::promptable_vocabulary(ground.known, drawn),
-                                       !drawn.empty(), error.hint()));
-    }
-    for (const auto& word : {words.source(), words.target()})
-        if (unread(valid->prompt(), word, ground))
-            return fmt::format(
-                "The model stops reading before \"{}\": shorten the sentence, or move the word forward",
-                word);
-    return {};
+    return words_problem(*valid, ground, ground.labelled_by_hand);
 }
 
 /// Why the source on its own cannot be looked for.
@@ -97,6 +138,26 @@ std::string locate_problem_of(const std::string& source, const SentenceGround& g
                               const SentenceFacts& facts) {
     if (source.empty()) return facts.problem;
     return facts.source_known ? std::string() : unknown_source(source, ground);
+}
+
+/// Chips of words that are news, and of words of an order, which are not for the model.
+void mark_chips(const edit::EditRequest& request, SentenceFacts& facts) {
+    std::string told = facts.told.prompt;
+    std::vector<std::string> targets{request.target.empty() ? facts.guessed_target : request.target};
+    if (facts.steps.size() > 1)
+        for (const auto& step : facts.steps) {
+            told += " " + step.told.prompt;
+            targets.push_back(step.told.target);
+        }
+    for (std::size_t index = 0; index < facts.chips.size(); ++index) {
+        auto& chip = facts.chips[index];
+        const bool slip = !chip.suggestion.empty() && language::has_phrase(told, chip.suggestion);
+        if (!told.empty() && !slip && !language::has_phrase(told, chip.text))
+            chip.known = true, chip.suggestion.clear();
+        chip.target = std::any_of(targets.begin(), targets.end(),
+                                  [&](const auto& target) { return within(request.prompt, target, index); });
+        chip.guessed = chip.target && request.target.empty();
+    }
 }
 
 }  // namespace
@@ -125,20 +186,11 @@ SentenceFacts facts_of(const edit::EditRequest& request, const SentenceGround& g
             facts.source_suggestions.push_back(with_word(request.source, index, near));
         facts.source_help = language::words_to_use(unknown, ground.known);
     }
+    for (const auto& planned : edit::changes_of(request, edit::assumed_scene(request), {ground.said, {}}))
+        facts.steps.push_back(step_facts(request, planned, ground));
     facts.problem = problem_of(request, ground, facts);
     facts.locate_problem = locate_problem_of(language::normalised_prompt(request.source), ground, facts);
-    const auto& told = facts.told.prompt;
-    for (auto& chip : facts.chips) {  // words of an order are not for the model; a slip is still offered
-        const bool slip = !chip.suggestion.empty() && language::has_phrase(told, chip.suggestion);
-        if (!told.empty() && !slip && !language::has_phrase(told, chip.text))
-            chip.known = true, chip.suggestion.clear();
-    }
-    const auto& target = request.target.empty() ? facts.guessed_target : request.target;
-    for (std::size_t index = 0; index < facts.chips.size(); ++index) {
-        auto& chip = facts.chips[index];
-        chip.target = within(request.prompt, target, index);
-        chip.guessed = chip.target && request.target.empty();
-    }
+    mark_chips(request, facts);
     return facts;
 }
 

@@ -20,6 +20,15 @@ struct SentenceGround {
     std::vector<std::string> drawn = {};  // words that the model draws besides and does not look for
 };
 
+/// One change that a sentence asks for.
+struct StepFacts {
+    std::string text;           // "colour: bear, blue"
+    std::string notation;       // of the plan: its identity
+    std::string problem;        // why it cannot be done, and what would do it, one sentence; empty = it can
+    bool may_be_shown = false;  // pictures of the scene may show it already
+    edit::EditWords told = {};  // words that the model is told
+};
+
 struct SentenceFacts {
     std::vector<Chip> chips;     // one per word of the sentence
     std::string problem;         // why the request cannot be run, one sentence; empty = it can
@@ -29,8 +38,11 @@ struct SentenceFacts {
     std::string source_help;  // what to use instead of it
     bool source_known = true;
     std::string guessed_target;  // the target when none is chosen
-    edit::EditWords told;  // words that the model is told in place of the typed ones; prompt empty = none
-    std::string cut_at;    // first word that the text encoder does not read; empty = it reads all
+    // Words that the model is told in place of the typed ones, by the first step of several; prompt empty =
+    // none.
+    edit::EditWords told;
+    std::vector<StepFacts> steps;  // of the plan; empty = the sentence is told as it is typed, or refused
+    std::string cut_at;            // first word that the text encoder does not read; empty = it reads all
 };
 
 SentenceFacts facts_of(const edit::EditRequest& request, const SentenceGround& ground);

@@ -67,6 +67,11 @@ void update_sentence(Context& context) {
     prompt.source_known = facts.source_known;
     prompt.guessed_target = std::move(facts.guessed_target);
     prompt.told = std::move(facts.told);
+    prompt.steps = std::move(facts.steps);
+    std::erase_if(prompt.left_out, [&](const auto& out) {
+        return std::none_of(prompt.steps.begin(), prompt.steps.end(),
+                            [&](const auto& step) { return step.notation == out; });
+    });
     prompt.cut_at = std::move(facts.cut_at);
 }
 

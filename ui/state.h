@@ -12,6 +12,7 @@
 #include "ui/keys/keyboard.h"
 #include "ui/keys/keymap.h"
 #include "ui/layout.h"
+#include "ui/sentence.h"
 #include "ui/viewport/camera_control.h"
 #include "ui/widgets/chips.h"
 #include "ui/widgets/file_browser.h"
@@ -74,9 +75,11 @@ struct PromptState {
     double typed_at = -1e9;       // time of ImGui when a letter of a field was typed last
     std::string settings_filter;  // what "All settings" is searched for
     std::string guessed_target;
-    edit::EditWords told;     // SentenceFacts::told
-    std::string cut_at;       // first word that the text encoder does not read
-    bool seed_locked = true;  // open: every edit gets another seed
+    edit::EditWords told;  // SentenceFacts::told
+    std::vector<StepFacts> steps;
+    std::vector<std::string> left_out;  // steps that are not made, by their notation
+    std::string cut_at;                 // first word that the text encoder does not read
+    bool seed_locked = true;            // open: every edit gets another seed
     bool advanced = false;
 };
 

@@ -30,7 +30,10 @@ std::string result_line(const ViewModel& model) {
 }
 
 std::string result_sentence(const ResultVerdict& verdict) {
-    return verdict.stopped_at < 0 ? "The edit is done." : "The edit was stopped.";
+    if (verdict.stopped_at >= 0) return "The edit was stopped.";
+    const std::size_t made = std::max<std::size_t>(1, verdict.changes.size());
+    return made < verdict.asked ? fmt::format("{} of {} changes made.", made, verdict.asked)
+                                : "The edit is done.";
 }
 
 }  // namespace gse::ui

@@ -156,6 +156,7 @@ struct Estimate {
     double memory_mb = -1;
     double memory_free_mb = -1;
     std::array<double, edit::Qualities.size()> quality_seconds{-1, -1, -1};  // of each quality
+    std::vector<double> step_seconds = {};  // of each step of a sentence with several changes; else empty
 };
 
 /// A short message over the viewport, with an optional button.
@@ -387,6 +388,8 @@ struct ResultVerdict {
     bool warns = false;   // they do not show the edit
     int stopped_at = -1;  // step at which the artist stopped it; -1 = it ran to its end
     int steps = 0;        // that it would have run
+    std::vector<std::string> changes = {};  // of a sentence with several, that were made
+    std::size_t asked = 1;                  // that the sentence had
 };
 
 /// The running or last edit and its results.

@@ -63,15 +63,27 @@ PlannedMemory CostBook::memory() const {
     return memory;
 }
 
-void CostBook::estimate(const edit::EditRequest& request, const PlannedWork& work) {
-    const CostProfile measured = profile(request);
-    const Cost cost = estimated_cost(measured, request, work);
-    estimate_.seconds = cost.seconds;
-    estimate_.tflop = cost.tflop;
-    const auto by_quality = costs_by_quality(measured, request, work);
-    for (std::size_t i = 0; i < by_quality.size(); ++i) estimate_.quality_seconds[i] = by_quality[i].seconds;
-    estimate_.memory_mb = estimated_memory_mb(measured, memory());
-    estimate_.memory_free_mb = static_cast<double>(free_memory()) / (1 << 20);
+void CostBook::estimate(const std::vector<PlannedEdit>& edits) {
+    ui::Estimate sum;
+    sum.seconds = sum.tflop = 0;
+    sum.quality_seconds.fill(0);
+    const CostProfile measured = profile(edits.front().request);
+    const auto add = [](double& total, double part) {
+        total = total < 0 || part < 0 ? -1 : total + part;  // a part that is not known: neither is the sum
+    };
+    for (const auto& [request, work, made] : edits) {
+        const Cost cost = made ? estimated_cost(measured, request, work) : Cost{};
+        if (edits.size() > 1) sum.step_seconds.push_back(cost.seconds);
+        if (!made) continue;
+        add(sum.seconds, cost.seconds);
+        add(sum.tflop, cost.tflop);
+        const auto by_quality = costs_by_quality(measured, request, work);
+        for (std::size_t i = 0; i < by_quality.size(); ++i)
+            add(sum.quality_seconds[i], by_quality[i].seconds);
+    }
+    sum.memory_mb = estimated_memory_mb(measured, memory());
+    sum.memory_free_mb = static_cast<double>(free_memory()) / (1 << 20);
+    estimate_ = std::move(sum);
 }
 
 void CostBook::settings_to_json(nlohmann::json& json) const {

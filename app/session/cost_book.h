@@ -4,6 +4,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "app/session/model_controller.h"
 #include "app/session/state/estimate.h"
@@ -22,7 +23,8 @@ public:
     void remember(const std::string& key, const CostProfile& measured);
     PlannedMemory memory() const;
 
-    void estimate(const edit::EditRequest& request, const PlannedWork& work);
+    /// Estimates edits that are made one after another; `edits` must not be empty.
+    void estimate(const std::vector<PlannedEdit>& edits);
     void forget_estimate() { estimate_ = {}; }
     void show(ui::SearchPart& model) const { model.estimate = estimate_; }
 

@@ -17,59 +17,100 @@ namespace {
 
 namespace command = ui::command;
 
+ui::ResultVerdict verdict_of(const PendingResult& result) {
+    ui::ResultVerdict verdict{result.verdict, result.warns, result.stopped_at,
+                              result.steps,   {},           result.asked};
+    for (const auto& change : result.changes) verdict.changes.push_back(change.name);
+    if (result.asked > 1 && result.changes.empty()) verdict.changes.push_back(result.name);
+    return verdict;
+}
+
 constexpr std::uint64_t WaitingEdit = std::uint64_t{1} << 63, RunningEdit = std::uint64_t{1} << 62;
 
 }  // namespace
 
 // Runs
 
-template <> void EditController::on(const command::Edit&) {
+template <> void EditController::on(const command::Edit& one) {
     if (!workspace_.require_scene() || workspace_.jobs->occupied()) return;
     if (workspace_.results) return workspace_.notices.toast("Apply or discard the last edit first.");
     snapshots_.forget();
     view_.forget_tint();
     live_.losses.clear();
+    left_out_ = one.left_out;
+    search_.sentence().set_step(std::nullopt);
     search_.choose_for_source();  // another source is another matter
+    if (!search_.sentence().several()) return start(std::nullopt);
+    if (edit::pictures_decide(search_.request())) return read_steps();
+    begin_steps(edit::assumed_scene(search_.request()));
+}
+
+/// Pictures of the scene tell which of the looks that the sentence names are there already.
+void EditController::read_steps() {
+    const auto run = search_.begin_run();
+    EditRecipe recipe = search_.recipe();
+    const auto typed = search_.request();
+    recipe.request = edit::source_alone(typed);
+    try {
+        recipe.request = edit::check(std::move(recipe.request)).plain();
+    } catch (const Error& error) { return workspace_.notices.report(error); }
+    auto scene = std::make_shared<language::plan::SceneWords>(edit::assumed_scene(typed));
+    auto work = [run, recipe, scene, ground = search_.ground(recipe),
+                 cache = models_.cache()](const JobControl& control) {
+        load_model(*run, recipe.job, cache, control);
+        run->job = std::make_shared<EditJob>(recipe, ground.input(*run, {}), control);
+        *scene = run->job->words_shown(std::move(*scene));
+    };
+    auto done = [this, run, scene, typed, ticket = models_.ticket()](const Error* error) {
+        models_.take_back(ticket, run->model, run->loaded, error);
+        if (error != nullptr) return end(error);
+        begin_steps(*scene);
+    };
+    workspace_.jobs->start_work(JobKind::Edit, {"Read the scene", work, done, true});
+}
+
+/// Makes the steps that can be done and are not left out, one after another, in a scene of these words.
+void EditController::begin_steps(const language::plan::SceneWords& scene) {
+    auto words = search_.sentence().steps_in(scene, left_out_);
+    if (words.empty())
+        return workspace_.notices.toast("Nothing to change: the scene shows what the sentence says.");
+    chain_.begin(search_.request().prompt, std::move(words), workspace_.document.state(),
+                 workspace_.next_edit_id);
+    search_.sentence().set_step(chain_.step());
     start(std::nullopt);
 }
 
 /// Inputs of the edit that begins, with the label that is its scope.
 EditStart EditController::start_from(std::optional<edit::EditSnapshot> from) const {
     EditStart start;
-    if (const NamedLabel* label = search_.scope()) {
+    const bool later = chain_.beyond_first();
+    if (const NamedLabel* label = later ? search_.scope(chain_.state()) : search_.scope()) {
         start.label = *label->bits;
         start.corrected = !label->found_for.empty() && corrected_by_hand(*label);
     }
+    start.brings_label = later && start.label.empty();
     start.shows_preview = models_.settings().gate && !from && !edit::method_of(recipe_.request).draws_views();
     start.reviews = models_.settings().review;
     start.snapshot = std::move(from);
     return start;
 }
 
-void EditController::start(std::optional<edit::EditSnapshot> from) {
-    search_.show_scope();
-    search_.begin_edit();
-    view_.compare_as_usual();
-    std::optional<CheckedRecipe> checked;
-    try {
-        checked = check(search_.recipe());
-    } catch (const Error& error) { return workspace_.notices.report(error); }
-    const EditRecipe recipe = checked->plain();
-    const auto run = search_.begin_run();
-    run->job = search_.fitting_job();
-    take_known_parts(run->measured, costs_.profile(search_.request()));
-    recipe_ = recipe;
-    LiveEdit live;
-    live.describe(recipe);
-    live.losses = std::move(live_.losses);
-    if (from) live.gate = std::move(live_.gate);
-    const EditStart start = start_from(std::move(from));
-    live_ = std::move(live);
-    snapshots_.begin(workspace_.document.state().current);
-    auto pending = std::make_shared<PendingResult>();
-    auto work = [run, recipe = *checked, start, pending, roads = live_.roads,
-                 open = search_.open_recipe(recipe), ground = search_.ground(recipe),
-                 cache = models_.cache()](const JobControl& control) {
+namespace {
+
+/// All that an edit needs on its thread, and the place of its outcome.
+struct EditWork {
+    std::shared_ptr<MeasuredRun> run;
+    CheckedRecipe recipe;
+    EditRecipe open;  // with the target that pictures may decide
+    EditStart start;
+    std::shared_ptr<PendingResult> pending;
+    std::shared_ptr<EditRoads> roads;
+};
+
+auto edit_work(EditWork work, SearchGround ground, std::shared_ptr<DiskCache> cache) {
+    return [work = std::move(work), ground = std::move(ground),
+            cache = std::move(cache)](const JobControl& control) {
+        auto& [run, recipe, open, start, pending, roads] = work;
         const auto before = network_use();
         load_model(*run, recipe.job, cache, control);
         const PeakMemory peak;
@@ -84,6 +125,38 @@ void EditController::start(std::optional<edit::EditSnapshot> from) {
         run_edit(*run, start, before, *roads, *pending, peak);
         throw_what_ended(run->job->result());
     };
+}
+
+}  // namespace
+
+void EditController::start(std::optional<edit::EditSnapshot> from) {
+    const bool later = chain_.beyond_first();
+    if (!later) search_.show_scope();
+    search_.begin_edit();
+    view_.compare_as_usual();
+    std::optional<CheckedRecipe> checked;
+    try {
+        checked = check(search_.recipe());
+    } catch (const Error& error) {
+        end_steps();
+        return workspace_.notices.report(error);
+    }
+    const EditRecipe recipe = checked->plain();
+    const auto run = search_.begin_run();
+    if (!later) run->job = search_.fitting_job();
+    take_known_parts(run->measured, costs_.profile(search_.request()));
+    recipe_ = recipe;
+    LiveEdit live;
+    live.describe(recipe);
+    live.losses = std::move(live_.losses);
+    if (from) live.gate = std::move(live_.gate);
+    const EditStart start = start_from(std::move(from));
+    live_ = std::move(live);
+    if (later) snapshots_.begin(chain_.state().current, chain_.rows());
+    else snapshots_.begin(workspace_.document.state().current);
+    auto pending = std::make_shared<PendingResult>();
+    auto work = edit_work({run, *checked, search_.open_recipe(recipe), start, pending, live_.roads},
+                          later ? search_.ground(chain_) : search_.ground(recipe), models_.cache());
     auto done = [this, run, pending, cost_key = costs_.key(search_.request()),
                  ticket = models_.ticket()](const Error* error) {
         models_.take_back(ticket, run->model, run->loaded, error);
@@ -94,13 +167,40 @@ void EditController::start(std::optional<edit::EditSnapshot> from) {
             pending->seconds = workspace_.jobs->work.status().seconds;  // the clock of the job's own line
             pending->verdict = live_.gate.verdict;
             pending->warns = live_.gate.warns;
-            workspace_.results.add(std::move(*pending));
         }
+        if (take_step(std::move(*pending), error)) return;
         workspace_.results.come_back();
         end(error);
     };
-    workspace_.jobs->start_work(JobKind::Edit,
-                                {fmt::format("Edit: {}", recipe.request.prompt), work, done, true});
+    workspace_.jobs->start_work(JobKind::Edit, {title_of(recipe), work, done, true});
+}
+
+std::string EditController::title_of(const EditRecipe& recipe) const {
+    const std::string said = chain_.said();
+    return fmt::format("Edit: {}{}", recipe.request.prompt, said.empty() ? "" : fmt::format(" ({})", said));
+}
+
+/// Takes the outcome of the edit that ended, if it has one. True where the next step of its sentence runs.
+bool EditController::take_step(PendingResult pending, const Error* error) {
+    const bool came = pending.set.size() > 0;
+    if (!chain_.runs()) {
+        if (came) workspace_.results.add(std::move(pending));
+        return false;
+    }
+    if (came && chain_.take(std::move(pending)) && error == nullptr) {
+        search_.sentence().set_step(chain_.step());
+        snapshots_.forget();
+        live_.losses.clear();
+        start(std::nullopt);
+        if (workspace_.jobs->works()) return true;
+    }
+    end_steps();
+    return false;
+}
+
+/// The finished steps wait to be applied, as one result.
+void EditController::end_steps() {
+    if (auto whole = chain_.end(); whole.set.size() > 0) workspace_.results.add(std::move(whole));
 }
 
 void EditController::end(const Error* error) {
@@ -112,7 +212,9 @@ void EditController::end(const Error* error) {
 }
 
 void EditController::correct_label(const std::vector<std::uint8_t>& bits) {
-    if (live_.adds) workspace_.notices.toast(AddsElsewhere);
+    if (chain_.beyond_first())
+        workspace_.notices.toast("The labels are those of the scene before the first change.");
+    else if (live_.adds) workspace_.notices.toast(AddsElsewhere);
     else live_.roads->label.put(bits);
 }
 
@@ -160,6 +262,11 @@ const edit::EditSnapshot* EditController::usable_snapshot(int iteration) {
     const auto* snapshot = snapshots_.at_or_before(iteration);
     if (snapshot == nullptr) return nullptr;
     const auto& document = workspace_.document;
+    if (workspace_.results && !workspace_.results->changes.empty()) {
+        workspace_.notices.toast(
+            "Those are states of the last of several changes: they are not the whole edit.");
+        return nullptr;
+    }
     if (!document.empty() && snapshots_.base().shares_all_with(document.state().current)) return snapshot;
     workspace_.notices.toast("The scene was changed since; the snapshots do not fit it any more.");
     return nullptr;
@@ -218,20 +325,22 @@ template <> void EditController::on(const command::ApplyResult&) {
         return workspace_.notices.toast(
             "The scene was changed since: undo that to apply the edit, or discard the edit.", true);
     const PendingResult result = *results;
-    EditNode node = node_of(result);
-    node.id = workspace_.next_edit_id++;
-    node.delta = std::make_shared<const SceneDelta>(
-        make_delta(result.before, *before.row_ids, result.set, *result.base_to_new, node.id));
-    workspace_.variations.keep(results, node, before);
+    const auto changes = result.changes.empty() ? std::vector{result} : result.changes;
+    for (const auto& step : changes) {
+        DocumentState state = applied(workspace_.document.state(), step, workspace_.next_edit_id++);
+        if (result.changes.empty()) workspace_.variations.keep(results, state.stack.back(), before);
+        if (!step.renamed.to.empty()) search_.forget_choice();
+        workspace_.document.apply(fmt::format("Edit: {}", step.name), std::move(state));
+    }
     results.reset();
     ++workspace_.content;
-    DocumentState state = with_result(before, std::move(node), result);
-    if (!result.renamed.to.empty()) search_.forget_choice();
-    workspace_.document.apply(fmt::format("Edit: {}", result.name), std::move(state));
     workspace_.worked_at = workspace_.document.revision();  // undone, its pictures and its status go
-    workspace_.toast_step(fmt::format("The edit \"{}\" is kept.", result.name));
-    search_.forget_target();  // it is done: the next sentence has news of its own
-    view_.tint(false);        // what was made is to be seen, not where
+    workspace_.toast_step(changes.size() == 1
+                              ? fmt::format("The edit \"{}\" is kept.", result.name)
+                              : fmt::format("The {} edits of \"{}\" are kept, each under History.",
+                                            changes.size(), result.name));
+    search_.sentence().forget_target();  // it is done: the next sentence has news of its own
+    view_.tint(false);                   // what was made is to be seen, not where
 }
 
 void EditController::discard_result() {
@@ -245,10 +354,10 @@ template <> void EditController::on(const command::DiscardResult&) { discard_res
 template <> void EditController::on(const command::AnotherResult&) {
     auto& results = workspace_.results;
     if (!results || workspace_.jobs->occupied()) return;
-    search_.set_seed(results.next_seed());
+    search_.sentence().settings().seed = results.next_seed();
     results.set_aside();
     const auto tint = view_.forget_tint();  // as before the first of them
-    on(command::Edit{});
+    on(command::Edit{left_out_});
     view_.keep_tint(tint);
     if (!workspace_.jobs->works()) results.come_back();
 }
@@ -257,7 +366,7 @@ template <> void EditController::on(const command::ShowResult& one) {
     auto& results = workspace_.results;
     if (!results) return;
     results.show(one.index);
-    search_.set_seed(results->seed);
+    search_.sentence().settings().seed = results->seed;
     snapshots_.look_at_newest();
     ++workspace_.content;
 }
@@ -272,6 +381,7 @@ void EditController::forget_run() {
     live_ = {};
     recipe_ = {};
     snapshots_ = {};
+    chain_ = {};
     branch_.reset();
     ++workspace_.content;
 }
@@ -296,8 +406,12 @@ Stage EditController::stage() {
         stage.base_to_new = results->base_to_new;
         return stage;
     }
+    const bool later = chain_.beyond_first();
     stage.snapshot = live ? (looked_at != nullptr ? looked_at : &snapshots_.newest()) : nullptr;
-    stage.set = stage.snapshot != nullptr ? snapshots_.set_of(*stage.snapshot) : state.current;
+    const auto& last = later ? chain_.state().current : state.current;
+    stage.set = stage.snapshot != nullptr ? snapshots_.set_of(*stage.snapshot) : last;
+    if (stage.snapshot != nullptr) stage.rows = snapshots_.rows_of(*stage.snapshot);
+    else if (later) stage.rows = chain_.rows();
     return stage;
 }
 
@@ -321,9 +435,7 @@ void EditController::show(ui::EditPart& model) const {
     model.result_changed_outside = results ? results->changed_outside_label : 0;
     model.result_psnr_outside_db = results ? results->psnr_outside_db : 0;
     model.result_seconds = results ? results->seconds : 0;
-    model.verdict =
-        results ? ui::ResultVerdict{results->verdict, results->warns, results->stopped_at, results->steps}
-                : ui::ResultVerdict{};
+    model.verdict = results ? verdict_of(*results) : ui::ResultVerdict{};
     model.results.clear();
     for (const auto& result : results.all()) model.results.push_back({result.thumbnail, result.seed});
     model.shown_result = results.shown().value_or(0);
@@ -352,6 +464,8 @@ std::uint64_t EditController::kept_number() const {
 nlohmann::json EditController::kept_json() const {
     if (kept_number() == 0) return {};
     const auto* whole = workspace_.results.kept();  // also while another edit runs
+    const auto id = workspace_.next_edit_id + steps_before(whole);
+    if (whole) whole = &whole->last_change();
     const auto& renamed = whole ? whole->renamed : live_.renamed;
     nlohmann::json json;
     json["waits"] = whole != nullptr;
@@ -359,7 +473,7 @@ nlohmann::json EditController::kept_json() const {
     json["target"] = whole ? whole->target : live_.target;
     if (whole) json["seed"] = whole->seed;
     json["iterations"] = live_.iterations;
-    json["id"] = whole || !snapshots_.empty() ? workspace_.next_edit_id : 0;
+    json["id"] = whole || !snapshots_.empty() ? id : 0;
     if (!live_.losses.empty()) json["iteration"] = live_.losses.back().iteration;
     json["adds"] = whole ? whole->adds : live_.adds;
     if (whole) json["verdict"] = whole->verdict, json["warns"] = whole->warns;
@@ -369,18 +483,30 @@ nlohmann::json EditController::kept_json() const {
     return json;
 }
 
+/// Steps of the sentence that are on the stack below what is kept.
+std::size_t EditController::steps_before(const PendingResult* whole) const {
+    if (whole == nullptr) return chain_.finished();
+    return whole->changes.empty() ? 0 : whole->changes.size() - 1;
+}
+
 std::function<DocumentState()> EditController::kept_state() const {
-    const DocumentState state = workspace_.document.state();
     const auto* whole = workspace_.results.kept();
+    DocumentState state = whole || !chain_.beyond_first() ? workspace_.document.state() : chain_.state();
     if (!whole && (!runs() || snapshots_.empty())) return [state] { return state; };
     GaussianSet after;
     std::shared_ptr<const std::vector<std::int64_t>> rows;
     std::optional<edit::EditSnapshot> snapshot;  // what waits to be applied goes before what ran
+    const std::uint64_t id = workspace_.next_edit_id + steps_before(whole);
+    if (whole) {
+        for (std::uint64_t i = 0; i + 1 < whole->changes.size(); ++i)
+            state = applied(state, whole->changes[i], workspace_.next_edit_id + i);
+        whole = &whole->last_change();
+    }
     if (whole) after = whole->set, rows = whole->base_to_new;
     else snapshot = snapshots_.newest();
     if (snapshot && snapshots_.newest_set().of == snapshot->rows) after = snapshots_.newest_set().set;
     EditNode node = whole ? node_of(*whole) : EditNode{};
-    node.id = workspace_.next_edit_id;
+    node.id = id;
     if (!whole) {
         node.name = fmt::format("{} (interrupted at iteration {})", live_.name, snapshot->iteration);
         node.recipe = live_.recipe;

@@ -11,6 +11,7 @@
 #include "app/session/cost_book.h"
 #include "app/session/edit/live_edit.h"
 #include "app/session/edit/snapshots.h"
+#include "app/session/edit/step_chain.h"
 #include "app/session/model_controller.h"
 #include "app/session/search_controller.h"
 #include "app/session/state/stage.h"
@@ -55,9 +56,15 @@ private:
     template <class C> void on(const C& command);
     template <class N> void take(N&& news);
     EditStart start_from(std::optional<edit::EditSnapshot> from) const;
+    void read_steps();
+    void begin_steps(const language::plan::SceneWords& scene);
     void start(std::optional<edit::EditSnapshot> from);
+    std::string title_of(const EditRecipe& recipe) const;
+    bool take_step(PendingResult pending, const Error* error);
+    void end_steps();
     void end(const Error* error);
     bool shows_states() const;
+    std::size_t steps_before(const PendingResult* whole) const;
     const edit::EditSnapshot* usable_snapshot(int iteration);
     void go_on_from_branch();
 
@@ -67,7 +74,9 @@ private:
     CostBook& costs_;
     SearchController& search_;
     LiveEdit live_;
-    EditRecipe recipe_;  // of the edit that runs
+    EditRecipe recipe_;                  // of the edit that runs
+    StepChain chain_;                    // that it is a step of
+    std::vector<std::string> left_out_;  // steps that the artist has left out of the last edit
     Snapshots snapshots_;
     std::optional<edit::EditSnapshot> branch_;  // to go on from when the running edit has ended
 };

@@ -84,7 +84,7 @@ template <> void LabelController::on(const command::SetLabelThreshold& one) {
         fmt::format("Threshold {:.2f}", one.value),
         [&](NamedLabel label) {
             const double threshold = std::stod(fmt::format("{:.4f}", one.value));
-            if (label.attention_threshold >= 0) search_.set_label_threshold(threshold);
+            if (label.attention_threshold >= 0) search_.sentence().settings().label_threshold = threshold;
             const auto& set = state().current;
             return one.drag_ends || set.size() <= MostDecidedWhileDragging
                        ? at_threshold(std::move(label), set, threshold)

@@ -52,51 +52,62 @@ Error problem_of(const EditJob& job) {
     return Error(ErrorCode::NotFound, job.located().message, job.located().remedy);
 }
 
+/// Work of each step that can be done, the first of which loads the model and uses the last search.
+std::vector<PlannedEdit> work_of_steps(const AskedSentence& sentence, PlannedWork work) {
+    std::vector<PlannedEdit> edits;
+    for (const auto& step : sentence.steps()) {
+        if (!step.words) {
+            edits.push_back({sentence.request(), work, false});
+            continue;
+        }
+        work.mode = step.words->mode;
+        edits.push_back({edit::request_of(sentence.request(), *step.words), work});
+        work.loaded = true, work.located = false;
+    }
+    return edits;
+}
+
 }  // namespace
 
 SearchController::SearchController(Workspace& workspace, ViewController& view, ModelController& models,
                                    CostBook& costs)
-    : workspace_(workspace), view_(view), models_(models), costs_(costs) {
-    request_.prompt.clear();
-}
+    : workspace_(workspace), view_(view), models_(models), costs_(costs) {}
 
 // The request
 
 void SearchController::set_request(const edit::EditRequest& request, bool waits) {
     words_wait_ |= waits;
-    const bool told_else = request.source != request_.source || request.prompt != request_.prompt;
-    request_ = request;
-    if (told_else) request_.excluded_views.clear();  // they were views of another search
-    // A word that was clicked in another sentence is no target of this one.
-    auto& target = request_.target;
-    if (!target.empty() && !language::has_phrase(request.prompt, target)) target.clear();
+    sentence_.set(request);
     refresh_reading();
 }
 
 void SearchController::move_request(const edit::EditRequest& before, const edit::EditRequest& after) {
-    move_defaults(request_, before, after);
+    auto moved = request();
+    move_defaults(moved, before, after);
+    sentence_.set(moved);
 }
 
 void SearchController::refresh_reading() {
-    const auto words = language::words_of(request_.prompt);
+    const auto words = language::words_of(request().prompt);
     const auto read = words.empty() ? 0 : words_read(std::filesystem::path(models_.in_use()), words);
     words_read_ = read < words.size() ? read : 0;
 }
 
 void SearchController::follow_document() {
     last_.set_undone(!workspace_.document.includes(last_.step()));
-    said_words_ = language::words_said(applied_sentences(workspace_.document.state().stack));
+    sentence_.set_said(language::words_said(applied_sentences(workspace_.document.state().stack)));
 }
 
 EditRecipe SearchController::recipe() const {
     const NamedLabel* label = scope();
-    EditRecipe recipe = models_.recipe(request_, label != nullptr ? label->looked_from : looked_from_);
-    recipe.request = edit::with_target(std::move(recipe.request), {said_words_, read_target()});
+    EditRecipe recipe =
+        models_.recipe(sentence_.asked(), label != nullptr ? label->looked_from : looked_from_);
+    recipe.request = edit::with_target(std::move(recipe.request), {sentence_.said(), read_target()});
     return recipe;
 }
 
 EditRecipe SearchController::open_recipe(EditRecipe recipe) const {
-    if (request_.target.empty() && !recipe.request.source.empty()) recipe.request.target.clear();
+    if (sentence_.asked().target.empty() && !recipe.request.source.empty()) recipe.request.target.clear();
     return recipe;
 }
 
@@ -104,17 +115,17 @@ EditRecipe SearchController::open_recipe(EditRecipe recipe) const {
 std::string SearchController::read_target() const {
     const auto& document = workspace_.document;
     const bool fits = !document.empty() && last_.of(document.state().current);
-    return fits ? last_.read_target(request_) : std::string();
+    return fits ? last_.read_target(sentence_.asked()) : std::string();
 }
 
 void SearchController::from_json(const nlohmann::json& json) {
     if (!json.contains("request")) return;
-    edit::EditRequest request = request_;
-    edit::read_request(request, json["request"]);
-    set_request(request);
+    edit::EditRequest read = request();
+    edit::read_request(read, json["request"]);
+    set_request(read);
     follow_document();
     // Words of an applied edit are no news, even if one was clicked once.
-    if (contains_word(said_words_, request_.target)) request_.target.clear();
+    if (contains_word(sentence_.said(), request().target)) sentence_.forget_target();
 }
 
 // Searches
@@ -130,7 +141,7 @@ void SearchController::take_document() {
     labelled_by_hand_ = attention_corrected_ = false;
     last_estimate_ = {};
     costs_.forget_estimate();
-    if (!std::exchange(words_wait_, false)) set_request(without_words(request_));
+    if (!std::exchange(words_wait_, false)) set_request(without_words(request()));
     follow_document();
 }
 
@@ -142,7 +153,8 @@ std::shared_ptr<EditJob> SearchController::fitting_job() const {
 
 void SearchController::begin_edit() {
     const bool fits = fitting_job() != nullptr;
-    if (last_.job() && !fits) request_.excluded_views.clear();  // they were views of another search
+    if (last_.job() && !fits)
+        sentence_.settings().excluded_views.clear();  // they were views of another search
     if (!fitting_job()) looked_from_ = view_.direction();
     if (fits) last_.set_step(workspace_.document.revision());  // an undone search counts again
 }
@@ -155,14 +167,23 @@ std::shared_ptr<MeasuredRun> SearchController::begin_run() {
 SearchGround SearchController::ground(const EditRecipe& recipe) const {
     const auto& state = workspace_.document.state();
     return {workspace_.scene(), state.views, last_.of(state.current) ? last_.tuning(recipe) : std::nullopt,
-            said_words_};
+            sentence_.said()};
+}
+
+SearchGround SearchController::ground(const StepChain& chain) const {
+    const auto& state = chain.state();
+    SearchGround ground{workspace_.scene(), state.views, std::nullopt, sentence_.said()};
+    ground.scene.gaussians = state.current;
+    ground.scene.extra = current_columns(state);
+    ground.said.insert(ground.said.end(), chain.words().begin(), chain.words().end());
+    return ground;
 }
 
 template <> void SearchController::on(const command::Locate& locate) {
     if (!workspace_.require_scene() || workspace_.jobs->occupied()) return;
     if (workspace_.results) return workspace_.notices.toast("Apply or discard the edit first.");
     const auto run = begin_run();
-    request_.excluded_views.clear();  // of the search before
+    sentence_.settings().excluded_views.clear();  // of the search before
     EditRecipe wanted = recipe();
     wanted.job.looked_from = looked_from_ = view_.direction();  // whatever a label was made from
     const bool alone = locate.source_alone || wanted.request.prompt.empty();
@@ -171,7 +192,7 @@ template <> void SearchController::on(const command::Locate& locate) {
         wanted.request = edit::check(std::move(wanted.request)).plain();
     } catch (const Error& error) { return workspace_.notices.report(error); }
     auto work = [run, wanted, open = alone ? wanted : open_recipe(wanted), ground = ground(wanted),
-                 known = costs_.profile(request_), cache = models_.cache()](const JobControl& control) {
+                 known = costs_.profile(request()), cache = models_.cache()](const JobControl& control) {
         const auto before = network_use();
         load_model(*run, wanted.job, cache, control);
         const PeakMemory peak;
@@ -181,7 +202,7 @@ template <> void SearchController::on(const command::Locate& locate) {
         if (run->job->found() && !steps_measured(known, *run->job)) measure_steps(run->measured, *run->job);
         measure_peak(*run, peak);
     };
-    auto done = [this, run, wanted, cost_key = costs_.key(request_),
+    auto done = [this, run, wanted, cost_key = costs_.key(request()),
                  ticket = models_.ticket()](const Error* error) {
         models_.take_back(ticket, run->model, run->loaded, error);
         if (error != nullptr) return workspace_.report_end(*error);
@@ -247,11 +268,11 @@ template <> void SearchController::on(const command::LabelAnyway&) {
 // Votes
 
 template <> void SearchController::on(const command::SetAttentionThreshold& one) {
-    const bool moved = one.value != request_.attention_threshold;
+    const bool moved = one.value != request().attention_threshold;
     last_.set_threshold(one.value);
-    request_.attention_threshold = one.value;
+    sentence_.settings().attention_threshold = one.value;
     if (moved)
-        wanted_vote_ = Vote{request_, fmt::format("Attention threshold {:.3f}", one.value),
+        wanted_vote_ = Vote{request(), fmt::format("Attention threshold {:.3f}", one.value),
                             fmt::format("attention{}", workspace_.stroke)};
     if (one.drag_ends) ++workspace_.stroke;
     vote_if_wanted();
@@ -259,10 +280,12 @@ template <> void SearchController::on(const command::SetAttentionThreshold& one)
 
 template <> void SearchController::on(const command::LeaveOutView& one) {
     if (one.view >= last_.views().size() || last_.arriving()) return;
-    request_.excluded_views = edit::with_view(request_.excluded_views, one.view, one.out);
+    sentence_.settings().excluded_views = edit::with_view(request().excluded_views, one.view, one.out);
     last_.leave_out(one.view, one.out);  // at once; what comes of it follows
-    wanted_vote_ = Vote{
-        request_, fmt::format("{} {}", one.out ? "Leave out" : "Put back", last_.views()[one.view].name), {}};
+    wanted_vote_ =
+        Vote{request(),
+             fmt::format("{} {}", one.out ? "Leave out" : "Put back", last_.views()[one.view].name),
+             {}};
     vote_if_wanted();
 }
 
@@ -295,10 +318,11 @@ void SearchController::travel(const std::function<void()>& move) {
     move();
     const auto [label, with] = found_with(workspace_.document.state());
     if (before.with.attention_threshold < 0 || with.attention_threshold < 0 || before.label != label) return;
-    if (with.label_threshold != before.with.label_threshold) request_.label_threshold = with.label_threshold;
+    if (with.label_threshold != before.with.label_threshold)
+        sentence_.settings().label_threshold = with.label_threshold;
     if (same_vote(with, before.with)) return;
-    request_.attention_threshold = with.attention_threshold;
-    request_.excluded_views = with.excluded_views;
+    sentence_.settings().attention_threshold = with.attention_threshold;
+    sentence_.settings().excluded_views = with.excluded_views;
     if (with.attention_threshold > 0) last_.set_threshold(with.attention_threshold);
     wanted_vote_ = Vote{with, {}, {}};
     vote_if_wanted();
@@ -307,9 +331,11 @@ void SearchController::travel(const std::function<void()>& move) {
 // Label or search
 
 const NamedLabel* SearchController::scope() const {
-    if (workspace_.document.empty()) return nullptr;
-    const auto& state = workspace_.document.state();
-    const auto index = scope_label(state, request_, models_.list().known_words(), choice_);
+    return workspace_.document.empty() ? nullptr : scope(workspace_.document.state());
+}
+
+const NamedLabel* SearchController::scope(const DocumentState& state) const {
+    const auto index = scope_label(state, sentence_.asked(), models_.list().known_words(), choice_);
     return index ? &state.labels[*index] : nullptr;
 }
 
@@ -324,7 +350,7 @@ void SearchController::show_scope() {
 void SearchController::set_reach(bool by_label) {
     const NamedLabel* used = by_label ? nullptr : scope();
     if (const NamedLabel* label = used != nullptr ? used : workspace_.active_label())
-        choice_ = ReachChoice{by_label, label->name, language::normalised_prompt(request_.source)};
+        choice_ = ReachChoice{by_label, label->name, language::normalised_prompt(sentence_.asked().source)};
 }
 
 void SearchController::choose_label_by_hand() {
@@ -334,7 +360,8 @@ void SearchController::choose_label_by_hand() {
 }
 
 void SearchController::choose_for_source() {
-    if (choice_ && choice_->source.empty()) choice_->source = language::normalised_prompt(request_.source);
+    if (choice_ && choice_->source.empty())
+        choice_->source = language::normalised_prompt(sentence_.asked().source);
 }
 
 void SearchController::rename_label(const std::string& from, const std::string& to) {
@@ -345,7 +372,8 @@ void SearchController::rename_label(const std::string& from, const std::string& 
 void SearchController::refresh_reach() {
     ContentHash hash;
     hash.numbers(workspace_.document.revision(), last_.number(), choice_.has_value());
-    hash.texts({request_.source, request_.target, request_.prompt, request_.mode, models_.path()});
+    const auto words = sentence_.asked();
+    hash.texts({words.source, words.target, words.prompt, words.mode, models_.path()});
     if (choice_) {
         hash.numbers(choice_->by_label);
         hash.texts({choice_->label, choice_->source});
@@ -366,7 +394,7 @@ void SearchController::refresh_reach() {
     reach_.by_label = used != nullptr;
     reach_.corrected = !label->found_for.empty() && corrected_by_hand(*label);
     if (used != nullptr && active != nullptr && active != used) reach_.shown = active->name;
-    labelled_by_hand_ = reach_.by_label && stands_alone(*label, request_, models_.list().known_words());
+    labelled_by_hand_ = reach_.by_label && stands_alone(*label, words, models_.list().known_words());
 }
 
 // Frames
@@ -388,22 +416,23 @@ void SearchController::refresh_estimate() {
     PlannedWork work;
     work.loaded = models_.loaded_fits();
     work.located = fitting_job() != nullptr;
-    work.shows_idea = settings.gate && !edit::method_of(request_).draws_views();
+    work.shows_idea = settings.gate && !edit::method_of(request()).draws_views();
     const bool learned = last_.of(current) && last_.tuning(wanted);
     work.tune_steps = settings.learn_scene && !work.located && !learned ? settings.learning.steps : 0;
     work.rows = current.size();
     work.traits = models_.traits();
     work.words = language::promptable_vocabulary(models_.list().known_words(), models_.list().drawn_words());
+    if (sentence_.several()) return costs_.estimate(work_of_steps(sentence_, std::move(work)));
     try {
-        work.mode = edit::decide_mode(edit::check(request_), std::nullopt).first;
+        work.mode = edit::decide_mode(edit::check(sentence_.asked()), std::nullopt).first;
     } catch (const Error&) {  // not a sentence yet
     }
-    costs_.estimate(request_, work);
+    costs_.estimate({{request(), std::move(work)}});
 }
 
 void SearchController::show(ui::SearchPart& model) const {
-    model.request = request_;
-    model.said_words = said_words_;
+    model.request = request();
+    model.said_words = sentence_.said();
     model.words_read = words_read_;
     model.read_target = read_target();
     model.reach = reach_;

@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "app/session/cost_book.h"
+#include "app/session/edit/asked_sentence.h"
 #include "app/session/edit/last_search.h"
+#include "app/session/edit/step_chain.h"
 #include "app/session/model_controller.h"
 #include "app/session/state/cost_profile.h"
 #include "app/session/state/edit_scope.h"
@@ -47,18 +49,14 @@ public:
     /// The document changed: what its edits say of the scene.
     void follow_document();
 
-    const edit::EditRequest& request() const { return request_; }
+    const edit::EditRequest& request() const { return sentence_.request(); }
+    AskedSentence& sentence() { return sentence_; }
     /// `waits`: the words are those of a scene that will be opened, and stay when it is.
     void set_request(const edit::EditRequest& request, bool waits = false);
-    void set_seed(std::uint64_t seed) { request_.seed = seed; }
-    void set_label_threshold(double threshold) {
-        request_.label_threshold = threshold;
-    }  // a repeated search gives that label
-    void forget_target() { request_.target.clear(); }
     /// Fields that still are as `before` has them become as `after` has them.
     void move_request(const edit::EditRequest& before, const edit::EditRequest& after);
 
-    /// The recipe of the request as it is now, with the target that it implies.
+    /// The recipe of the request, or of its step, as it is now, with the target that it implies.
     EditRecipe recipe() const;
     /// The recipe of a job: a target that nobody has chosen is left to the pictures.
     EditRecipe open_recipe(EditRecipe recipe) const;
@@ -68,6 +66,8 @@ public:
     void begin_edit();
     std::shared_ptr<MeasuredRun> begin_run();
     SearchGround ground(const EditRecipe& recipe) const;
+    /// Ground of a step on what the steps before it left.
+    SearchGround ground(const StepChain& chain) const;
     /// Takes what a search found, for a recipe; labels it where `relabel`. The word that it saw to be new is
     /// in last().target().
     void take_found(const std::shared_ptr<EditJob>& job, std::vector<float> attention, EditRecipe recipe,
@@ -76,6 +76,8 @@ public:
 
     /// The label that says what an edit may change; null = a search does.
     const NamedLabel* scope() const;
+    /// That of another state of the document.
+    const NamedLabel* scope(const DocumentState& state) const;
     /// Makes that label the active one, which is shown and corrected.
     void show_scope();
     /// Who makes, corrects or picks a label by hand means it to be edited.
@@ -89,7 +91,7 @@ public:
     void travel(const std::function<void()>& move);
     RowValues attention() const { return last_.attention_of(workspace_.document.state().current); }
 
-    void to_json(nlohmann::json& json) const { json["request"] = fields_to_json(request_); }
+    void to_json(nlohmann::json& json) const { json["request"] = fields_to_json(request()); }
     void from_json(const nlohmann::json& json);
 
 private:
@@ -114,10 +116,9 @@ private:
     ViewController& view_;
     ModelController& models_;
     CostBook& costs_;
-    edit::EditRequest request_;
-    std::vector<std::string> said_words_;  // by the edits applied: no news any more
-    std::size_t words_read_ = 0;           // of the sentence, by the text encoder; 0 = all, or not known
-    bool words_wait_ = true;               // for a scene that is not open yet
+    AskedSentence sentence_;
+    std::size_t words_read_ = 0;  // of the sentence, by the text encoder; 0 = all, or not known
+    bool words_wait_ = true;      // for a scene that is not open yet
     LastSearch last_;
     std::string looked_from_;  // where the camera was turned to when it began; empty = nowhere
     std::optional<Vote> wanted_vote_;

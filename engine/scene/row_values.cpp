@@ -54,4 +54,10 @@ std::vector<std::int64_t> row_map(const std::vector<RowId>& before, const std::v
     return rows;
 }
 
+std::vector<std::int64_t> chained(std::vector<std::int64_t> first, const std::vector<std::int64_t>& second) {
+    for (auto& row : first)
+        if (row >= 0) row = second[static_cast<std::size_t>(row)];
+    return first;
+}
+
 }  // namespace gse

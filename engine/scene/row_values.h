@@ -18,4 +18,7 @@ std::vector<float> carried(const std::vector<float>& values, const std::vector<s
 /// Place in `after` of each row of `before`, by identity; -1 = none.
 std::vector<std::int64_t> row_map(const std::vector<RowId>& before, const std::vector<RowId>& after);
 
+/// Rows through two maps one after the other; -1 = none.
+std::vector<std::int64_t> chained(std::vector<std::int64_t> first, const std::vector<std::int64_t>& second);
+
 }  // namespace gse

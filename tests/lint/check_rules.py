@@ -155,8 +155,9 @@ PARSE_OWNERS = {
     "engine/edit/request/unchecked_request": "words that are being typed, or were written by another version",
     "engine/edit/search/word_search": "the sentence of one word, to which those are added that compete with it",
     "app/session/edit/last_search": "whether words that are being typed are those of the search",
+    "app/session/edit/asked_sentence": "words that are being typed",
     "app/session/search_controller": "words that are being typed",
-    "ui/panels/prompt": "words that are being typed",
+    "ui/panels/prompt/prompt": "words that are being typed",
     "ui/sentence": "words that are being typed",
 }
 UNCHECKED = "engine/edit/request/unchecked_request.h"   # for the window's hints and estimates alone

@@ -85,7 +85,10 @@ struct Locate {
 };
 /// Labels the splats that an unsure search found.
 struct LabelAnyway {};
-struct Edit {};
+/// Makes the changes that the sentence asks for, one after another.
+struct Edit {
+    std::vector<std::string> left_out = {};  // of its plan, in the plan's notation
+};
 struct Pause {
     bool paused = true;
 };

@@ -130,7 +130,18 @@ std::string why_not_locate(const Context& context) {
 
 std::string why_not_edit(const Context& context) {
     const std::string why = why_not_work(context);
-    return why.empty() ? context.state.prompt.problem : why;
+    if (!why.empty()) return why;
+    const auto& prompt = context.state.prompt;
+    if (!prompt.problem.empty() || prompt.steps.size() < 2) return prompt.problem;
+    const bool any = std::any_of(prompt.steps.begin(), prompt.steps.end(), [&](const auto& step) {
+        return step.problem.empty() && !is_left_out(context, step);
+    });
+    return any ? "" : "Tick a change that can be made";
+}
+
+bool is_left_out(const Context& context, const StepFacts& step) {
+    const auto& out = context.state.prompt.left_out;
+    return std::find(out.begin(), out.end(), step.notation) != out.end();
 }
 
 std::string why_not_label(const Context& context) {
@@ -238,6 +249,27 @@ void ask_second(Context& context, const std::string& thing) {
     question.pending = true;
 }
 
+/// Asks whether the other steps are made where some cannot be. False = there is nothing to ask.
+bool ask_partly(Context& context) {
+    const auto& prompt = context.state.prompt;
+    std::string undone;
+    for (const auto& step : prompt.steps)
+        if (!step.problem.empty() && !is_left_out(context, step))
+            undone += fmt::format("{}{}: {}.", undone.empty() ? "" : "\n", step.text, step.problem);
+    if (prompt.steps.size() < 2 || undone.empty()) return false;
+    auto& question = context.state.question;
+    question.title = "Some changes cannot be made";
+    question.text = undone;
+    question.answers = {{"Make the others", false,
+                         [&commands = context.commands, state = &context.state, out = prompt.left_out] {
+                             commands.push(command::Edit{out});
+                             show_panel(*state, PanelId::Progress);
+                         }},
+                        {"Cancel", false, {}}};
+    question.pending = true;
+    return true;
+}
+
 }  // namespace
 
 void run_edit(Context& context) {
@@ -245,8 +277,9 @@ void run_edit(Context& context) {
     const auto& present = context.model.reach.present;
     if (!context.state.prompt.seed_locked) roll_seed(context);
     send_request(context);
-    if (!present.empty()) return ask_second(context, present);
-    context.emit(command::Edit{});
+    if (context.state.prompt.steps.size() < 2 && !present.empty()) return ask_second(context, present);
+    if (ask_partly(context)) return;
+    context.emit(command::Edit{context.state.prompt.left_out});
     show_panel(context.state, PanelId::Progress);
 }
 

@@ -6,6 +6,7 @@
 
 #include "ui/context.h"
 #include "ui/keys/keys.h"
+#include "ui/sentence.h"
 
 namespace gse::ui {
 
@@ -19,6 +20,8 @@ std::string why_not_locate(const Context& context);
 std::string why_not_edit(const Context& context);
 std::string why_not_label(const Context& context);  // there is no label, or a job runs
 std::string why_not_save(const Context& context);
+/// True for a step of the sentence that the artist does not want to be made.
+bool is_left_out(const Context& context, const StepFacts& step);
 /// Request with the word that is taken to be new if none is chosen: the coming edit.
 edit::EditRequest as_planned(const Context& context);
 /// Reason why the labelled splats cannot be hidden or isolated; empty = they can. Both change the display,

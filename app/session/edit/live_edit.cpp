@@ -7,6 +7,7 @@
 #include <chrono>
 #include <utility>
 
+#include "app/session/state/located_label.h"
 #include "engine/base/clock.h"
 #include "engine/base/json.h"
 #include "engine/base/log.h"
@@ -154,6 +155,7 @@ void run_edit(MeasuredRun& run, const EditStart& start, const neural::NetworkUse
     measure_loop(run.measured, *run.job, LeastSteps);
     const auto finishing = std::chrono::steady_clock::now();
     fill_pending(*run.job, pending);
+    if (start.brings_label) pending.label = located_label(*run.job);
     run.measured.finish = seconds_since(finishing);
     measure_peak(run, peak);
 }

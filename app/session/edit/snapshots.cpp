@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/scene/row_values.h"
+
 namespace gse::app {
 
 const edit::EditSnapshot* Snapshots::shown() const {
@@ -23,9 +25,15 @@ GaussianSet Snapshots::set_of(const edit::EditSnapshot& snapshot) {
     return looked_at_.set;
 }
 
-void Snapshots::begin(const GaussianSet& base) {
+void Snapshots::begin(const GaussianSet& base, std::vector<std::int64_t> rows) {
     base_ = base;
+    rows_ = std::move(rows);
     shown_ = -1;
+}
+
+std::vector<std::int64_t> Snapshots::rows_of(const edit::EditSnapshot& snapshot) const {
+    auto rows = snapshot.base_to_new();
+    return rows_.empty() ? rows : chained(rows_, rows);
 }
 
 void Snapshots::add(edit::EditSnapshot snapshot, GaussianSet set) {

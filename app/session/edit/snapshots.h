@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <memory>
 #include <vector>
@@ -33,8 +34,11 @@ public:
     /// The edited set; those of the newest snapshot and of the one that was asked for last are at hand.
     GaussianSet set_of(const edit::EditSnapshot& snapshot);
 
-    /// The set that they are states of; nothing is looked at.
-    void begin(const GaussianSet& base);
+    /// The set that they are states of; nothing is looked at. `rows`: row in it of each row of the document;
+    /// empty = they are the document's.
+    void begin(const GaussianSet& base, std::vector<std::int64_t> rows = {});
+    /// Row in the snapshot's set of each row of the document.
+    std::vector<std::int64_t> rows_of(const edit::EditSnapshot& snapshot) const;
     const GaussianSet& base() const { return base_; }
     /// Adds a new state and thins the old ones out; the one that is looked at stays, or the next later one.
     void add(edit::EditSnapshot snapshot, GaussianSet set);
@@ -50,6 +54,7 @@ private:
     std::deque<edit::EditSnapshot> list_;
     SnapshotSet newest_set_, looked_at_;
     GaussianSet base_;
+    std::vector<std::int64_t> rows_;  // in base_; empty = as they are
     int shown_ = -1;
 };
 

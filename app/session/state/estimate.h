@@ -104,6 +104,13 @@ struct PlannedWork {
     int first_iteration = 0;
 };
 
+/// An edit and the facts that decide its cost.
+struct PlannedEdit {
+    edit::EditRequest request;
+    PlannedWork work = {};
+    bool made = true;  // false: it cannot be done, and costs nothing
+};
+
 /// Until the result is there; negative = a part that is needed has not been measured.
 struct Cost {
     double seconds = -1;

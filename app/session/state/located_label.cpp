@@ -28,36 +28,68 @@ NamedLabel at_threshold(NamedLabel label, const GaussianSet& set, double thresho
     return with_threshold(std::move(label), static_cast<float>(threshold));
 }
 
-DocumentState with_located_label(DocumentState state, const EditJob& job, bool fresh) {
+namespace {
+
+/// Label of a job's search, with weights but no bits yet.
+NamedLabel searched_label(const EditJob& job) {
     const auto& located = job.located();
     const auto& request = job.recipe().request;
     const bool adds = located.mode == edit::EditMode::Add;
     const Label& source = adds ? located.source_label : located.label;
-    const std::size_t rows = state.current.size();
+    const std::size_t rows = job.scene().gaussians.size();
     // Nothing was looked for where the thing is no part of the scene.
     const bool looked = located.found.field.probability.size() == rows;
-    std::vector<float> weight =
-        looked ? weights_of(source, request.label_threshold) : std::vector<float>(rows, 0.0f);
-    const std::string name = adds ? request.source() : located.word;
-    auto found = std::find_if(state.labels.begin(), state.labels.end(),
-                              [&](const auto& label) { return is_label_of(label, name); });
-    if (found == state.labels.end())
-        found = state.labels.insert(state.labels.end(), empty_label(name, weight.size()));
-    NamedLabel label = empty_label(found->name, weight.size());  // it may have been renamed since
-    label.found_for = name;
+    NamedLabel label = empty_label(adds ? request.source() : located.word, rows);
+    label.found_for = label.name;
     label.threshold = static_cast<float>(request.label_threshold);
     label.attention_threshold = request.attention_threshold;
     label.excluded_views = request.excluded_views;
     label.looked_from = job.recipe().job.looked_from;
-    label.weight = std::make_shared<const std::vector<float>>(std::move(weight));
+    if (looked)
+        label.weight =
+            std::make_shared<const std::vector<float>>(weights_of(source, request.label_threshold));
     if (looked && located.found.field.views_used > 0)
         label.found = std::make_shared<const FoundField>(located.found);
-    const float threshold = found->threshold;
-    if (!fresh) label.manual = found->manual;
-    *found = !fresh && threshold != label.threshold
-                 ? at_threshold(std::move(label), state.current, static_cast<double>(threshold))
-                 : with_bits(std::move(label));
-    state.active_label = static_cast<int>(found - state.labels.begin());
+    return label;
+}
+
+/// Place of the label that was found for the same word; a new one at the end where there is none.
+NamedLabel& label_for(DocumentState& state, const NamedLabel& label) {
+    auto place = std::find_if(state.labels.begin(), state.labels.end(),
+                              [&](const auto& other) { return is_label_of(other, label.found_for); });
+    if (place == state.labels.end())
+        place = state.labels.insert(state.labels.end(), empty_label(label.found_for, label.weight->size()));
+    state.active_label = static_cast<int>(place - state.labels.begin());
+    return *place;
+}
+
+}  // namespace
+
+NamedLabel located_label(const EditJob& job) {
+    const auto& located = job.located();
+    NamedLabel label = with_bits(searched_label(job));
+    if (count_labelled(label) > 0) return label;
+    const bool adds = located.mode == edit::EditMode::Add;
+    return combine(std::move(label), *(adds ? located.source_label : located.label).bits,
+                   LabelOperation::Add);
+}
+
+DocumentState with_found_label(DocumentState state, NamedLabel label) {
+    NamedLabel& place = label_for(state, label);
+    label.name = place.name;  // it may have been renamed since
+    place = std::move(label);
+    return state;
+}
+
+DocumentState with_located_label(DocumentState state, const EditJob& job, bool fresh) {
+    NamedLabel label = searched_label(job);
+    NamedLabel& place = label_for(state, label);
+    label.name = place.name;
+    const float threshold = place.threshold;
+    if (!fresh) label.manual = place.manual;
+    place = !fresh && threshold != label.threshold
+                ? at_threshold(std::move(label), state.current, static_cast<double>(threshold))
+                : with_bits(std::move(label));
     return state;
 }
 

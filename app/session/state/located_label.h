@@ -7,6 +7,13 @@
 
 namespace gse::app {
 
+/// Label of a job's search, over the rows of its scene, without corrections by hand. What was labelled by
+/// hand for the job is taken for found.
+NamedLabel located_label(const EditJob& job);
+
+/// The state with that label active, in place of the one found for the same word.
+DocumentState with_found_label(DocumentState state, NamedLabel label);
+
 /// The state with the label of a job's search active: that of its word, under any name, else a new one. For a
 /// search that is not new (`fresh` = false: another threshold, or other excluded views), corrections by hand
 /// stay, and so does the threshold. The job must be of the state's splats.

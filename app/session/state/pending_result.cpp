@@ -1,9 +1,12 @@
 // Names, proof and thumbnail of a result.
 #include "app/session/state/pending_result.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
+#include "app/session/state/located_label.h"
 #include "engine/base/error.h"
 #include "engine/base/json.h"
 #include "engine/base/log.h"
@@ -84,6 +87,37 @@ DocumentState with_result(const DocumentState& before, EditNode node, const Pend
     const auto label = std::find_if(state.labels.begin(), state.labels.end(), called(result.renamed.from));
     if (label != state.labels.end()) label->name = result.renamed.to;
     return state;
+}
+
+DocumentState applied(const DocumentState& before, const PendingResult& result, std::uint64_t id) {
+    DocumentState state = result.label ? with_found_label(before, *result.label) : before;
+    EditNode node = node_of(result);
+    node.id = id;
+    node.delta = std::make_shared<const SceneDelta>(
+        make_delta(result.before, *state.row_ids, result.set, *result.base_to_new, id));
+    return with_result(state, std::move(node), result);
+}
+
+PendingResult together(std::vector<PendingResult> changes, std::string name) {
+    PendingResult whole = changes.back();
+    std::vector<std::int64_t> rows = *changes.front().base_to_new;
+    for (std::size_t i = 1; i < changes.size(); ++i) rows = chained(std::move(rows), *changes[i].base_to_new);
+    whole.before = changes.front().before;
+    whole.base_to_new = std::make_shared<const std::vector<std::int64_t>>(std::move(rows));
+    whole.name = std::move(name);
+    whole.label.reset();
+    whole.renamed = {};
+    whole.seconds = 0, whole.changed_outside_label = 0;
+    whole.verdict.clear(), whole.warns = false;
+    for (const auto& change : changes) {
+        whole.seconds += change.seconds;
+        whole.changed_outside_label += change.changed_outside_label;
+        whole.psnr_outside_db = std::min(whole.psnr_outside_db, change.psnr_outside_db);
+        if (change.warns && !whole.warns)
+            whole.verdict = fmt::format("\"{}\": {}", change.name, change.verdict), whole.warns = true;
+    }
+    whole.changes = std::move(changes);
+    return whole;
 }
 
 std::optional<PendingResult> take_back_edit(DocumentState& state, const nlohmann::json& jobs) {

@@ -38,7 +38,16 @@ struct PendingResult {
     int stopped_at = -1;  // step at which the artist stopped it; -1 = it ran to its end
     int steps = 0;        // that it would have run
     std::shared_ptr<const Image> thumbnail;
+    std::optional<NamedLabel> label;     // over the rows of `before`, that applying it brings along
+    std::vector<PendingResult> changes;  // of a sentence with several, each on the set of the one before it;
+                                         // empty = one edit
+    std::size_t asked = 1;               // changes of the sentence
+
+    const PendingResult& last_change() const { return changes.empty() ? *this : changes.back(); }
 };
+
+/// Changes as one result: from the set before the first to the last one's.
+PendingResult together(std::vector<PendingResult> changes, std::string name);
 
 /// Takes the outcome of a finished run. Throws Error (Cancelled) when it was stopped before its first step.
 void fill_pending(EditJob& job, PendingResult& pending);
@@ -47,6 +56,10 @@ void fill_pending(EditJob& job, const nlohmann::ordered_json& report, PendingRes
 
 /// The edit of the stack that it becomes, without identity and delta.
 EditNode node_of(const PendingResult& result);
+
+/// The state with its label, and with `id` given to it as an edit on the stack (with_result()). The state
+/// must have the rows of `before`.
+DocumentState applied(const DocumentState& state, const PendingResult& result, std::uint64_t id);
 
 /// The state with that edit, its node complete, on the stack (stack_edits.h). A label that bore the name of
 /// what became another thing bears the new thing's, where no other does.

@@ -151,11 +151,13 @@ plan::Plan plan_of(const EditRequest& request, const plan::SceneWords& scene) {
     return plan::plan_sentence(request.prompt, scene, language::normalised_prompt(request.source));
 }
 
-std::vector<PlannedStep> planned_steps(const plan::Plan& plan, plan::SceneWords scene) {
+std::vector<PlannedStep> planned_steps(const plan::Plan& plan, plan::SceneWords scene,
+                                       const std::vector<std::string>& left_out) {
     std::vector<PlannedStep> result;
     for (const auto& step : plan.steps) {
-        if (step.operation == Operation::None) continue;
-        PlannedStep planned{step, std::nullopt, {}};
+        const bool out = !left_out.empty() && language::contains(left_out, plan::to_string(step));
+        if (step.operation == Operation::None || out) continue;
+        PlannedStep planned{step, std::nullopt, {}, false};
         if (step.operation == Operation::Refuse) {
             if (const auto error = refusal_of({{step}}, {}))
                 planned.problem = {error->message(), error->hint()};
@@ -166,6 +168,18 @@ std::vector<PlannedStep> planned_steps(const plan::Plan& plan, plan::SceneWords 
         result.push_back(std::move(planned));
     }
     return result;
+}
+
+std::vector<PlannedStep> changes_of(const EditRequest& request, const plan::SceneWords& scene,
+                                    const News& news, const std::vector<std::string>& left_out) {
+    if (!is_planned(request)) return {};
+    const auto plan = plan_of(request, scene);
+    if (plan.is_refusal() || is_told_as_typed(request, plan)) return {};
+    const language::Sentence sentence(request.prompt);
+    auto steps = planned_steps(plan, scene, left_out);
+    std::erase_if(steps, [&](const auto& planned) { return is_said(planned.step, news.said); });
+    for (auto& planned : steps) planned.may_be_shown = describes(planned.step, sentence);
+    return steps;
 }
 
 bool is_planned(const EditRequest& request) {

@@ -18,6 +18,7 @@ struct PlannedStep {
     language::plan::Step step;
     std::optional<language::plan::StepSentence> words;  // nothing = it cannot be done
     language::plan::StepProblem problem;                // why not
+    bool may_be_shown = false;                          // a look that pictures of the scene may show already
 };
 
 /// Words of the scene as far as the request tells them: the source, and grounds that the sentence takes for
@@ -30,9 +31,16 @@ std::string with_source(const std::string& words, const EditRequest& request);
 /// The operations that the sentence asks for in a scene of these words.
 language::plan::Plan plan_of(const EditRequest& request, const language::plan::SceneWords& scene);
 
-/// The steps, each described in the scene that the earlier ones leave. Refusals among them are steps that
-/// cannot be done.
-std::vector<PlannedStep> planned_steps(const language::plan::Plan& plan, language::plan::SceneWords scene);
+/// The steps but those of `left_out` (in the notation), each described in the scene that the earlier ones
+/// leave. Refusals among them are steps that cannot be done.
+std::vector<PlannedStep> planned_steps(const language::plan::Plan& plan, language::plan::SceneWords scene,
+                                       const std::vector<std::string>& left_out = {});
+
+/// Changes that the request's sentence asks for, each an edit of its own, without those that applied edits
+/// have made (`news`) and those of `left_out` (in the notation). Empty for a sentence that is refused, or is
+/// told as it is typed.
+std::vector<PlannedStep> changes_of(const EditRequest& request, const language::plan::SceneWords& scene,
+                                    const News& news = {}, const std::vector<std::string>& left_out = {});
 
 /// True for a request whose sentence says everything: source named; target, mode and instruction left open.
 bool is_planned(const EditRequest& request);

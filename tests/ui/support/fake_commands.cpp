@@ -1,5 +1,6 @@
 // Commands as the fake application takes them: a line of text each, and the changes that later frames need.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <string_view>
@@ -43,6 +44,10 @@ template <class C> std::string fields_of(const C& wanted) {
         [&](const command::DiscardRecovery& one) { return text(one.project); },
         [&](const command::PostponeRecovery& one) { return text(one.project); },
         [&](const command::SetUpAxis& one) { return text(one.up); },
+        [&](const command::Edit& one) {
+            return one.left_out.empty() ? std::string()
+                                        : fmt::format(" without {}", fmt::join(one.left_out, "; "));
+        },
         [&](const command::Pause& one) { return text(one.paused ? "on" : "off"); },
         [&](const command::OrderTarget& one) {
             constexpr std::array<const char*, 3> names{"accept", "drop", "redo"};

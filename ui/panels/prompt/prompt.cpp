@@ -4,7 +4,6 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "engine/edit/request/edit_method.h"
@@ -15,29 +14,15 @@
 #include "ui/commands/guarded.h"
 #include "ui/keys/keyboard.h"
 #include "ui/panels/panels.h"
+#include "ui/panels/prompt/parts.h"
 #include "ui/sentence.h"
 #include "ui/state.h"
 #include "ui/status.h"
 #include "ui/widgets/controls.h"
-#include "ui/widgets/fields.h"
 #include "ui/widgets/icons.h"
 
 namespace gse::ui {
 namespace {
-
-/// First field of each group of the advanced settings; what comes before the first is on the panel itself.
-struct Group {
-    const char* first_field;
-    const char* title;
-};
-constexpr std::array<Group, 8> Groups{{{"views", "Views"},
-                                       {"competing_words", "Localization"},
-                                       {"method", "Optimisation"},
-                                       {"anchor_first", "Anchors"},
-                                       {"rate_position", "Learning rates"},
-                                       {"densify_from", "Growth"},
-                                       {"seed_splats", "Adding"},
-                                       {"snapshot_every", "Running"}}};
 
 constexpr double LeastStrength = 0;
 constexpr double TypingPause = 0.5;  // seconds without a letter, after which words are judged
@@ -282,13 +267,29 @@ void draw_model_settings(Context& context) {
                  "that look like nothing it knows.");
 }
 
-std::string estimate_text(const Estimate& estimate) {
-    if (estimate.seconds < 0 && estimate.memory_mb < 0) return {};
-    std::string text = estimate.seconds >= 0
-                           ? fmt::format("Estimate: about {}", duration_text(estimate.seconds))
-                           : "Time: measured with the first search";
+/// Seconds of the edit; of several steps, those that are ticked. Negative = not known yet.
+double planned_seconds(const Context& context) {
+    const auto& prompt = context.state.prompt;
+    const auto& estimate = context.model.estimate;
+    if (prompt.steps.size() < 2 || estimate.step_seconds.size() != prompt.steps.size())
+        return estimate.seconds;
+    double sum = 0;
+    for (std::size_t i = 0; i < prompt.steps.size(); ++i) {
+        if (!prompt.steps[i].problem.empty() || is_left_out(context, prompt.steps[i])) continue;
+        if (estimate.step_seconds[i] < 0) return -1;
+        sum += estimate.step_seconds[i];
+    }
+    return sum;
+}
+
+std::string estimate_text(const Context& context) {
+    const auto& estimate = context.model.estimate;
+    const double seconds = planned_seconds(context);
+    if (seconds < 0 && estimate.memory_mb < 0) return {};
+    std::string text = seconds >= 0 ? fmt::format("Estimate: about {}", duration_text(seconds))
+                                    : "Time: measured with the first search";
     const auto& [draft, normal, fine] = estimate.quality_seconds;
-    if (estimate.seconds >= 0 && draft >= 0 && fine > draft)
+    if (seconds >= 0 && context.state.prompt.left_out.empty() && draft >= 0 && fine > draft)
         text += fmt::format(" (draft {}, normal {}, fine {})", duration_text(draft), duration_text(normal),
                             duration_text(fine));
     if (estimate.memory_mb < 0) return text;
@@ -312,8 +313,7 @@ std::string obstacle_text(const Context& context) {
 }
 
 void draw_estimate(Context& context) {
-    const std::string text = estimate_text(context.model.estimate),
-                      warning = memory_warning(context.model.estimate);
+    const std::string text = estimate_text(context), warning = memory_warning(context.model.estimate);
     if (!text.empty()) {
         dim_text(text);
         note(context, "prompt.estimate");
@@ -346,7 +346,8 @@ std::string reach_text(const Context& context) {
 std::string plan_text(const Context& context) {
     const std::string reach = reach_text(context);
     const auto& told = context.state.prompt.told.prompt;
-    if (reach.empty() || told.empty() || !context.request.target.empty()) return reach;
+    const bool listed = context.state.prompt.steps.size() > 1;
+    if (reach.empty() || told.empty() || listed || !context.request.target.empty()) return reach;
     return fmt::format("Read as \"{}\". {}", told, reach);
 }
 
@@ -425,114 +426,12 @@ void draw_run(Context& context) {
     }
 }
 
-void back_to_defaults(Context& context) {
-    edit::EditRequest fresh = context.model.request_defaults;
-    fresh.source = context.request.source, fresh.prompt = context.request.prompt,
-    fresh.target = context.request.target;
-    fresh.mode = context.request.mode, fresh.seed = context.request.seed;
-    context.request = fresh;
-    context.request_changed = true;
-    context.model_settings = context.model.model_settings_defaults;
-    context.model_settings_changed = true;
-}
-
-void nothing_before(const char*, bool&) {}
-
-/// Which settings count for nothing with the method that the edit is led by.
-UnusedField unused_by_method(const Context& context) {
-    return [&method = edit::method_of(context.request)](unsigned uses) {
-        return edit::why_unused(method, uses);
-    };
-}
-
-/// Fields of the request under the headers of their groups.
-void draw_request_groups(Context& context) {
-    bool in_groups = false, tree_open = false;
-    const auto before = [&](const char* name, bool& shown) {
-        for (const auto& group : Groups) {
-            if (std::string_view(group.first_field) != name) continue;
-            if (tree_open) ImGui::TreePop();
-            tree_open = ImGui::TreeNodeEx(group.title, ImGuiTreeNodeFlags_SpanAvailWidth);
-            note(context, fmt::format("prompt.group.{}", group.title));
-            in_groups = true;
-        }
-        shown = in_groups && tree_open;
-    };
-    const auto all = [](const char*, const char*) { return true; };
-    context.request_changed |= field_rows(context, "request", context.request, all, before,
-                                          context.model.request_defaults, unused_by_method(context));
-    if (tree_open) ImGui::TreePop();
-}
-
-/// Fields of the model's settings that `wanted` lets through, with the prefix they have in a recipe.
-template <class P, class Wanted>
-void model_rows(Context& context, const char* prefix, P& part, const P& standard, Wanted&& wanted) {
-    context.model_settings_changed |=
-        field_rows(context, prefix, part, wanted, nothing_before, standard, unused_by_method(context));
-}
-
-template <class Wanted> void draw_model_groups(Context& context, bool grouped, Wanted&& wanted) {
-    auto& settings = context.model_settings;
-    const auto& standard = context.model.model_settings_defaults;
-    const auto group = [&](const char* title, auto&& rows) {
-        if (!grouped) return rows();
-        const bool open = ImGui::TreeNodeEx(title, ImGuiTreeNodeFlags_SpanAvailWidth);
-        note(context, fmt::format("prompt.group.{}", title));
-        if (!open) return;
-        rows();
-        ImGui::TreePop();
-    };
-    group("Model", [&] { model_rows(context, "model_settings", settings, standard, wanted); });
-    group("Guidance", [&] { model_rows(context, "guidance", settings.guidance, standard.guidance, wanted); });
-    group("Attention",
-          [&] { model_rows(context, "attention", settings.attention, standard.attention, wanted); });
-    group("Learning the scene",
-          [&] { model_rows(context, "learning", settings.learning, standard.learning, wanted); });
-}
-
-bool contains_text(std::string_view text, const std::string& wanted) {
-    const auto same = [](char a, char b) {
-        return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
-    };
-    return std::search(text.begin(), text.end(), wanted.begin(), wanted.end(), same) != text.end();
-}
-
-/// Settings whose name or explanation contains what was typed, without their groups.
-void draw_found_settings(Context& context, const std::string& wanted) {
-    bool any = false;
-    const auto matches = [&](const char* name, const char* help) {
-        const bool match = contains_text(field_label(name), wanted) || contains_text(help, wanted);
-        any |= match;
-        return match;
-    };
-    context.request_changed |= field_rows(context, "request", context.request, matches, nothing_before,
-                                          context.model.request_defaults, unused_by_method(context));
-    draw_model_groups(context, false, matches);
-    if (!any) dim_text("No setting is called so.");
-}
-
-/// Everything of a recipe, each with its default.
-void draw_advanced(Context& context) {
-    if (!folding(context, "prompt.advanced", "All settings")) return;
-    auto& wanted = context.state.prompt.settings_filter;
-    ImGui::SetNextItemWidth(-1);
-    text_input(context, "prompt.filter", wanted, "find a setting");
-    if (button(context, {.name = "prompt.defaults",
-                         .text = "Back to the defaults",
-                         .tooltip = "All settings below; words and seed stay"}))
-        back_to_defaults(context);
-    dim_text(fmt::format("In brackets: no effect while the edit is led by {}.",
-                         edit::method_of(context.request).leader()));
-    if (!wanted.empty()) return draw_found_settings(context, wanted);
-    draw_request_groups(context);
-    draw_model_groups(context, true, [](const char*, const char*) { return true; });
-}
-
 void draw_words(Context& context) {
     draw_source(context);
     draw_sentence(context);
     draw_chips(context);
     draw_remarks(context);
+    if (!typing(context)) draw_plan(context);
     draw_instruction(context);
     ImGui::Spacing();
     draw_mode(context);
@@ -551,7 +450,7 @@ float footer_height(Context& context) {
     const auto add = [&](const std::string& text) {
         if (!text.empty()) height += ImGui::CalcTextSize(text.c_str(), nullptr, false, width).y + gap;
     };
-    add(estimate_text(context.model.estimate));
+    add(estimate_text(context));
     add(memory_warning(context.model.estimate));
     add(obstacle_text(context));
     return height + reach_height(context) + context.em * 0.2f;
@@ -577,6 +476,8 @@ void draw_result_notice(Context& context, const char* prefix) {
                  verdict.warns ? palette::Warning : palette::Accent);
     wrapped_text(fmt::format("{} Look at it: V wipes between before and after, hold ` to flip.",
                              result_sentence(verdict)));
+    for (std::size_t i = 0; i < verdict.changes.size(); ++i)
+        dim_text(fmt::format("{} {}", i + 1, verdict.changes[i]));
     if (verdict.warns) coloured_text(palette::Warning, verdict.text);
     if (button(context, {.name = fmt::format("{}.apply", prefix),
                          .text = verdict.warns ? "Apply anyway" : "Apply",

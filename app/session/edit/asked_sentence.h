@@ -1,0 +1,49 @@
+// Request of the Prompt panel: its settings, its sentence, and the changes that this asks for.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/edit/request/sentence_plan.h"
+
+namespace gse::app {
+
+class AskedSentence {
+public:
+    using Step = language::plan::StepSentence;
+
+    AskedSentence() { request_.prompt.clear(); }
+
+    const edit::EditRequest& request() const { return request_; }
+    /// Takes a request. Other words are about the sentence as it is typed again.
+    void set(const edit::EditRequest& request);
+    /// Settings that no plan depends on.
+    edit::EditSettings& settings() { return request_; }
+    void forget_target() { request_.target.clear(); }
+    /// Takes the words that applied edits have said: they are no news any more.
+    void set_said(std::vector<std::string> said);
+    const std::vector<std::string>& said() const { return said_; }
+
+    /// The request in the words of the step that it is about. Of several, that is the first until one runs.
+    edit::EditRequest asked() const;
+    /// Makes it about one of the steps, until other words come. Nothing = about the sentence as it is typed.
+    void set_step(std::optional<Step> step) { step_ = std::move(step); }
+    /// Changes that the sentence asks for, each an edit of its own, among them looks that pictures may show
+    /// already. Empty = the sentence runs as it is typed.
+    const std::vector<edit::PlannedStep>& steps() const { return steps_; }
+    bool several() const { return steps_.size() > 1; }
+    /// Steps that can be done in a scene of these words, but those of `left_out` (in the plan's notation).
+    std::vector<Step> steps_in(const language::plan::SceneWords& scene,
+                               const std::vector<std::string>& left_out) const;
+
+private:
+    void plan();
+
+    edit::EditRequest request_;
+    std::vector<std::string> said_;
+    std::vector<edit::PlannedStep> steps_;
+    std::optional<Step> step_;  // that runs, or ran last
+};
+
+}  // namespace gse::app

@@ -1,0 +1,44 @@
+// Changes of one sentence, made one after another: those to come, and the outcomes of the finished ones.
+#include "app/session/edit/step_chain.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "engine/language/words.h"
+#include "engine/scene/row_values.h"
+
+namespace gse::app {
+
+void StepChain::begin(std::string sentence, std::vector<language::plan::StepSentence> steps,
+                      const DocumentState& state, std::uint64_t first_id) {
+    *this = {};
+    sentence_ = std::move(sentence);
+    steps_ = std::move(steps);
+    begun_ = state_ = state;
+    first_id_ = first_id;
+}
+
+bool StepChain::take(PendingResult result) {
+    for (auto& word : language::words_of(step().target)) words_.push_back(std::move(word));
+    state_ = applied(state_, result, first_id_ + done_.size());
+    done_.push_back(std::move(result));
+    return ++at_ < steps_.size();
+}
+
+PendingResult StepChain::end() {
+    const StepChain ended = std::exchange(*this, {});
+    if (ended.done_.empty()) return {};
+    PendingResult whole =
+        ended.done_.size() == 1 ? ended.done_.front() : together(ended.done_, ended.sentence_);
+    whole.asked = ended.steps_.size();
+    return whole;
+}
+
+std::string StepChain::said() const {
+    return several() ? fmt::format("step {} of {}", at_ + 1, steps_.size()) : std::string();
+}
+
+std::vector<std::int64_t> StepChain::rows() const { return row_map(*begun_.row_ids, *state_.row_ids); }
+
+}  // namespace gse::app

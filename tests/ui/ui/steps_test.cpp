@@ -1,0 +1,95 @@
+// Sentences with several changes on the Prompt panel: the list, its ticks, and what is asked.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include "tests/ui/support/harness.h"
+#include "ui/state.h"
+
+namespace gse::test::steps_test {
+namespace {
+
+constexpr const char* BlueWithHat = "a blue bear wearing a red hat";
+
+void ask(Harness& harness, const std::string& prompt) {
+    auto& model = harness.application.model();
+    model.known_words.clear();  // any word
+    model.request.source = "bear";
+    model.request.prompt = prompt;
+    model.request.target.clear();
+    harness.frame(2);
+    harness.application.calls.clear();
+}
+
+ui::Question& question(Harness& harness) { return harness.shell.state().question; }
+
+constexpr Harness::Options Large{1920, 1080, 1, Situation::Scene, false};
+
+}  // namespace
+
+DOCTEST_TEST_CASE("a sentence with two changes lists both, and Edit makes what is ticked") {
+    Harness harness(Large);
+    ask(harness, BlueWithHat);
+    const auto& steps = harness.shell.state().prompt.steps;
+    DOCTEST_REQUIRE(steps.size() == 2);
+    DOCTEST_CHECK(steps[0].text == "colour: bear, blue");
+    DOCTEST_CHECK(steps[1].text == "add: red hat, worn by bear");
+    DOCTEST_CHECK(harness.find("prompt.step.2") != nullptr);
+    DOCTEST_CHECK(harness.asks("prompt.edit", "edit"));
+    harness.shell.show(ui::PanelId::Prompt);
+    harness.frame(2);
+    harness.click("prompt.step.1");
+    DOCTEST_CHECK(harness.asks("prompt.edit", "edit without recolour(bear, blue)"));
+    harness.shell.show(ui::PanelId::Prompt);
+    harness.frame(2);
+    harness.click("prompt.step.2");
+    DOCTEST_CHECK_FALSE(harness.rect("prompt.edit").enabled);  // nothing is left
+    harness.click("prompt.step.1");
+    DOCTEST_CHECK(harness.rect("prompt.edit").enabled);
+    harness.click("prompt.step.2");
+    DOCTEST_CHECK(harness.shell.state().prompt.left_out.empty());
+}
+
+DOCTEST_TEST_CASE("ticks are of their sentence: typed again, all of its changes are made") {
+    Harness harness(Large);
+    ask(harness, BlueWithHat);
+    harness.click("prompt.step.1");
+    DOCTEST_CHECK(harness.shell.state().prompt.left_out.size() == 1);
+    ask(harness, "a golden bear");
+    ask(harness, BlueWithHat);
+    DOCTEST_CHECK(harness.shell.state().prompt.left_out.empty());
+}
+
+DOCTEST_TEST_CASE("where a change cannot be made, the window asks once whether the others are") {
+    Harness harness(Large);
+    auto& prompt = harness.shell.state().prompt;
+    ask(harness, "make the bear blue and twice as big");
+    DOCTEST_REQUIRE(prompt.steps.size() == 2);
+    DOCTEST_CHECK(prompt.steps[0].problem.empty());
+    DOCTEST_CHECK_FALSE(prompt.steps[1].problem.empty());
+    harness.click("prompt.edit");
+    DOCTEST_CHECK_FALSE(harness.application.asked("edit"));
+    DOCTEST_CHECK(question(harness).text.find(prompt.steps[1].problem) != std::string::npos);
+    harness.frame(2);
+    DOCTEST_CHECK(harness.asks("question.0", "edit"));
+}
+
+DOCTEST_TEST_CASE("a sentence of which nothing can be done says why, and so does one in German") {
+    Harness harness(Large);
+    for (const char* prompt : {"leave the bear as it is", "der Bär soll blau sein und einen Hut tragen",
+                               "make the bear twice as big"}) {
+        ask(harness, prompt);
+        DOCTEST_CHECK_FALSE(harness.rect("prompt.edit").enabled);
+        DOCTEST_CHECK_FALSE(harness.shell.state().prompt.problem.empty());
+    }
+}
+
+DOCTEST_TEST_CASE("a clicked word is the target of one edit, whatever the plan") {
+    Harness harness(Large);
+    ask(harness, BlueWithHat);
+    harness.click("prompt.chip.1");
+    DOCTEST_CHECK(harness.application.model().request.target == "blue");
+    DOCTEST_CHECK(harness.shell.state().prompt.steps.empty());
+    DOCTEST_CHECK(harness.asks("prompt.edit", "edit"));
+}
+
+}  // namespace gse::test::steps_test
