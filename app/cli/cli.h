@@ -15,7 +15,7 @@ namespace gse::app {
 /// State shared by the commands: quiet output, and the progress bar with its stop token.
 struct CommandContext {
     bool quiet = false;
-    int exit_code = 0;  // of a command that came to an end; 3 = a part was left out, as was asked for
+    int exit_code = 0;  // of a command that came to an end; 3 = a change was not done, or failed
     JobControl job() const;
 };
 

@@ -6,7 +6,6 @@
 
 #include "app/cli/cli.h"
 #include "app/cli/dreambooth_options.h"
-#include "app/cli/edit_steps.h"
 #include "app/engine_names.h"
 #include "app/session/state/edit_project.h"
 #include "engine/base/error.h"
@@ -23,13 +22,16 @@
 #include "engine/pipeline/models/tuning_json.h"
 #include "engine/pipeline/report/edit_output.h"
 #include "engine/pipeline/run/edit_job.h"
+#include "engine/pipeline/run/edit_steps.h"
 #include "engine/pipeline/run/preview_check.h"
+#include "engine/pipeline/run/step_judgement.h"
 #include "engine/pipeline/run/variations.h"
 
 namespace gse::app {
 namespace {
 
-constexpr int SomeLeftOut = 3;  // exit code: steps of a sentence were not done, as --partly allows
+// Exit code: a change was not done, or is judged to have failed.
+constexpr int SomeNotDone = 3;
 
 struct EditOptions {
     EditRecipe recipe;
@@ -40,6 +42,7 @@ struct EditOptions {
     bool gate = true;
     bool no_cache = false;
     bool partly = false;
+    bool keep_failed = false;
     std::string scene_words;
     int variations = 1;
     CLI::App* command = nullptr;
@@ -208,9 +211,25 @@ struct Company {
     bool prints = true;
 };
 
-/// One edit, into the folder.
-nlohmann::ordered_json edit_into(const std::filesystem::path& output, EditJob& job,
-                                 const EditOptions& options, const Company& company) {
+/// Report of an edit, and the verdict on it.
+struct EditOutcome {
+    nlohmann::ordered_json report;
+    StepJudgement judgement;
+};
+
+/// Verdict on an edit that came to its end; a pass for another.
+StepJudgement judged(EditJob& job, nlohmann::ordered_json& report) {
+    const auto& result = job.result();
+    if (result.iterations == 0 || result.stopped || result.failure || result.shortage) return {};
+    auto judgement = judge_step(job);
+    report["judgement"] = judgement_to_json(judgement);
+    if (!judgement.passed()) log::warning("{}; {}", judgement.reason, judgement.remedy);
+    return judgement;
+}
+
+/// One edit, into the folder. What failed joins the company's project where failures are kept.
+EditOutcome edit_into(const std::filesystem::path& output, EditJob& job, const EditOptions& options,
+                      const Company& company) {
     StagedFolder folder(output, {"report.json",
                                  {"scene.ply", "source.ply", "recipe.json", "report.json", "evidence",
                                   "before_after.mp4", "before_after.png", "edit.gsep", "lora.safetensors"}});
@@ -226,12 +245,14 @@ nlohmann::ordered_json edit_into(const std::filesystem::path& output, EditJob& j
     write_edit(folder.path(), job);
     job.times().end();
     auto report = make_report(job);
+    const auto judgement = judged(job, report);
     if (job.result().iterations > 0) {
         ProjectData project = company.project != nullptr ? project_with(*company.project, job, report)
                                                          : project_of(job, report);
         write_file(folder.path() / "edit.gsep",
                    ProjectWriter().pack(std::filesystem::absolute(output) / "edit.gsep", project));
-        if (company.project != nullptr) *company.project = std::move(project);
+        if (company.project != nullptr && (judgement.passed() || options.keep_failed))
+            *company.project = std::move(project);
     }
     add_optional_parts(report, folder.path(), job, gate);
     if (const auto& verdict = job.edited().verdict) report["gate"] = verdict_to_json(*verdict);
@@ -242,16 +263,18 @@ nlohmann::ordered_json edit_into(const std::filesystem::path& output, EditJob& j
     else if (company.prints) print_json(report, 2);
     if (company.sheet != nullptr) company.sheet->add(job, output.filename().string());
     require_finished(job, output);
-    return report;
+    return {std::move(report), judgement};
 }
 
-/// Writes the last scene, a project with all steps, and their reports.
-void write_last(const std::filesystem::path& output, const EditJob& job, const ProjectData& project,
+/// Writes the report of all steps, and what the last one taken came to: its scene, and a project of them.
+void write_last(const std::filesystem::path& output, const EditJob* job, const ProjectData& project,
                 nlohmann::ordered_json report) {
     StagedFolder folder(output, {"report.json", {"scene.ply", "edit.gsep", "report.json"}});
-    write_edited_scene(folder.path() / "scene.ply", job);
-    write_file(folder.path() / "edit.gsep",
-               ProjectWriter().pack(std::filesystem::absolute(output) / "edit.gsep", project));
+    if (job != nullptr) {
+        write_edited_scene(folder.path() / "scene.ply", *job);
+        write_file(folder.path() / "edit.gsep",
+                   ProjectWriter().pack(std::filesystem::absolute(output) / "edit.gsep", project));
+    }
     report["files"] = folder.listing();
     write_file(folder.path() / "report.json", json_text(report, 1) + "\n");
     folder.commit();
@@ -259,8 +282,9 @@ void write_last(const std::filesystem::path& output, const EditJob& job, const P
 
 /// The edit from several seeds, each in a folder of its own, and one picture of them all. Seeds that cannot
 /// be drawn are excluded.
-void run_variations(const EditOptions& options, const CommandContext& context) {
+void run_variations(const EditOptions& options, CommandContext& context) {
     VariationSheet sheet;
+    bool any_passed = options.keep_failed;
     auto reports = nlohmann::ordered_json::array();
     const auto finish = [&] {
         if (sheet.empty()) return;
@@ -273,7 +297,9 @@ void run_variations(const EditOptions& options, const CommandContext& context) {
         refuse_own_folder(options.recipe.job.scene, folder(i));  // before the first is begun
     for (int i = 0; i < options.variations; ++i) try {
             EditJob job(variation_of(options.recipe, i), context.job(), answers(options));
-            reports.push_back(edit_into(folder(i), job, options, {&sheet, nullptr, false}));
+            auto outcome = edit_into(folder(i), job, options, {&sheet, nullptr, false});
+            any_passed = any_passed || outcome.judgement.passed();
+            reports.push_back(std::move(outcome.report));
         } catch (const Error& error) {
             if (error.code() == ErrorCode::Model && (i + 1 < options.variations || !sheet.empty())) {
                 log::warning("variation {}: {}", i + 1, error.what());
@@ -283,6 +309,41 @@ void run_variations(const EditOptions& options, const CommandContext& context) {
             throw;
         }
     finish();
+    if (!any_passed) context.exit_code = SomeNotDone;
+}
+
+/// Does one step into a folder, and notes in `entry` what became of it. Throws what ends the whole edit.
+void run_step(StepSequence& sequence, std::size_t i, const std::filesystem::path& folder,
+              const EditOptions& options, const CommandContext& context, ProjectData& project,
+              nlohmann::ordered_json& entry) {
+    const auto& step = sequence.step(i);
+    const auto leave_out = [&](const std::string& reason) {
+        log::warning("step {} was not done ({}): {}", i + 1, language::plan::step_text(step.step), reason);
+        entry["reason"] = reason;
+        sequence.leave_out(i);
+    };
+    entry["done"] = false;
+    if (!step.words) return leave_out(step.problem.reason);
+    entry["prompt"] = step.words->prompt;
+    if (!options.json) print("step {} of {}, {}\n", i + 1, sequence.size(), step.words->prompt);
+    const auto first = [&](EditRecipe recipe) {
+        return std::make_unique<EditJob>(std::move(recipe), context.job(), answers(options));
+    };
+    try {
+        auto job = sequence.job_of(i, first, context.job());
+        auto outcome = edit_into(folder, *job, options, {nullptr, &project, false});
+        entry["report"] = std::move(outcome.report);
+        if (!outcome.judgement.passed() && !options.keep_failed) {
+            entry["remedy"] = outcome.judgement.remedy;
+            return leave_out(outcome.judgement.reason);
+        }
+        entry["done"] = true;
+        sequence.take(i, std::move(job));
+    } catch (const Error& error) {
+        const bool goes_on = options.partly || sequence.taken() < i;  // an earlier one was kept out
+        if (!goes_on || error.code() == ErrorCode::Cancelled) throw;
+        leave_out(error.message());
+    }
 }
 
 /// The steps of a sentence one after the other, each in a folder of its own, and the last scene beside them.
@@ -291,51 +352,28 @@ void run_steps(const EditOptions& options, const EditSteps& steps, CommandContex
     refuse_own_folder(options.recipe.job.scene, options.output);
     for (std::size_t i = 0; i < steps.steps.size(); ++i)
         refuse_own_folder(options.recipe.job.scene, folder(i));
-    std::unique_ptr<EditJob> job;
+    StepSequence sequence(options.recipe, steps);
     ProjectData project;
-    std::vector<std::string> said;
     auto report = plan_to_json(steps);
-    std::size_t done = 0;
-    for (std::size_t i = 0; i < steps.steps.size(); ++i) {
-        const auto& step = steps.steps[i];
-        auto& entry = report["steps"][i];
-        entry["done"] = false;
-        if (!step.words) {
-            log::warning("step {} is left out ({}): {}", i + 1, language::plan::step_text(step.step),
-                         step.problem.reason);
-            continue;
-        }
-        if (!options.json) print("step {} of {}, {}\n", i + 1, steps.steps.size(), step.words->prompt);
-        auto recipe = recipe_of_step(options.recipe, step);
-        auto next = job == nullptr
-                        ? std::make_unique<EditJob>(std::move(recipe), context.job(), answers(options))
-                        : std::make_unique<EditJob>(std::move(recipe), next_input(*job, said), context.job());
-        try {
-            entry["report"] = edit_into(folder(i), *next, options, {nullptr, &project, false});
-        } catch (const Error& error) {
-            if (!options.partly || error.code() == ErrorCode::Cancelled) throw;
-            log::warning("step {} was not done: {}", i + 1, error.what());
-            entry["reason"] = error.message();
-            continue;
-        }
-        entry["done"] = true;
-        job = std::move(next);
-        ++done;
-        for (auto& word : language::words_of(step.words->target)) said.push_back(std::move(word));
-    }
-    report["done"] = done;
-    if (job != nullptr) write_last(options.output, *job, project, report);
+    for (std::size_t i = 0; i < sequence.size(); ++i)
+        run_step(sequence, i, folder(i), options, context, project, report["steps"][i]);
+    report["done"] = sequence.taken();
+    write_last(options.output, sequence.last(), project, report);
     if (options.json) print_json(report, 2);
-    if (done == steps.steps.size()) return;
-    log::warning("{} of {} steps were done; the report says why the others were not: {}", done,
-                 steps.steps.size(), (options.output / "report.json").string());
-    context.exit_code = SomeLeftOut;
+    if (sequence.taken() == sequence.size()) return;
+    log::warning("{} of {} steps were done; the report says why the others were not: {}", sequence.taken(),
+                 sequence.size(), (options.output / "report.json").string());
+    context.exit_code = SomeNotDone;
 }
 
 void run_edit_command(EditOptions& options, CommandContext& context) {
     complete(options);
-    const auto steps = steps_of_sentence(options.recipe, options.scene_words, options.partly, context.job(),
-                                         answers(options));
+    EditSteps steps;
+    if (has_steps(options.recipe))
+        steps = steps_of_sentence(
+            options.recipe,
+            words_of_scene(options.recipe, options.scene_words, context.job(), answers(options)),
+            options.partly);
     if (steps.nothing_to_change) {
         if (options.json) print_json(plan_to_json(steps), 2);
         else print("Nothing to change: the sentence asks for nothing that is not there already.\n");
@@ -354,7 +392,8 @@ void run_edit_command(EditOptions& options, CommandContext& context) {
     if (options.variations > 1) return run_variations(options, context);
     refuse_own_folder(options.recipe.job.scene, options.output);
     EditJob job(options.recipe, context.job(), answers(options));
-    edit_into(options.output, job, options, {});
+    const auto outcome = edit_into(options.output, job, options, {});
+    if (!outcome.judgement.passed() && !options.keep_failed) context.exit_code = SomeNotDone;
 }
 
 void run_locate_command(EditOptions& options, const CommandContext& context) {
@@ -413,6 +452,10 @@ void add_edit_commands(CLI::App& app, CommandContext& context) {
     edit_command->add_flag("--partly", edit->partly,
                            "Make the changes that can be made of a sentence with several; exit code 3 tells "
                            "that some were not");
+    edit_command->add_flag(
+        "--keep-failed", edit->keep_failed,
+        "Take a change that is judged to have failed all the same. Without it, a failed step of several is "
+        "kept out of the scene, and exit code 3 tells of a failed change");
     edit_command->add_option(
         "--words", edit->scene_words,
         "Things that the scene shows, with their colours, as \"red bear; grass\"; empty = "

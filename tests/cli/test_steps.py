@@ -28,6 +28,7 @@ class Steps(ProgramTest):
         for step in report["steps"]:
             self.assertTrue(step["done"])
             self.assertEqual(step["report"]["changed_outside_label"], 0)
+            self.assertTrue(step["report"]["judgement"]["passed"], step["report"]["judgement"])
         self.assertGreater(report["steps"][1]["report"]["added"], 0)
         listing = run("project", self.out / "edit.gsep", "--json")
         self.assertEqual(listing.returncode, 0, listing.stderr)
@@ -51,6 +52,38 @@ class Steps(ProgramTest):
         report = self.report()
         self.assertEqual([step["done"] for step in report["steps"]], [True, False])
         self.assertIn("not moved", report["steps"][1]["reason"])
+
+    # Edits that change next to nothing: so few optimisation steps move no colour far.
+    FAILING = ["--fit-steps", 1, "--rounds", 1]
+
+    def test_a_change_that_failed_is_written_and_said(self):
+        process = self.edit("a blue bear on the grass", *self.FAILING)
+        self.assertEqual(process.returncode, 3, process.stderr)
+        self.assertIn("of the bear changed visibly", process.stderr)
+        judgement = self.report()["judgement"]
+        self.assertFalse(judgement["passed"])
+        self.assertIn(judgement["reason"], process.stderr)
+        self.assertIn(judgement["remedy"], process.stderr)
+        self.assertTrue((self.out / "scene.ply").exists())
+        process = self.edit("a blue bear on the grass", *self.FAILING, "--keep-failed")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertFalse(self.report()["judgement"]["passed"])
+
+    def test_a_step_that_failed_is_kept_out_and_the_next_goes_on_without_it(self):
+        process = self.edit("a blue bear wearing a yellow hat on the grass", *self.FAILING)
+        self.assertEqual(process.returncode, 3, process.stderr)
+        report = self.report()
+        self.assertEqual([step["done"] for step in report["steps"]], [False, True])
+        self.assertEqual(report["steps"][0]["reason"], report["steps"][0]["report"]["judgement"]["reason"])
+        self.assertTrue(report["steps"][1]["report"]["judgement"]["passed"])
+        self.assertNotIn("blue", report["steps"][1]["prompt"])   # the bear is as red as it was
+        self.assertTrue((self.out / "1/scene.ply").exists())
+        listing = json.loads(run("project", self.out / "edit.gsep", "--json").stdout)
+        self.assertEqual(len(listing["edits"]), 1)
+        self.assertIn("hat", listing["edits"][0]["name"])
+        process = self.edit("a blue bear wearing a yellow hat on the grass", *self.FAILING, "--keep-failed")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertEqual([step["done"] for step in self.report()["steps"]], [True, True])
 
     def test_nothing_to_change_changes_nothing(self):
         for prompt in ["a red bear on the grass", "a bear without a hat", "leave the bear as it is"]:

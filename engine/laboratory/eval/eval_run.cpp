@@ -10,6 +10,7 @@
 #include "engine/base/process_memory.h"
 #include "engine/edit/search/grabcut_segmenter.h"
 #include "engine/evaluate/metrics.h"
+#include "engine/laboratory/eval/eval_compound.h"
 #include "engine/laboratory/eval/eval_figures.h"
 #include "engine/laboratory/eval/eval_scenes.h"
 #include "engine/laboratory/eval/eval_sheet.h"
@@ -17,6 +18,7 @@
 #include "engine/laboratory/eval/eval_summary.h"
 #include "engine/language/words.h"
 #include "engine/pipeline/report/edit_output.h"
+#include "engine/pipeline/run/step_judgement.h"
 
 namespace gse::bench {
 namespace {
@@ -164,15 +166,37 @@ private:
     pipeline::EditRecipe recipe(const EvalCase& edit) const {
         pipeline::EditRecipe recipe = run_.settings;
         recipe.request.mode = run_.parameters.mode == "auto" ? "auto" : edit::mode_name(right_mode(edit));
+        if (edit.kind == "compound") recipe.request.mode = "auto";
         recipe.request.source = edit.word;
         recipe.request.prompt = edit.prompt;
         recipe.request.target = run_.parameters.oracle_views ? edit.target_word : std::string();
         return recipe;
     }
 
+    /// A case with several changes; a failure becomes its "error".
+    Json evaluate_compound(std::size_t index) {
+        const EvalCase& edit = suite_[index];
+        Json entry = case_json(edit, index);
+        pipeline::StageTimes times;
+        times.begin("compound");
+        try {
+            const CompoundTools with{tools(), model_, sheets_, run_.parameters.held_out_views};
+            entry.update(compound_figures(edit, recipe(edit), with, quiet()));
+        } catch (const Error& error) {
+            if (error.code() == ErrorCode::Cancelled) throw;
+            entry["error"] = error.message();
+        }
+        times.end();
+        entry["seconds"] = times.to_json();
+        entry["peak_rss_mb"] = peak_rss_mb();
+        add_times(times);
+        return entry;
+    }
+
     /// One case with its ablations; a failure becomes its "error".
     Json evaluate_case(std::size_t index, Json& ablated) {
         const EvalCase& edit = suite_[index];
+        if (edit.kind == "compound") return evaluate_compound(index);
         Json entry = case_json(edit, index);
         const auto recipe = this->recipe(edit);
         EvalSetting setting = make_setting(edit, recipe.request, run_.parameters.held_out_views);
@@ -231,6 +255,7 @@ private:
         figures["edit_seconds"] = result.seconds;
         if (result.redrawn_views > 0) figures["redrawing"] = redrawing_figures(result);
         if (const auto& verdict = job.edited().verdict) figures["gate"] = pipeline::verdict_to_json(*verdict);
+        figures["judgement"] = pipeline::judgement_to_json(pipeline::judge_step(job));
         job.times().end();
         return figures;
     }

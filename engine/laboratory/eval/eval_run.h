@@ -32,7 +32,7 @@ struct EvalParameters {
         f("edits", self.edits, "Synthetic edits with ground truth.", Range{0, 10000});
         f("kinds", self.kinds,
           "Kinds of edits, in turn: recolour material add ground replace; dye = colours that the bundled "
-          "model does not look for.");
+          "model does not look for; compound = two or three changes in one sentence.");
         f("drawn_words", self.drawn_words,
           "Name added and replacing objects by words that the bundled model draws and does not look for.");
         f("mode", self.mode,

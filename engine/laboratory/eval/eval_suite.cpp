@@ -2,6 +2,7 @@
 #include "engine/laboratory/eval/eval_suite.h"
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 
 #include "engine/base/check.h"
@@ -127,6 +128,7 @@ Combination choose(std::vector<Combination> list, std::set<std::string>& used, R
 }
 
 constexpr const char* ColourRemap = "dye";
+constexpr const char* Compound = "compound";
 
 /// Colours that the bundled model does not look for: they are dyed, or (the metals) drawn.
 const std::vector<std::string>& dyed_materials() {
@@ -175,6 +177,64 @@ EvalCase make_case(const std::string& kind, bool drawn_words, std::set<std::stri
     return edit;
 }
 
+/// Changes of a case with several.
+struct CompoundPattern {
+    bool look, ground, add, accessory_look, replace;
+};
+
+/// Patterns in turn. Every look, place and thing of the world changes beside every other.
+constexpr CompoundPattern CompoundPatterns[] = {
+    {.look = true, .ground = false, .add = true, .accessory_look = false, .replace = false},
+    {.look = true, .ground = false, .add = false, .accessory_look = true, .replace = false},
+    {.look = false, .ground = true, .add = false, .accessory_look = false, .replace = true},
+    {.look = true, .ground = true, .add = true, .accessory_look = false, .replace = false},
+    {.look = true, .ground = true, .add = false, .accessory_look = false, .replace = false},
+    {.look = true, .ground = true, .add = false, .accessory_look = true, .replace = false},
+};
+
+const std::string& another(const std::vector<std::string>& words, const std::vector<std::string>& taken,
+                           Random& random) {
+    for (;;) {
+        const auto& word = pick(words, random);
+        if (std::find(taken.begin(), taken.end(), word) == taken.end()) return word;
+    }
+}
+
+/// Accessories that come in colours, so that theirs can change.
+std::vector<std::string> coloured_accessories() {
+    std::vector<std::string> list;
+    for (const auto& word : synth::accessory_words())
+        if (synth::accessory_colour_words(word).size() > 1) list.push_back(word);
+    return list;
+}
+
+std::vector<Combination> combinations_of(const CompoundPattern& pattern, Random& random) {
+    if (pattern.replace) return replacements(synth::object_words(), false);
+    if (pattern.accessory_look) return additions(coloured_accessories());
+    if (pattern.add) return additions(synth::accessory_words());
+    return material_changes(random.uniform() < 0.5, false);
+}
+
+EvalCase make_compound(std::uint64_t number, std::set<std::string>& used, Random random) {
+    const auto& pattern = CompoundPatterns[number % std::size(CompoundPatterns)];
+    Combination words = choose(combinations_of(pattern, random), used, random);
+    auto &source = words.source, &target = words.target;
+    if (pattern.look) source.material = another(synth::material_words(), {target.material}, random);
+    const std::uint64_t seed = random.next();
+    source.seed = target.seed = seed;
+    source.ground = target.ground = pick(synth::ground_words(), random);
+    if (pattern.ground) target.ground = another(synth::ground_words(), {source.ground}, random);
+    if (pattern.add) target.accessory_colour = accessory_colour(words, random);
+    if (pattern.accessory_look) {
+        source.accessory = target.accessory;
+        const auto& colours = synth::accessory_colour_words(target.accessory);
+        target.accessory_colour = another(colours, {source.material, target.material}, random);
+        source.accessory_colour =
+            another(colours, {source.material, target.material, target.accessory_colour}, random);
+    }
+    return {Compound, source, target, synth::full_caption(target).text, source.object, {}};
+}
+
 std::string list_of(const std::vector<std::string>& words) {
     std::string list;
     for (const auto& word : words) list += (list.empty() ? "" : ", ") + word;
@@ -191,25 +251,31 @@ const std::vector<std::string>& eval_kinds() {
 std::vector<EvalCase> make_suite(std::uint64_t seed, int count, const std::vector<std::string>& kinds,
                                  bool drawn_words) {
     auto known = eval_kinds();
-    known.emplace_back(ColourRemap);  // only where it is asked for
+    for (const char* kind : {ColourRemap, Compound}) known.emplace_back(kind);  // only where asked for
     for (const auto& kind : kinds)
         if (std::find(known.begin(), known.end(), kind) == known.end())
             throw Error(ErrorCode::InvalidArgument, "there is no kind of edit named \"" + kind + "\"",
                         "use " + list_of(known));
     if (kinds.empty())
         throw Error(ErrorCode::InvalidArgument, "no kind of edit is named", "use " + list_of(known));
-    constexpr std::uint64_t OfWhatStays = 40000, OfReplacements = 50000, OfDyes = 60000;  // random streams
+    constexpr std::uint64_t OfWhatStays = 40000, OfReplacements = 50000, OfDyes = 60000,
+                            OfCompounds = 70000;  // random streams
     std::vector<EvalCase> suite;
-    std::set<std::string> used, used_to_replace, used_to_dye;
-    std::uint64_t others = 0, replacements = 0, dyes = 0;
+    std::set<std::string> used, used_to_replace, used_to_dye, used_in_compounds;
+    std::uint64_t others = 0, replacements = 0, dyes = 0, compounds = 0;
     for (int i = 0; i < count; ++i) {
         const auto& kind = kinds[static_cast<std::size_t>(i) % kinds.size()];
-        suite.push_back(
-            kind == "replace" ? make_case(kind, drawn_words, used_to_replace,
-                                          Random::stream(seed, OfReplacements + replacements++))
-            : kind == ColourRemap
-                ? make_case(kind, drawn_words, used_to_dye, Random::stream(seed, OfDyes + dyes++))
-                : make_case(kind, drawn_words, used, Random::stream(seed, OfWhatStays + others++)));
+        if (kind == "replace")
+            suite.push_back(make_case(kind, drawn_words, used_to_replace,
+                                      Random::stream(seed, OfReplacements + replacements++)));
+        else if (kind == ColourRemap)
+            suite.push_back(make_case(kind, drawn_words, used_to_dye, Random::stream(seed, OfDyes + dyes++)));
+        else if (kind == Compound) {
+            const auto number = compounds++;
+            suite.push_back(
+                make_compound(number, used_in_compounds, Random::stream(seed, OfCompounds + number)));
+        } else
+            suite.push_back(make_case(kind, drawn_words, used, Random::stream(seed, OfWhatStays + others++)));
     }
     return suite;
 }

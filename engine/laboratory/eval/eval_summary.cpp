@@ -9,6 +9,8 @@
 #include <set>
 #include <vector>
 
+#include "engine/laboratory/eval/eval_compound_summary.h"
+
 namespace gse::bench {
 namespace {
 
@@ -377,6 +379,9 @@ Json eval_summary(const Json& report) {
     add_preservation(edits, summary);
     add_replacements(report, edits, summary);
     add_verdicts(edits, summary);
+    const Json compounds = compound_summary(edits);
+    for (const auto& [name, value] : compounds.items())
+        summary[name] = figure(value, name == "compound_lost_splats" ? Goal{"==", 0} : Goal{});
     summary["added_means"] = added_means(edits);
     const Json table = ablation_means(report);
     if (!table.empty()) add_order(table, summary);
@@ -390,6 +395,7 @@ std::string eval_table(const Json& report) {
         "outline F of the place)\n",
         "#", "kind", "wIoU", "IoU", "mIoU", "mF", "L1 red.", "PSNR in", "out", "leak", "drift", "CLIP", "s");
     for (const auto& edit : report["edits"]) text += edit_line(edit);
+    text += compound_lines(report["edits"]);
     text += added_lines(report["summary"]["added_means"]);
     text += ablation_lines(report["summary"]["ablation_means"]);
     text += scene_lines(report["scenes"]);

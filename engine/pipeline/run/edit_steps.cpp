@@ -1,5 +1,5 @@
-// Sentences on the command line as lists of steps.
-#include "app/cli/edit_steps.h"
+// Sentences as lists of steps, and jobs that follow each other.
+#include "engine/pipeline/run/edit_steps.h"
 
 #include <fmt/format.h>
 
@@ -12,23 +12,10 @@
 #include "engine/language/words.h"
 #include "engine/scene/row_values.h"
 
-namespace gse::app {
+namespace gse::pipeline {
 namespace {
 
 namespace plan = language::plan;
-
-/// The scene's words: those that were given, else the source and what pictures show of it.
-plan::SceneWords words_of_scene(const EditRecipe& recipe, const std::string& given, const JobControl& control,
-                                std::shared_ptr<DiskCache> cache) {
-    if (!given.empty()) return plan::scene_words(edit::with_source(given, recipe.request));
-    auto scene = edit::assumed_scene(recipe.request);
-    if (!edit::pictures_decide(recipe.request)) return scene;
-    EditRecipe looking = recipe;
-    looking.request = edit::source_alone(looking.request);
-    looking.use_dreambooth = false;
-    EditJob job(std::move(looking), control, std::move(cache));
-    return job.words_shown(std::move(scene));
-}
 
 void require_all(const EditSteps& steps) {
     const auto undone =
@@ -46,12 +33,24 @@ void require_all(const EditSteps& steps) {
 
 }  // namespace
 
-EditSteps steps_of_sentence(const EditRecipe& recipe, const std::string& scene_words, bool partly,
-                            const JobControl& control, std::shared_ptr<DiskCache> cache) {
-    if (!edit::is_planned(recipe.request) || recipe.job.brings_label()) return {};
-    const auto scene = words_of_scene(recipe, scene_words, control, std::move(cache));
-    EditSteps result;
-    result.plan = edit::plan_of(recipe.request, scene);
+plan::SceneWords words_of_scene(const EditRecipe& recipe, const std::string& given, const JobControl& control,
+                                std::shared_ptr<DiskCache> cache) {
+    if (!given.empty()) return plan::scene_words(edit::with_source(given, recipe.request));
+    auto scene = edit::assumed_scene(recipe.request);
+    if (!edit::pictures_decide(recipe.request)) return scene;
+    EditRecipe looking = recipe;
+    looking.request = edit::source_alone(looking.request);
+    looking.use_dreambooth = false;
+    EditJob job(std::move(looking), control, std::move(cache));
+    return job.words_shown(std::move(scene));
+}
+
+bool has_steps(const EditRecipe& recipe) {
+    return edit::is_planned(recipe.request) && !recipe.job.brings_label();
+}
+
+EditSteps steps_of_sentence(const EditRecipe& recipe, const plan::SceneWords& scene, bool partly) {
+    EditSteps result{edit::plan_of(recipe.request, scene), scene, {}};
     if (edit::is_told_as_typed(recipe.request, result.plan)) return {};
     result.nothing_to_change = result.plan.steps.front().operation == plan::Operation::None;
     if (result.nothing_to_change) return result;
@@ -71,8 +70,8 @@ EditRecipe recipe_of_step(EditRecipe recipe, const edit::PlannedStep& step) {
     return recipe;
 }
 
-pipeline::EditJobInput next_input(EditJob& job, std::vector<std::string> said) {
-    pipeline::EditJobInput input;
+EditJobInput next_input(EditJob& job, std::vector<std::string> said) {
+    EditJobInput input;
     input.scene = job.scene();
     const auto& result = job.result();
     input.scene.extra = gathered(input.scene.extra, sources_of(result.base_to_new, result.set.size()));
@@ -81,7 +80,7 @@ pipeline::EditJobInput next_input(EditJob& job, std::vector<std::string> said) {
     if (!job.automatic_views()) input.cameras = job.views();
     input.model = job.shared_model();
     input.said = std::move(said);
-    input.segmenters = pipeline::open_segmenters(job.recipe().job, nullptr);
+    input.segmenters = open_segmenters(job.recipe().job, nullptr);
     return input;
 }
 
@@ -99,4 +98,28 @@ nlohmann::ordered_json plan_to_json(const EditSteps& steps) {
     return json;
 }
 
-}  // namespace gse::app
+StepSequence::StepSequence(EditRecipe recipe, EditSteps steps)
+    : recipe_(std::move(recipe)), steps_(std::move(steps)), scene_(steps_.scene) {}
+
+std::unique_ptr<EditJob> StepSequence::job_of(std::size_t i, const FirstJob& first,
+                                              const JobControl& control) const {
+    auto recipe = recipe_of_step(recipe_, step(i));
+    if (job_ == nullptr) return first(std::move(recipe));
+    return std::make_unique<EditJob>(std::move(recipe), next_input(*job_, said_), control);
+}
+
+void StepSequence::take(std::size_t i, std::unique_ptr<EditJob> job) {
+    for (auto& word : language::words_of(step(i).words->target)) said_.push_back(std::move(word));
+    scene_ = plan::after(step(i).step, std::move(scene_));
+    job_ = std::move(job);
+    ++taken_;
+}
+
+void StepSequence::leave_out(std::size_t i) {
+    plan::Plan rest;
+    for (std::size_t later = i + 1; later < size(); ++later) rest.steps.push_back(step(later).step);
+    auto described = edit::planned_steps(rest, scene_);
+    std::move(described.begin(), described.end(), steps_.steps.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+}
+
+}  // namespace gse::pipeline

@@ -1,0 +1,78 @@
+// Steps that a sentence asks for, as jobs one after another.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "engine/base/disk_cache.h"
+#include "engine/edit/request/sentence_plan.h"
+#include "engine/pipeline/recipe/recipe.h"
+#include "engine/pipeline/run/edit_job.h"
+
+namespace gse::pipeline {
+
+/// Steps of a sentence. Without any, the sentence runs as it is typed.
+struct EditSteps {
+    language::plan::Plan plan;
+    language::plan::SceneWords scene;  // before the first step
+    std::vector<edit::PlannedStep> steps;
+    bool nothing_to_change = false;
+};
+
+/// The scene's words for a recipe: `given` ("red bear; grass"), else the source and what pictures of the
+/// scene tell where they decide.
+language::plan::SceneWords words_of_scene(const EditRecipe& recipe, const std::string& given,
+                                          const JobControl& control, std::shared_ptr<DiskCache> cache);
+
+/// False for a recipe whose target, mode or label was chosen: its sentence runs as it is.
+bool has_steps(const EditRecipe& recipe);
+
+/// Plans the sentence of a recipe that has_steps(). Throws Error (InvalidArgument): the sentence is refused,
+/// or a step cannot be done and `partly` is false.
+EditSteps steps_of_sentence(const EditRecipe& recipe, const language::plan::SceneWords& scene, bool partly);
+
+/// The recipe of one step that has words.
+EditRecipe recipe_of_step(EditRecipe recipe, const edit::PlannedStep& step);
+
+/// Scene, views and model that a job left, for the job of the next step. `said`: words that earlier steps
+/// brought along.
+EditJobInput next_input(EditJob& job, std::vector<std::string> said);
+
+/// {"plan": notation, "steps": [{"step", "text", "prompt" or "reason"}, ...]}.
+nlohmann::ordered_json plan_to_json(const EditSteps& steps);
+
+/// Steps in order, each on the scene that the steps taken before it came to.
+class StepSequence {
+public:
+    /// Makes the job of the first step that is begun.
+    using FirstJob = std::function<std::unique_ptr<EditJob>(EditRecipe recipe)>;
+
+    StepSequence(EditRecipe recipe, EditSteps steps);
+    std::size_t size() const { return steps_.steps.size(); }
+    /// A step in the words of the scene as it is by now. Without words it cannot be done.
+    const edit::PlannedStep& step(std::size_t i) const { return steps_.steps[i]; }
+    /// Job of a step that has words. Throws as EditJob's constructors do.
+    std::unique_ptr<EditJob> job_of(std::size_t i, const FirstJob& first, const JobControl& control) const;
+    /// Goes on from what a step's job came to.
+    void take(std::size_t i, std::unique_ptr<EditJob> job);
+    /// Goes on from the scene before a step. Later steps are described anew.
+    void leave_out(std::size_t i);
+    /// Job of the last step taken; null before one was.
+    EditJob* last() const { return job_.get(); }
+    /// Number of steps taken.
+    std::size_t taken() const { return taken_; }
+
+private:
+    EditRecipe recipe_;
+    EditSteps steps_;
+    language::plan::SceneWords scene_;  // by now
+    std::unique_ptr<EditJob> job_;
+    std::vector<std::string> said_;
+    std::size_t taken_ = 0;
+};
+
+}  // namespace gse::pipeline
