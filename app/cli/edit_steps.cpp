@@ -10,6 +10,8 @@
 #include "engine/base/log.h"
 #include "engine/language/plan/plan_text.h"
 #include "engine/language/words.h"
+#include "engine/pipeline/models/model_words.h"
+#include "engine/pipeline/models/recipe_model.h"
 #include "engine/scene/row_values.h"
 
 namespace gse::app {
@@ -56,7 +58,8 @@ EditSteps steps_of_sentence(const EditRecipe& recipe, const std::string& scene_w
     result.nothing_to_change = result.plan.steps.front().operation == plan::Operation::None;
     if (result.nothing_to_change) return result;
     if (const auto refused = edit::refusal_of(result.plan, recipe.request.source)) throw *refused;
-    result.steps = edit::planned_steps(result.plan, scene);
+    result.steps =
+        edit::planned_steps(result.plan, scene, pipeline::model_ability(pipeline::model_path(recipe.job)));
     const bool any = std::any_of(result.steps.begin(), result.steps.end(),
                                  [](const auto& step) { return step.words.has_value(); });
     if (!partly || !any) require_all(result);

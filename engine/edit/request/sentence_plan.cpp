@@ -151,7 +151,8 @@ plan::Plan plan_of(const EditRequest& request, const plan::SceneWords& scene) {
     return plan::plan_sentence(request.prompt, scene, language::normalised_prompt(request.source));
 }
 
-std::vector<PlannedStep> planned_steps(const plan::Plan& plan, plan::SceneWords scene) {
+std::vector<PlannedStep> planned_steps(const plan::Plan& plan, plan::SceneWords scene,
+                                       const plan::ModelAbility& model) {
     std::vector<PlannedStep> result;
     for (const auto& step : plan.steps) {
         if (step.operation == Operation::None) continue;
@@ -160,7 +161,7 @@ std::vector<PlannedStep> planned_steps(const plan::Plan& plan, plan::SceneWords 
             if (const auto error = refusal_of({{step}}, {}))
                 planned.problem = {error->message(), error->hint()};
         } else {
-            planned.words = plan::sentence_of(step, scene, &planned.problem);
+            planned.words = plan::sentence_of(step, scene, &planned.problem, model);
         }
         scene = plan::after(step, std::move(scene));
         result.push_back(std::move(planned));
@@ -170,10 +171,11 @@ std::vector<PlannedStep> planned_steps(const plan::Plan& plan, plan::SceneWords 
 
 bool is_planned(const EditRequest& request) {
     return request.target.empty() && request.mode == "auto" && request.instruction.empty() &&
-           !request.source.empty();
+           !request.source.empty() && request.part_of.empty() && !request.whole_scene;
 }
 
 bool says_itself(const EditRequest& request, const plan::StepSentence& words, const News& news) {
+    if (!words.part_of.empty() || words.whole_scene || !words.instruction.empty()) return false;
     const auto guessed = with_target(request, news);
     const language::EditSentence sentence(language::Sentence(request.prompt),
                                           language::normalised_prompt(request.source), guessed.target);
@@ -195,6 +197,9 @@ EditRequest request_of(EditRequest request, const plan::StepSentence& words) {
     request.prompt = words.prompt;
     request.target = words.target;
     request.mode = mode_name(words.mode);
+    request.part_of = words.part_of;
+    request.whole_scene = words.whole_scene;
+    request.instruction = words.instruction;
     return request;
 }
 

@@ -31,8 +31,9 @@ std::string with_source(const std::string& words, const EditRequest& request);
 language::plan::Plan plan_of(const EditRequest& request, const language::plan::SceneWords& scene);
 
 /// The steps, each described in the scene that the earlier ones leave. Refusals among them are steps that
-/// cannot be done.
-std::vector<PlannedStep> planned_steps(const language::plan::Plan& plan, language::plan::SceneWords scene);
+/// cannot be done, and so is what the `model` cannot do.
+std::vector<PlannedStep> planned_steps(const language::plan::Plan& plan, language::plan::SceneWords scene,
+                                       const language::plan::ModelAbility& model = {});
 
 /// True for a request whose sentence says everything: source named; target, mode and instruction left open.
 bool is_planned(const EditRequest& request);

@@ -84,6 +84,12 @@ std::vector<std::string> word_list(const fs::path& folder, const char* key) {
 
 std::vector<std::string> model_words(const fs::path& folder) { return word_list(folder, "vocabulary"); }
 
+language::plan::ModelAbility model_ability(const fs::path& folder) {
+    auto known = model_words(folder);
+    const bool open = known.empty();
+    return {open, std::move(known)};
+}
+
 std::vector<std::string> drawn_words(const fs::path& folder) {
     const auto known = model_words(folder);
     return known.empty() ? known : edit::with_dyes(word_list(folder, "drawn_vocabulary"), known);
