@@ -114,7 +114,7 @@ std::string problem_of(const edit::EditRequest& request, const SentenceGround& g
         return "Describe the scene after the edit in one sentence";
     if (request.source.empty() && request.target.empty())
         return "Type what in the scene the edit is about, or click the word of the sentence that is new";
-    if (facts.steps.size() > 1) return problem_of_steps(facts);
+    if (facts.follows_plan) return problem_of_steps(facts);
     if (const auto problem = edit::single_edit_problem(request, {ground.said, ground.read_target}))
         return fmt::format("{}: {}", first_letter_up(problem->message()), problem->hint());
     std::optional<edit::CheckedRequest> valid;
@@ -186,8 +186,10 @@ SentenceFacts facts_of(const edit::EditRequest& request, const SentenceGround& g
             facts.source_suggestions.push_back(with_word(request.source, index, near));
         facts.source_help = language::words_to_use(unknown, ground.known);
     }
-    for (const auto& planned : edit::changes_of(request, edit::assumed_scene(request), {ground.said, {}}))
-        facts.steps.push_back(step_facts(request, planned, ground));
+    const auto planned = edit::changes_of(request, edit::assumed_scene(request),
+                                          {ground.said, {ground.known.empty(), ground.known}});
+    for (const auto& step : planned) facts.steps.push_back(step_facts(request, step, ground));
+    facts.follows_plan = edit::follows_plan(request, planned, {ground.said, {}});
     facts.problem = problem_of(request, ground, facts);
     facts.locate_problem = locate_problem_of(language::normalised_prompt(request.source), ground, facts);
     mark_chips(request, facts);

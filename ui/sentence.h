@@ -42,6 +42,7 @@ struct SentenceFacts {
     // none.
     edit::EditWords told;
     std::vector<StepFacts> steps;  // of the plan; empty = the sentence is told as it is typed, or refused
+    bool follows_plan = false;     // the steps run in their own words
     std::string cut_at;            // first word that the text encoder does not read; empty = it reads all
 };
 

@@ -388,8 +388,9 @@ struct ResultVerdict {
     bool warns = false;   // they do not show the edit
     int stopped_at = -1;  // step at which the artist stopped it; -1 = it ran to its end
     int steps = 0;        // that it would have run
-    std::vector<std::string> changes = {};  // of a sentence with several, that were made
-    std::size_t asked = 1;                  // that the sentence had
+    std::vector<std::string> changes = {};   // of a sentence with several, that were made
+    std::size_t asked = 1;                   // that the sentence had
+    std::vector<std::string> kept_out = {};  // changes that failed, each with the reason
 };
 
 /// The running or last edit and its results.

@@ -22,10 +22,10 @@
 #include "engine/pipeline/models/tuning_json.h"
 #include "engine/pipeline/report/edit_output.h"
 #include "engine/pipeline/run/edit_job.h"
-#include "engine/pipeline/run/edit_steps.h"
 #include "engine/pipeline/run/preview_check.h"
-#include "engine/pipeline/run/step_judgement.h"
 #include "engine/pipeline/run/variations.h"
+#include "engine/pipeline/steps/edit_steps.h"
+#include "engine/pipeline/steps/step_judgement.h"
 
 namespace gse::app {
 namespace {

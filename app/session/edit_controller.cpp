@@ -22,6 +22,9 @@ ui::ResultVerdict verdict_of(const PendingResult& result) {
                               result.steps,   {},           result.asked};
     for (const auto& change : result.changes) verdict.changes.push_back(change.name);
     if (result.asked > 1 && result.changes.empty()) verdict.changes.push_back(result.name);
+    verdict.kept_out = result.kept_out;
+    if (!result.kept_out.empty()) verdict.text = fmt::format("Kept out: {}", result.kept_out.front());
+    if (!result.failed.empty()) verdict.text = result.failed, verdict.warns = true;
     return verdict;
 }
 
@@ -40,7 +43,7 @@ template <> void EditController::on(const command::Edit& one) {
     left_out_ = one.left_out;
     search_.sentence().set_step(std::nullopt);
     search_.choose_for_source();  // another source is another matter
-    if (!search_.sentence().several()) return start(std::nullopt);
+    if (!search_.sentence().follows_plan()) return start(std::nullopt);
     if (edit::pictures_decide(search_.request())) return read_steps();
     begin_steps(edit::assumed_scene(search_.request()));
 }
@@ -71,10 +74,10 @@ void EditController::read_steps() {
 
 /// Makes the steps that can be done and are not left out, one after another, in a scene of these words.
 void EditController::begin_steps(const language::plan::SceneWords& scene) {
-    auto words = search_.sentence().steps_in(scene, left_out_);
-    if (words.empty())
+    auto steps = search_.sentence().steps_in(scene, left_out_);
+    if (steps.size() == 0)
         return workspace_.notices.toast("Nothing to change: the scene shows what the sentence says.");
-    chain_.begin(search_.request().prompt, std::move(words), workspace_.document.state(),
+    chain_.begin(search_.request().prompt, std::move(steps), workspace_.document.state(),
                  workspace_.next_edit_id);
     search_.sentence().set_step(chain_.step());
     start(std::nullopt);

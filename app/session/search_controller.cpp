@@ -183,6 +183,7 @@ template <> void SearchController::on(const command::Locate& locate) {
     if (!workspace_.require_scene() || workspace_.jobs->occupied()) return;
     if (workspace_.results) return workspace_.notices.toast("Apply or discard the edit first.");
     const auto run = begin_run();
+    take_known_parts(run->measured, costs_.profile(request()));
     sentence_.settings().excluded_views.clear();  // of the search before
     EditRecipe wanted = recipe();
     wanted.job.looked_from = looked_from_ = view_.direction();  // whatever a label was made from
@@ -402,6 +403,7 @@ void SearchController::refresh_reach() {
 void SearchController::refresh() {
     if (last_.take_arriving(*arriving_, workspace_.jobs->works())) ++workspace_.content;
     vote_if_wanted();
+    sentence_.set_known_words(models_.list().known_words());
     if (workspace_.document.empty()) return;
     refresh_reach();
     if (seconds_since(last_estimate_) <= EstimateSeconds) return;
@@ -422,7 +424,7 @@ void SearchController::refresh_estimate() {
     work.rows = current.size();
     work.traits = models_.traits();
     work.words = language::promptable_vocabulary(models_.list().known_words(), models_.list().drawn_words());
-    if (sentence_.several()) return costs_.estimate(work_of_steps(sentence_, std::move(work)));
+    if (sentence_.steps().size() > 1) return costs_.estimate(work_of_steps(sentence_, std::move(work)));
     try {
         work.mode = edit::decide_mode(edit::check(sentence_.asked()), std::nullopt).first;
     } catch (const Error&) {  // not a sentence yet

@@ -157,6 +157,14 @@ constexpr Meaning Meanings[] = {
     {"ground", "water lake sea ocean river pond"},
     {"ground", "tiles tiled floor ground pavement carpet rug"}};
 
+constexpr std::pair<std::string_view, PartShape> PartShapes[] = {{"head", PartShape::Head},
+                                                                 {"upper half", PartShape::UpperHalf},
+                                                                 {"top half", PartShape::UpperHalf},
+                                                                 {"upper part", PartShape::UpperHalf},
+                                                                 {"lower half", PartShape::LowerHalf},
+                                                                 {"bottom half", PartShape::LowerHalf},
+                                                                 {"lower part", PartShape::LowerHalf}};
+
 constexpr std::pair<std::string_view, std::string_view> Irregular[] = {
     {"men", "man"},     {"women", "woman"}, {"children", "child"}, {"people", "person"}, {"mice", "mouse"},
     {"geese", "goose"}, {"feet", "foot"},   {"teeth", "tooth"},    {"oxen", "ox"},       {"sheep", "sheep"}};
@@ -225,6 +233,8 @@ std::vector<std::string_view> kindred_groups(std::string_view word) {
 std::string_view irregular_singular(std::string_view plural) {
     return value_of(Irregular, plural).value_or(std::string_view());
 }
+
+std::optional<PartShape> shape_of_part(std::string_view part) { return value_of(PartShapes, part); }
 
 std::optional<std::string_view> listed_place(std::string_view thing) {
     static const auto all = [] {

@@ -70,4 +70,10 @@ std::string_view irregular_singular(std::string_view plural);
 /// that names no such thing.
 std::optional<std::string_view> listed_place(std::string_view thing);
 
+/// Parts of a thing that its shape tells.
+enum class PartShape { Head, UpperHalf, LowerHalf };
+
+/// Shape of a part by its name ("head", "top half"); nothing for other words.
+std::optional<PartShape> shape_of_part(std::string_view part);
+
 }  // namespace gse::language

@@ -92,6 +92,17 @@ class Steps(ProgramTest):
             self.assertIn("Nothing to change", process.stdout)
             self.assertFalse(self.out.exists())
 
+    def test_a_part_that_the_shape_tells_changes_and_another_is_refused(self):
+        process = self.edit("paint the bear's head blue")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        report = self.report()
+        self.assertEqual(report["changed_outside_label"], 0)
+        self.assertGreater(report["labelled"], 0)
+        self.assertLess(report["labelled"], report["splats"] / 3)
+        process = self.edit("paint the bear's ears blue", "--overwrite")
+        self.assertEqual(process.returncode, 2)
+        self.assertIn("no word for the part \"ears\"", process.stderr)
+
     def test_what_is_no_edit_is_refused_in_one_sentence(self):
         for prompt, word in [("remove the bear", "not removed"), ("ein blauer Bär auf dem Gras", "English"),
                              ("undo", "no change"), ("rotate the bear 90 degrees", "turned")]:

@@ -51,13 +51,14 @@ SUB_ROOMS = {
         "main": {"cli", "laboratory"},
     },
     "edit": {
-        "request": set(),
+        "words": set(),
+        "request": {"words"},
         "interfaces": {"request"},
         "masks": {"request", "interfaces"},
         "placement": {"request", "interfaces"},
-        "target_views": {"request", "interfaces", "masks", "placement"},
-        "target_views/strategies": {"request", "interfaces", "masks", "placement", "target_views"},
-        "search": {"request", "interfaces", "masks", "placement", "target_views/strategies"},
+        "target_views": {"words", "request", "interfaces", "masks", "placement"},
+        "target_views/strategies": {"words", "request", "interfaces", "masks", "placement", "target_views"},
+        "search": {"words", "request", "interfaces", "masks", "placement", "target_views/strategies"},
         "optimise": {"request", "interfaces", "masks", "placement", "target_views"},
     },
     "language": {
@@ -106,6 +107,7 @@ SUB_ROOMS = {
         "models": {"recipe"},
         "select": {"scene"},
         "run": {"recipe", "scene", "models", "select"},
+        "steps": {"recipe", "models", "run"},
         "report": {"recipe", "scene", "models", "run"},
     },
 }

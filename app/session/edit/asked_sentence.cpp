@@ -25,23 +25,29 @@ void AskedSentence::set_said(std::vector<std::string> said) {
     plan();
 }
 
+void AskedSentence::set_known_words(const std::vector<std::string>& known) {
+    if (known == model_.known && known.empty() == model_.open_vocabulary) return;
+    model_ = {known.empty(), known};
+    plan();
+}
+
 edit::EditRequest AskedSentence::asked() const {
     if (step_) return edit::request_of(request_, *step_);
     const auto first = std::find_if(steps_.begin(), steps_.end(),
                                     [](const auto& planned) { return planned.words.has_value(); });
-    return several() && first != steps_.end() ? edit::request_of(request_, *first->words) : request_;
+    return follows_plan_ && first != steps_.end() ? edit::request_of(request_, *first->words) : request_;
 }
 
-std::vector<AskedSentence::Step> AskedSentence::steps_in(const language::plan::SceneWords& scene,
-                                                         const std::vector<std::string>& left_out) const {
-    std::vector<Step> steps;
-    for (const auto& planned : edit::changes_of(request_, scene, {said_, {}}, left_out))
-        if (planned.words) steps.push_back(*planned.words);
-    return steps;
+edit::StepProgress AskedSentence::steps_in(const language::plan::SceneWords& scene,
+                                           const std::vector<std::string>& left_out) const {
+    auto steps = edit::changes_of(request_, scene, {said_, model_, left_out});
+    std::erase_if(steps, [](const auto& planned) { return !planned.words; });
+    return {std::move(steps), scene, model_};
 }
 
 void AskedSentence::plan() {
-    steps_ = edit::changes_of(request_, edit::assumed_scene(request_), {said_, {}});
+    steps_ = edit::changes_of(request_, edit::assumed_scene(request_), {said_, model_, {}});
+    follows_plan_ = edit::follows_plan(request_, steps_, {said_, {}});
 }
 
 }  // namespace gse::app

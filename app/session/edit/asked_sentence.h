@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/edit/request/sentence_plan.h"
+#include "engine/edit/request/step_progress.h"
 
 namespace gse::app {
 
@@ -24,6 +24,8 @@ public:
     /// Takes the words that applied edits have said: they are no news any more.
     void set_said(std::vector<std::string> said);
     const std::vector<std::string>& said() const { return said_; }
+    /// Takes the words that the model finds; none = it takes any.
+    void set_known_words(const std::vector<std::string>& known);
 
     /// The request in the words of the step that it is about. Of several, that is the first until one runs.
     edit::EditRequest asked() const;
@@ -32,17 +34,20 @@ public:
     /// Changes that the sentence asks for, each an edit of its own, among them looks that pictures may show
     /// already. Empty = the sentence runs as it is typed.
     const std::vector<edit::PlannedStep>& steps() const { return steps_; }
-    bool several() const { return steps_.size() > 1; }
+    /// True where the steps run in their own words.
+    bool follows_plan() const { return follows_plan_; }
     /// Steps that can be done in a scene of these words, but those of `left_out` (in the plan's notation).
-    std::vector<Step> steps_in(const language::plan::SceneWords& scene,
-                               const std::vector<std::string>& left_out) const;
+    edit::StepProgress steps_in(const language::plan::SceneWords& scene,
+                                const std::vector<std::string>& left_out) const;
 
 private:
     void plan();
 
     edit::EditRequest request_;
     std::vector<std::string> said_;
+    language::plan::ModelAbility model_;
     std::vector<edit::PlannedStep> steps_;
+    bool follows_plan_ = false;
     std::optional<Step> step_;  // that runs, or ran last
 };
 

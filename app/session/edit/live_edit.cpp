@@ -15,6 +15,7 @@
 #include "engine/pipeline/models/neural_loader.h"
 #include "engine/pipeline/recipe/recipe.h"
 #include "engine/pipeline/run/preview_check.h"
+#include "engine/pipeline/steps/step_judgement.h"
 
 namespace gse::app {
 namespace {
@@ -155,6 +156,9 @@ void run_edit(MeasuredRun& run, const EditStart& start, const neural::NetworkUse
     measure_loop(run.measured, *run.job, LeastSteps);
     const auto finishing = std::chrono::steady_clock::now();
     fill_pending(*run.job, pending);
+    if (pending.stopped_at < 0 && !run.job->result().failure && !run.job->result().shortage)
+        if (const auto judgement = judge_step(*run.job); !judgement.passed())
+            pending.failed = fmt::format("{}: {}", judgement.reason, judgement.remedy);
     if (start.brings_label) pending.label = located_label(*run.job);
     run.measured.finish = seconds_since(finishing);
     measure_peak(run, peak);

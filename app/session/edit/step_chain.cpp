@@ -10,8 +10,8 @@
 
 namespace gse::app {
 
-void StepChain::begin(std::string sentence, std::vector<language::plan::StepSentence> steps,
-                      const DocumentState& state, std::uint64_t first_id) {
+void StepChain::begin(std::string sentence, edit::StepProgress steps, const DocumentState& state,
+                      std::uint64_t first_id) {
     *this = {};
     sentence_ = std::move(sentence);
     steps_ = std::move(steps);
@@ -20,18 +20,28 @@ void StepChain::begin(std::string sentence, std::vector<language::plan::StepSent
 }
 
 bool StepChain::take(PendingResult result) {
-    for (auto& word : language::words_of(step().target)) words_.push_back(std::move(word));
-    state_ = applied(state_, result, first_id_ + done_.size());
-    done_.push_back(std::move(result));
-    return ++at_ < steps_.size();
+    if (!result.failed.empty() && several()) {
+        failed_.push_back(std::move(result));
+        steps_.leave_out(at_);
+    } else {
+        for (auto& word : language::words_of(step().target)) words_.push_back(std::move(word));
+        state_ = applied(state_, result, first_id_ + done_.size());
+        steps_.take(at_);
+        done_.push_back(std::move(result));
+    }
+    do ++at_;
+    while (runs() && !steps_.step(at_).words);  // one that rested on what failed
+    return runs();
 }
 
 PendingResult StepChain::end() {
-    const StepChain ended = std::exchange(*this, {});
-    if (ended.done_.empty()) return {};
+    StepChain ended = std::exchange(*this, {});
+    if (ended.done_.empty()) return ended.failed_.empty() ? PendingResult{} : ended.failed_.back();
     PendingResult whole =
         ended.done_.size() == 1 ? ended.done_.front() : together(ended.done_, ended.sentence_);
     whole.asked = ended.steps_.size();
+    for (const auto& failed : ended.failed_)
+        whole.kept_out.push_back(fmt::format("{}: {}", failed.name, failed.failed));
     return whole;
 }
 

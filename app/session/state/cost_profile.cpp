@@ -66,7 +66,7 @@ void look(MeasuredRun& run) {
 void take_known_parts(CostProfile& measured, const CostProfile& known) {
     measured.redraw = known.redraw, measured.redraw_view = known.redraw_view,
     measured.redraw_early = known.redraw_early;
-    measured.question_tflop = known.question_tflop;
+    measured.question = known.question, measured.question_tflop = known.question_tflop;
 }
 
 void throw_what_ended(const edit::EditResult& result) {

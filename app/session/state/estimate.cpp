@@ -6,12 +6,12 @@
 #include <utility>
 
 #include "engine/base/error.h"
-#include "engine/edit/request/colour_word.h"
 #include "engine/edit/request/decide_mode.h"
 #include "engine/edit/request/edit_method.h"
 #include "engine/edit/request/unchecked_request.h"
 #include "engine/edit/search/place_drawing.h"
 #include "engine/edit/target_views/view_round.h"
+#include "engine/edit/words/colour_word.h"
 #include "engine/language/description.h"
 #include "engine/pipeline/run/preview_check.h"
 
@@ -153,7 +153,8 @@ void measure_search(CostProfile& measured, const EditJob& job, double seconds) {
     const auto& place = job.place_cost();
     const double words = words_of_search(job.located().mode, place.views > 0);
     auto use = job.times().networks("locate");
-    if (use.cached > 0) return;  // what it would have taken was not seen
+    const bool whole = use.cached == 0;
+    if (!whole && measured.question >= 0) return;  // less was seen than it would have taken
     if (place.views > 0) {
         const double steps =
             static_cast<double>(place.views) * edit::guided_steps_of_place(job.recipe().request);
@@ -165,7 +166,7 @@ void measure_search(CostProfile& measured, const EditJob& job, double seconds) {
     measured.question = seconds / asked;
     measured.question_tflop = tflop_of(use) / asked;
     measured.rounds = asked / words / job.recipe().request.views;
-    if (use.unet == 0) return;
+    if (use.unet == 0 || !whole) return;
     measured.pass = seconds / static_cast<double>(use.unet);
     measured.pass_tflop = tflop_of(use) / static_cast<double>(use.unet);
 }

@@ -42,6 +42,8 @@ struct PendingResult {
     std::vector<PendingResult> changes;  // of a sentence with several, each on the set of the one before it;
                                          // empty = one edit
     std::size_t asked = 1;               // changes of the sentence
+    std::string failed;                  // why the outcome is not what was asked for, and what to try
+    std::vector<std::string> kept_out;   // changes of the sentence that failed, each with the reason
 
     const PendingResult& last_change() const { return changes.empty() ? *this : changes.back(); }
 };

@@ -46,10 +46,11 @@ std::string guess(const language::Sentence& sentence, const std::string& source,
 
 CheckedRequest::CheckedRequest(const EditRequest& request, language::Sentence sentence, bool target_open)
     : EditSettings(request), mode(mode_named(request.mode)), prompt_(request.prompt),
-      sentence_(std::move(sentence), request.source, request.target), target_open_(target_open) {}
+      sentence_(std::move(sentence), request.source, request.target), part_of_(request.part_of),
+      whole_scene_(request.whole_scene), target_open_(target_open) {}
 
 EditWords CheckedRequest::words() const {
-    return {source(), prompt_, target(), mode ? mode_name(*mode) : OpenMode};
+    return {source(), prompt_, target(), mode ? mode_name(*mode) : OpenMode, part_of_, whole_scene_};
 }
 
 EditRequest CheckedRequest::plain() const { return {words(), *this}; }
@@ -75,6 +76,46 @@ CheckedRequest CheckedRequest::search_for(std::string thing) const {
     return other;
 }
 
+namespace {
+
+/// Words of the sentence without those of the phrase that brings the part ("with blue ears").
+std::vector<std::string> without_part(const language::Sentence& sentence, const std::string& part) {
+    auto words = sentence.words();
+    const auto at = sentence.position_of(part);
+    const auto length = language::words_of(part).size();
+    if (at == words.size()) return words;
+    auto begin = at;
+    while (begin > 0 && !language::is_a(words[begin], language::WordClass::Joiner)) --begin;
+    if (begin == 0) return {};
+    const auto first = words.begin();
+    words.erase(first + static_cast<std::ptrdiff_t>(begin), first + static_cast<std::ptrdiff_t>(at + length));
+    return words;
+}
+
+}  // namespace
+
+CheckedRequest CheckedRequest::search_for_whole() const {
+    const auto rest = language::Sentence(language::joined(without_part(sentence_.sentence(), source())));
+    CheckedRequest other = *this;
+    other.part_of_.clear();
+    other.prompt_ = rest.contains(part_of_) ? rest.prompt() : "a " + part_of_;
+    other.sentence_ = {language::Sentence(other.prompt_), part_of_, part_of_};
+    other.mode = EditMode::Modify;
+    other.target_open_ = false;
+    return other;
+}
+
+CheckedRequest CheckedRequest::in_look_of_whole() const {
+    CheckedRequest other = search_for_whole();
+    auto words = other.sentence_.sentence().words();
+    const auto at = other.sentence_.sentence().position_of(part_of_);
+    const auto look = language::words_of(target());
+    words.insert(words.begin() + static_cast<std::ptrdiff_t>(at), look.begin(), look.end());
+    other.prompt_ = language::joined(words);
+    other.sentence_ = {language::Sentence(other.prompt_), part_of_, target()};
+    return other;
+}
+
 EditRequest with_target(EditRequest request, const News& news) {
     const auto source = language::normalised_prompt(request.source);
     if (request.target.empty() && !source.empty())
@@ -91,6 +132,14 @@ CheckedRequest check(EditRequest request, const News& news) {
     check_names(request);
     const bool open = request.target.empty();
     if (!request.source.empty()) request.source = phrase_of(request.source, "source");
+    if (!request.part_of.empty()) request.part_of = phrase_of(request.part_of, "thing of the part");
+    if (request.whole_scene && request.mode == OpenMode) request.mode = mode_name(EditMode::Modify);
+    if (request.whole_scene && request.mode != mode_name(EditMode::Modify))
+        throw Error(ErrorCode::InvalidArgument, "a whole scene is only changed in its look",
+                    "use --mode modify, or leave out --whole-scene");
+    if (request.whole_scene && !request.part_of.empty())
+        throw Error(ErrorCode::InvalidArgument, "an edit of the whole scene is about no part",
+                    "leave out --part-of or --whole-scene");
     if (const auto problem = single_edit_problem(request, news)) throw *problem;
     request = in_plan_words(request, news);
     const bool reworded = open && !request.target.empty();

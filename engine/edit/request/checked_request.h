@@ -28,6 +28,10 @@ public:
     const std::string& target() const { return sentence_.target(); }
     /// The prompt as it was typed. Models are told sentence().prompt().
     const std::string& prompt() const { return prompt_; }
+    /// Thing that the source is a part of; empty = it is a thing of its own.
+    const std::string& part_of() const { return part_of_; }
+    /// Everything changes its look; nothing is looked for.
+    bool whole_scene() const { return whole_scene_; }
     /// Nobody has chosen the target: it was guessed, and pictures may know better.
     bool target_open() const { return target_open_; }
 
@@ -43,6 +47,11 @@ public:
     /// Search for another `thing` of the sentence, in a scene that shows nothing of the target yet: by the
     /// sentence before the edit, in mode modify.
     CheckedRequest search_for(std::string thing) const;
+    /// Search for the thing that the source is a part of: the sentence without the part ("a bear on the
+    /// grass" of "a bear with blue ears on the grass").
+    CheckedRequest search_for_whole() const;
+    /// The request for a model without a word for the part: the thing itself gets the look ("a blue bear").
+    CheckedRequest in_look_of_whole() const;
 
 private:
     friend CheckedRequest check(EditRequest request, const News& news);
@@ -50,6 +59,8 @@ private:
 
     std::string prompt_;
     language::EditSentence sentence_;
+    std::string part_of_;
+    bool whole_scene_ = false;
     bool target_open_ = false;
 };
 

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "engine/edit/request/colour_word.h"
 #include "engine/edit/request/edit_method.h"
+#include "engine/edit/words/colour_word.h"
 #include "engine/language/description.h"
 
 namespace gse::edit {

@@ -20,6 +20,8 @@ struct EditWords {
     std::string prompt;
     std::string target;
     std::string mode = "auto";
+    std::string part_of;
+    bool whole_scene = false;
 
     template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         f("source", self.source,
@@ -32,6 +34,12 @@ struct EditWords {
         f("mode", self.mode,
           "modify (change what is there), replace (put something else in its place), add (put something new "
           "beside it) or auto.");
+        f("part_of", self.part_of,
+          "Thing that the source is a part of (\"bear\" of \"ears\"): the thing is looked for, and the part "
+          "within it. Empty = the source is a thing of its own.");
+        f("whole_scene", self.whole_scene,
+          "Change the look of everything at once (a style, the weather): nothing is looked for. For models "
+          "of an open vocabulary.");
     }
 };
 

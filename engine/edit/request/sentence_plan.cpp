@@ -152,6 +152,7 @@ plan::Plan plan_of(const EditRequest& request, const plan::SceneWords& scene) {
 }
 
 std::vector<PlannedStep> planned_steps(const plan::Plan& plan, plan::SceneWords scene,
+                                       const plan::ModelAbility& model,
                                        const std::vector<std::string>& left_out) {
     std::vector<PlannedStep> result;
     for (const auto& step : plan.steps) {
@@ -162,7 +163,7 @@ std::vector<PlannedStep> planned_steps(const plan::Plan& plan, plan::SceneWords 
             if (const auto error = refusal_of({{step}}, {}))
                 planned.problem = {error->message(), error->hint()};
         } else {
-            planned.words = plan::sentence_of(step, scene, &planned.problem);
+            planned.words = plan::sentence_of(step, scene, &planned.problem, model);
         }
         scene = plan::after(step, std::move(scene));
         result.push_back(std::move(planned));
@@ -171,23 +172,24 @@ std::vector<PlannedStep> planned_steps(const plan::Plan& plan, plan::SceneWords 
 }
 
 std::vector<PlannedStep> changes_of(const EditRequest& request, const plan::SceneWords& scene,
-                                    const News& news, const std::vector<std::string>& left_out) {
+                                    const ChangesWith& with) {
     if (!is_planned(request)) return {};
     const auto plan = plan_of(request, scene);
     if (plan.is_refusal() || is_told_as_typed(request, plan)) return {};
     const language::Sentence sentence(request.prompt);
-    auto steps = planned_steps(plan, scene, left_out);
-    std::erase_if(steps, [&](const auto& planned) { return is_said(planned.step, news.said); });
+    auto steps = planned_steps(plan, scene, with.model, with.left_out);
+    std::erase_if(steps, [&](const auto& planned) { return is_said(planned.step, with.said); });
     for (auto& planned : steps) planned.may_be_shown = describes(planned.step, sentence);
     return steps;
 }
 
 bool is_planned(const EditRequest& request) {
     return request.target.empty() && request.mode == "auto" && request.instruction.empty() &&
-           !request.source.empty();
+           !request.source.empty() && request.part_of.empty() && !request.whole_scene;
 }
 
 bool says_itself(const EditRequest& request, const plan::StepSentence& words, const News& news) {
+    if (!words.part_of.empty() || words.whole_scene || !words.instruction.empty()) return false;
     const auto guessed = with_target(request, news);
     const language::EditSentence sentence(language::Sentence(request.prompt),
                                           language::normalised_prompt(request.source), guessed.target);
@@ -204,11 +206,20 @@ bool says_itself(const EditRequest& request, const plan::StepSentence& words, co
     return !told.empty() && (all_in(wanted, told) || all_in(told, wanted));  // "spotted" of "pink spotted"
 }
 
+bool follows_plan(const EditRequest& request, const std::vector<PlannedStep>& steps, const News& news) {
+    if (steps.size() != 1) return !steps.empty();
+    const auto& words = steps.front().words;
+    return words && !says_itself(request, *words, news);
+}
+
 EditRequest request_of(EditRequest request, const plan::StepSentence& words) {
     request.source = words.source;
     request.prompt = words.prompt;
     request.target = words.target;
     request.mode = mode_name(words.mode);
+    request.part_of = words.part_of;
+    request.whole_scene = words.whole_scene;
+    request.instruction = words.instruction;
     return request;
 }
 

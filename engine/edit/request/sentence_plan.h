@@ -32,15 +32,22 @@ std::string with_source(const std::string& words, const EditRequest& request);
 language::plan::Plan plan_of(const EditRequest& request, const language::plan::SceneWords& scene);
 
 /// The steps but those of `left_out` (in the notation), each described in the scene that the earlier ones
-/// leave. Refusals among them are steps that cannot be done.
+/// leave. Refusals among them are steps that cannot be done, and so is what the `model` cannot do.
 std::vector<PlannedStep> planned_steps(const language::plan::Plan& plan, language::plan::SceneWords scene,
+                                       const language::plan::ModelAbility& model = {},
                                        const std::vector<std::string>& left_out = {});
 
+/// Knowledge and wishes that changes_of() goes by.
+struct ChangesWith {
+    std::vector<std::string> said = {};  // words that the scene shows already, from applied edits
+    language::plan::ModelAbility model = {};
+    std::vector<std::string> left_out = {};  // steps in the notation
+};
+
 /// Changes that the request's sentence asks for, each an edit of its own, without those that applied edits
-/// have made (`news`) and those of `left_out` (in the notation). Empty for a sentence that is refused, or is
-/// told as it is typed.
+/// have made and those that are left out. Empty for a sentence that is refused, or is told as it is typed.
 std::vector<PlannedStep> changes_of(const EditRequest& request, const language::plan::SceneWords& scene,
-                                    const News& news = {}, const std::vector<std::string>& left_out = {});
+                                    const ChangesWith& with = {});
 
 /// True for a request whose sentence says everything: source named; target, mode and instruction left open.
 bool is_planned(const EditRequest& request);
@@ -52,6 +59,9 @@ bool is_told_as_typed(const EditRequest& request, const language::plan::Plan& pl
 /// True where the typed sentence is read as the step already, by source, kind of change and new words.
 bool says_itself(const EditRequest& request, const language::plan::StepSentence& words,
                  const News& news = {});
+
+/// True where the steps run in their own words: several, or one that the typed sentence does not say itself.
+bool follows_plan(const EditRequest& request, const std::vector<PlannedStep>& steps, const News& news);
 
 /// The request in a step's words.
 EditRequest request_of(EditRequest request, const language::plan::StepSentence& words);

@@ -6,7 +6,8 @@
 #include <algorithm>
 
 #include "engine/base/error.h"
-#include "engine/edit/request/dye_words.h"
+#include "engine/edit/words/dye_words.h"
+#include "engine/language/lexicon.h"
 #include "engine/language/vocabulary.h"
 
 namespace gse::edit {
@@ -25,20 +26,37 @@ std::string words_to_make(const std::string& word, const std::vector<std::string
     return language::words_to_use(word, shown) + (dyes.empty() ? "" : ", or a colour or pattern by its name");
 }
 
+/// Checks where the request is looked for.
+void require_findable(const CheckedRequest& request, const std::vector<std::string>& known,
+                      const std::vector<std::string>& say) {
+    const bool part = !request.part_of().empty();
+    const auto& sought = part ? request.part_of() : request.source();
+    if (const auto unknown = language::unknown_word(known, sought); !unknown.empty())
+        throw Error(
+            ErrorCode::InvalidArgument,
+            language::vocabulary_contains(say, unknown)
+                ? fmt::format("the model can draw \"{}\" but not find it", unknown)
+                : fmt::format("the model does not know the word \"{}\" and cannot find it", unknown),
+            fmt::format("label it by hand instead, or use {}", language::words_to_use(unknown, known)));
+    if (part && !language::shape_of_part(request.source()) &&
+        !language::vocabulary_contains(known, request.source()))
+        throw Error(
+            ErrorCode::InvalidArgument,
+            fmt::format("the model has no word for the part \"{}\" and cannot find it", request.source()),
+            "label the part by hand, or choose a model of an open vocabulary");
+}
+
 }  // namespace
 
 void require_known_words(const CheckedRequest& request, const std::vector<std::string>& known,
                          const std::vector<std::string>& drawn, bool labelled_by_hand) {
     const auto say = language::promptable_vocabulary(known, drawn);
-    const auto source = language::unknown_word(known, request.source()),
-               target = language::unknown_word(say, request.target());
-    if (!labelled_by_hand && !source.empty())
-        throw Error(
-            ErrorCode::InvalidArgument,
-            language::vocabulary_contains(say, source)
-                ? fmt::format("the model can draw \"{}\" but not find it", source)
-                : fmt::format("the model does not know the word \"{}\" and cannot find it", source),
-            fmt::format("label it by hand instead, or use {}", language::words_to_use(source, known)));
+    if (request.whole_scene() && !known.empty())
+        throw Error(ErrorCode::InvalidArgument,
+                    "the look of a whole scene is drawn by models of an open vocabulary alone",
+                    "choose a model such as Stable Diffusion or InstructPix2Pix");
+    if (!labelled_by_hand && !request.whole_scene()) require_findable(request, known, say);
+    const auto target = language::unknown_word(say, request.target());
     if (!target.empty())
         throw Error(ErrorCode::InvalidArgument,
                     fmt::format("the model does not know the word \"{}\" and cannot make it", target),

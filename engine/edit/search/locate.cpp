@@ -300,6 +300,33 @@ void require_found(const LocateResult& located) {
     throw Error(ErrorCode::NotFound, located.message, located.remedy);
 }
 
+LocateResult part_of_finding(const LocateInput& input, raster::Rasterizer& rasterizer, LocateResult whole,
+                             const std::vector<std::uint8_t>& part, const std::string& name) {
+    GSE_CHECK_EQ(part.size(), input.gaussians.size());
+    auto& probability = whole.found.field.probability;
+    for (std::size_t row = 0; row < probability.size(); ++row)
+        if (part[row] == 0) probability[row] = 0;
+    const std::string thing = std::exchange(whole.word, name);
+    Label label = make_label(name, std::vector<float>(part.begin(), part.end()), 0.5f);
+    const bool any = std::find(part.begin(), part.end(), std::uint8_t{1}) != part.end();
+    const std::vector<float> values(part.begin(), part.end());
+    Image seen;
+    for (std::size_t v = 0; v < whole.views.size(); ++v) {
+        auto& view = whole.views[v];
+        rasterizer.forward_values(input.gaussians.spans(), input.views[v].camera, input.settings, values,
+                                  seen);
+        view.mask = view.region = localize::threshold_map(seen, LabelSeen);
+        view.failed = view.failed || view.mask.count() == 0;
+        if (view.failed && view.step == ViewStep::Found) view.step = ViewStep::Hidden;
+    }
+    whole.label = whole.source_label = std::move(label);
+    if (any) return whole;
+    whole.problem = SearchProblem::NothingLabelled;
+    whole.message = fmt::format("no \"{}\" was found within \"{}\"", name, thing);
+    whole.remedy = "label the part by hand";
+    return whole;
+}
+
 LocateResult locate(const LocateInput& input, const LocateTools& tools) {
     if (input.gaussians.empty() || input.views.empty())
         throw Error(ErrorCode::InvalidArgument,

@@ -43,6 +43,9 @@ struct LocateInput {
     // Ground that the networks are shown where the scene has nothing; none = its background.
     std::optional<StudioBackground> ground = {};
     ModelTraits traits = {};
+    /// [N] 0 or 1: rows of the thing that the word is a part of. Attention elsewhere does not count, and no
+    /// other row is labelled. Null = anywhere.
+    const std::vector<std::uint8_t>* within = nullptr;
 };
 
 /// Renders of the views, kept from one search to the next over one scene and one set of views; empty = to be
@@ -103,5 +106,10 @@ LocateResult locate(const LocateInput& input, const LocateTools& tools);
 
 /// Throws Error (NotFound) with the message and the remedy of a search that came to nothing.
 void require_found(const LocateResult& located);
+
+/// The finding of a thing narrowed to `part` [N] of its rows: its label, what the views said of other rows,
+/// and the masks. SearchProblem::NothingLabelled where the part is empty.
+LocateResult part_of_finding(const LocateInput& input, raster::Rasterizer& rasterizer, LocateResult whole,
+                             const std::vector<std::uint8_t>& part, const std::string& name);
 
 }  // namespace gse::edit

@@ -6,7 +6,7 @@
 #include "engine/base/check.h"
 #include "engine/edit/masks/view_vote.h"
 #include "engine/edit/placement/placement_volume.h"
-#include "engine/edit/request/colour_word.h"
+#include "engine/edit/words/colour_word.h"
 #include "engine/language/description.h"
 #include "engine/localize/clusters.h"
 

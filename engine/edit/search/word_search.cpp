@@ -54,7 +54,16 @@ void over_views(ThreadPool* threads, std::size_t count,
 }
 
 WordSearch::WordSearch(const LocateInput& input, const LocateTools& tools, const ViewRenders& seen)
-    : input_(input), tools_(tools), seen_(seen), excluded_(excluded_views_of(input.request.excluded_views)) {}
+    : input_(input), tools_(tools), seen_(seen), excluded_(excluded_views_of(input.request.excluded_views)) {
+    if (input.within == nullptr) return;
+    GSE_CHECK_EQ(input.within->size(), input.gaussians.size());
+    const std::vector<float> values(input.within->begin(), input.within->end());
+    Image thing;
+    for (const auto& view : input.views) {
+        tools.rasterizer.forward_values(input.gaussians.spans(), view.camera, input.settings, values, thing);
+        within_.push_back(localize::threshold_map(thing, LabelSeen));
+    }
+}
 
 double WordSearch::threshold() const {
     return request().attention_threshold > 0 ? request().attention_threshold : tools_.attention.threshold();
@@ -97,6 +106,7 @@ std::vector<ViewEvidence> WordSearch::look(const SoughtWord& word) {
                           static_cast<int>(input_.views.size()));
     }
     make_masks(word, views);
+    for (std::size_t v = 0; v < views.size(); ++v) limit(views[v], v);
     if (!word.absent) hide_faint(views);
     if (tools_.seen)
         for (std::size_t v = 0; v < views.size(); ++v) tools_.seen(v, views[v]);
@@ -166,6 +176,9 @@ std::vector<Image> WordSearch::maps_of(const SoughtWord& word, std::size_t v, in
     GSE_CHECK_EQ(maps.size(), query.words.size());
     for (auto& map : maps) {
         GSE_CHECK(map.width == seen_.renders[v].width && map.height == seen_.renders[v].height);
+        if (!within_.empty())
+            for (std::size_t i = 0; i < map.data.size(); ++i)
+                if (within_[v].data[i] == 0) map.data[i] = 0;
         if (&map == &maps.front()) peaks_[v] = largest_value(map);
         broken_ += normalise_maximum(map);
     }
@@ -197,7 +210,10 @@ FoundWord WordSearch::find(const SoughtWord& word, std::vector<ViewEvidence>& vi
         again.push_back(std::move(view));
     }
     make_masks(word, again);
-    for (std::size_t i = 0; i < odd.size(); ++i) views[odd[i]] = std::move(again[i]);
+    for (std::size_t i = 0; i < odd.size(); ++i) {
+        limit(again[i], odd[i]);
+        views[odd[i]] = std::move(again[i]);
+    }
     if (word.whole) exclude(views);
     log::debug("{} of {} views were asked again", odd.size(), views.size());
     return fuse(word, views);
@@ -263,11 +279,29 @@ FoundWord WordSearch::fuse(const SoughtWord& word, const std::vector<ViewEvidenc
             word.alone ? IslandShare : 0, input_.up, input_.front};
     found.label =
         decide_label(word.name, input_.gaussians, found.field, request().label_threshold, tools_.threads);
+    if (input_.within != nullptr) keep_within(field, found.label);
     if (auto refused = refuse_label(word.name, found.label)) return nothing(word, *std::move(refused));
     found.verdict = judge({word.name, views, field, found.label, recognised(word.name),
                            ground_seen(views, seen_.grounds), !word.competing.empty()},
                           request().least_confidence);
     return found;
+}
+
+void WordSearch::limit(ViewEvidence& view, std::size_t v) const {
+    if (within_.empty() || view.failed) return;
+    for (std::size_t i = 0; i < view.mask.data.size(); ++i) view.mask.data[i] &= within_[v].data[i];
+}
+
+void WordSearch::keep_within(LabelField& field, Label& label) const {
+    auto bits = *label.bits;
+    auto weight = *label.weight;
+    for (std::size_t row = 0; row < bits.size(); ++row) {
+        if ((*input_.within)[row] != 0) continue;
+        bits[row] = 0;
+        weight[row] = field.probability[row] = 0;
+    }
+    label.weight = std::make_shared<const std::vector<float>>(std::move(weight));
+    label.bits = std::make_shared<const std::vector<std::uint8_t>>(std::move(bits));
 }
 
 double WordSearch::recognised(const std::string& word) const {

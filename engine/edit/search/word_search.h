@@ -79,6 +79,10 @@ private:
     FoundWord nothing(const SoughtWord& word, SearchVerdict verdict) const;
     /// Fuses the masks into a field and its label.
     FoundWord fuse(const SoughtWord& word, const std::vector<ViewEvidence>& views);
+    /// Takes what is seen outside of LocateInput::within off the mask of view `v`.
+    void limit(ViewEvidence& view, std::size_t v) const;
+    /// Takes rows outside of LocateInput::within off.
+    void keep_within(LabelField& field, Label& label) const;
     /// How well some of the pictures fit the word; negative where nobody can tell.
     double recognised(const std::string& word) const;
 
@@ -87,6 +91,7 @@ private:
     const ViewRenders& seen_;
     localize::VoteCache votes_;
     std::vector<std::size_t> excluded_;
+    std::vector<Mask> within_;  // per view: where LocateInput::within is seen; empty = anywhere
     std::vector<float> peaks_;  // per view: the most attention that the word of the last search drew there
     std::size_t broken_ = 0;
 };

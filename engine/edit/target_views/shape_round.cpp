@@ -14,7 +14,7 @@
 #include "engine/edit/masks/neighbours.h"
 #include "engine/edit/masks/view_vote.h"
 #include "engine/edit/masks/word_mask.h"
-#include "engine/edit/request/colour_word.h"
+#include "engine/edit/words/colour_word.h"
 
 namespace gse::edit {
 namespace {

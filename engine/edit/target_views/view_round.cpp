@@ -8,8 +8,8 @@
 #include "engine/base/log.h"
 #include "engine/base/random.h"
 #include "engine/edit/interfaces/broken_values.h"
-#include "engine/edit/request/colour_word.h"
 #include "engine/edit/request/scales.h"
+#include "engine/edit/words/colour_word.h"
 #include "engine/language/description.h"
 #include "engine/localize/clusters.h"
 

@@ -6,8 +6,8 @@
 
 #include "engine/base/error.h"
 #include "engine/evaluate/metrics.h"
-#include "engine/pipeline/run/edit_steps.h"
-#include "engine/pipeline/run/step_judgement.h"
+#include "engine/pipeline/steps/edit_steps.h"
+#include "engine/pipeline/steps/step_judgement.h"
 
 namespace gse::bench {
 namespace {

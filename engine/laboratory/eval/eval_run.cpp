@@ -18,7 +18,7 @@
 #include "engine/laboratory/eval/eval_summary.h"
 #include "engine/language/words.h"
 #include "engine/pipeline/report/edit_output.h"
-#include "engine/pipeline/run/step_judgement.h"
+#include "engine/pipeline/steps/step_judgement.h"
 
 namespace gse::bench {
 namespace {

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "engine/base/error.h"
+#include "engine/laboratory/synth/head_rows.h"
 #include "engine/laboratory/synth/objects/ground.h"
 #include "engine/laboratory/synth/objects/models.h"
 #include "engine/laboratory/synth/synth.h"
@@ -187,6 +188,26 @@ SynthScene generate(const SceneSpec& spec) {
     result.scene.info.up_known = true;
     result.scene.labels = labels_of(result.parts);
     return result;
+}
+
+std::vector<std::uint8_t> head_rows(const SynthScene& scene) {
+    const auto& spec = scene.spec;
+    const std::uint64_t index = word_index(object_words(), more_object_words(), spec.object);
+    const Model model = make_object(spec.object, own_stream(spec, ObjectStream + index));
+    const int budget = std::clamp(spec.gaussian_budget, SmallestBudget, LargestBudget);
+    const auto points = sample_surface(model.shapes, {}, static_cast<int>(ObjectShare * budget),
+                                       Random::stream(spec.seed, SampleStream + index));
+    const auto& [top, neck] = std::pair{model.anchor.top, model.anchor.neck};
+    const Vec3 middle{top.x, 0.5 * (top.y + neck.y), top.z};
+    const double reach = std::max(top.y - neck.y, 2 * model.anchor.head_radius);
+    std::vector<std::uint8_t> rows(scene.parts.size(), 0);
+    auto row = static_cast<std::size_t>(std::find(scene.parts.begin(), scene.parts.end(), Part::Object) -
+                                        scene.parts.begin());
+    for (const auto& point : points) {
+        const Vec3& centre = model.shapes[point.shape].centre;
+        rows.at(row++) = centre.y > neck.y && length(centre - middle) < reach ? 1 : 0;
+    }
+    return rows;
 }
 
 double turn_of(const SceneSpec& spec) {

@@ -42,6 +42,20 @@ bool is_refused_for(const Plan& plan, std::initializer_list<std::string_view> re
            std::find(reasons.begin(), reasons.end(), step.text) != reasons.end();
 }
 
+/// Tells whether a word of a thing may stand there: behind an article, a description or "wearing".
+bool may_name_thing(const std::vector<Word>& words, std::size_t at) {
+    const auto is_a = [&](std::size_t index, Class kind) {
+        return match(kind, std::span(words).subspan(index, 1)).length > 0;
+    };
+    const auto names = [&](std::size_t index) {
+        return is_a(index, Class::wearing) || is_a(index, Class::holding) || is_a(index, Class::having);
+    };
+    if (at == 0) return false;
+    if (names(at - 1) || is_a(at - 1, Class::colour) || is_a(at - 1, Class::size)) return true;
+    const bool article = is_a(at - 1, Class::article) || is_a(at - 1, Class::number);
+    return article && (at == 1 || !is_a(at - 2, Class::relation));  // not "in a row"
+}
+
 /// The plan when one word, though it is one, is a slip: "a bear wearing a hate". Nothing where no word makes
 /// sense of the sentence.
 std::optional<Plan> with_a_slip(const SentenceWords& sentence, const SceneWords& scene,
@@ -49,7 +63,8 @@ std::optional<Plan> with_a_slip(const SentenceWords& sentence, const SceneWords&
                                 bool towards_scene_only) {
     if (sentence.words.size() > ShortSentence) return std::nullopt;
     auto words = sentence.words;
-    for (auto& word : words) {
+    for (std::size_t at = 0; at < words.size(); ++at) {
+        auto& word = words[at];
         const bool told = std::find(needed.begin(), needed.end(), word.singular) != needed.end();
         if (word.mark || word.text.size() < 2 || told || is_grammatical(word.text)) continue;
         const Word typed = word;
@@ -58,6 +73,7 @@ std::optional<Plan> with_a_slip(const SentenceWords& sentence, const SceneWords&
             const bool thing =
                 has(Class::worn, other) || has(Class::held, other) || has(Class::colour, other);
             if (!is_needed && (towards_scene_only || !thing)) continue;
+            if (!is_needed && !has(Class::colour, other) && !may_name_thing(words, at)) continue;
             word = word_of(std::move(other));
             auto plan = Reader(words, scene, source).read();
             if (!plan.is_refusal()) return plan;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "engine/language/plan/words/lexicon.h"
+#include "engine/language/vocabulary.h"
 #include "engine/language/words.h"
 
 namespace gse::language::plan {
@@ -50,7 +52,8 @@ std::string standing_on(const SceneWords& scene, const std::string& subject) {
 /// Makes the description of one step, or says why there is none.
 class Describer {
 public:
-    Describer(const Step& step, const SceneWords& scene) : step_(step), scene_(scene) {}
+    Describer(const Step& step, const SceneWords& scene, const ModelAbility& model)
+        : step_(step), scene_(scene), model_(model) {}
 
     std::optional<StepSentence> described() {
         switch (step_.operation) {
@@ -61,6 +64,8 @@ public:
             case Operation::Replace: return replacement();
             case Operation::Add: return addition();
             case Operation::Alter: return fire();
+            case Operation::Style: return style();
+            case Operation::Environment: return environment();
             default: return none_for_operation();
         }
     }
@@ -76,6 +81,7 @@ private:
         constexpr const char* ByHand = "label the thing with Locate, and delete its splats by hand";
         constexpr const char* ByModel =
             "a model with an open vocabulary may draw it when it is the only change";
+        constexpr const char* OpenModel = "choose a model such as Stable Diffusion or InstructPix2Pix";
         switch (step_.operation) {
             case Operation::Remove: return no("things are not removed by a sentence yet", ByHand);
             case Operation::Transform:
@@ -85,9 +91,10 @@ private:
             case Operation::Pose: return no("poses and expressions are not drawn from a plan", ByModel);
             case Operation::Alter: return no("this look is no colour, material or pattern", ByModel);
             case Operation::Style:
-                return no("styles of the whole picture are not drawn from a plan", ByModel);
+                return no("styles are drawn by models of an open vocabulary alone", OpenModel);
             case Operation::Environment:
-                return no("weather, light and seasons are not drawn from a plan", ByModel);
+                return no("weather, light and seasons are drawn by models of an open vocabulary alone",
+                          OpenModel);
             default: return no("nothing is to be done", "describe the scene after the edit");
         }
     }
@@ -109,6 +116,15 @@ private:
         return &thing;
     }
 
+    /// The one thing that is meant; null where it is a part, too.
+    const Thing* whole_subject() {
+        const Thing* thing = subject();
+        if (thing == nullptr || step_.subject.links.size() == 1) return thing;
+        no("a part of a thing only gets another colour, material or pattern",
+           "label the part by hand, and name the thing");
+        return nullptr;
+    }
+
     std::optional<StepSentence> look() {
         const Thing* thing = subject();
         if (thing == nullptr) return std::nullopt;
@@ -123,15 +139,76 @@ private:
             return no("two colours at once are not drawn", "name one colour, or a pattern");
         words = joined({}, normalised_prompt(words));
         const std::string& noun = thing->noun;
-        const bool part = step_.subject.links.size() > 1;
-        std::string prompt;
-        if (part) {
-            const Thing whole{step_.subject.links.back().noun, "", {}};
-            prompt = phrase_of(whole) + " with " + words + " " + noun + standing_on(scene_, whole.noun);
-        } else {
-            prompt = phrase_of({noun, "", {words}}) + standing_on(scene_, noun);
-        }
-        return StepSentence{noun, prompt, words, EditMode::Modify};
+        if (step_.subject.links.size() > 1) return part(words);
+        return StepSentence{noun, phrase_of({noun, "", {words}}) + standing_on(scene_, noun), words,
+                            EditMode::Modify};
+    }
+
+    /// A look of a part of a thing. The part is found by its word, or by the thing's shape.
+    std::optional<StepSentence> part(const std::string& look) {
+        const std::string& noun = step_.subject.links.front().noun;
+        const Thing& whole = step_.subject.links.back();
+        if (step_.subject.links.size() > 2 || !whole.attributes.empty() || !whole.count.empty())
+            return no("the search cannot tell which " + whole.noun + " has the " + noun + " that is meant",
+                      "label the part by hand");
+        if (!finds(noun))
+            return no("the model has no word for the part \"" + noun + "\" and cannot find it",
+                      "label the part by hand, or choose a model of an open vocabulary");
+        const Thing changed{noun, "", {look}};
+        StepSentence sentence{noun,
+                              phrase_of({whole.noun, "", {}}) + " with " +
+                                  (is_plural(noun) ? look + " " + noun : phrase_of(changed)) +
+                                  standing_on(scene_, whole.noun),
+                              look, EditMode::Modify, whole.noun};
+        sentence.instruction = "make the " + noun + " of the " + whole.noun + " " + look;
+        return sentence;
+    }
+
+    /// True for a part that the model has a word for, or that the thing's shape tells.
+    bool finds(const std::string& part) const {
+        return model_.known.empty() || shape_of_part(part) || vocabulary_contains(model_.known, part);
+    }
+
+    /// The scene in words: "a red bear and a blue ball on the grass".
+    std::string described_scene() const {
+        std::string text;
+        const auto ground = scene_.ground();
+        for (const auto& thing : scene_.things)
+            if (!thing.is_ground && !thing.is_worn)
+                text += (text.empty() ? "" : " and ") + phrase_of({thing.noun, "", thing.attributes});
+        if (text.empty()) text = "a scene";
+        if (ground) text += " on the " + scene_.things[*ground].noun;
+        return text;
+    }
+
+    std::optional<StepSentence> of_scene(const std::string& joint, const std::string& instruction) {
+        StepSentence sentence{"scene", described_scene() + " " + joint + " " + step_.text, step_.text,
+                              EditMode::Modify};
+        sentence.whole_scene = true;
+        sentence.instruction = instruction;
+        return sentence;
+    }
+
+    std::optional<StepSentence> style() {
+        if (!model_.open_vocabulary) return none_for_operation();
+        const std::string joint = "in the style of";
+        if (step_.subject.is_scene()) return of_scene(joint, "make it look like " + step_.text);
+        const Thing* thing = whole_subject();
+        if (thing == nullptr) return std::nullopt;
+        StepSentence sentence{thing->noun,
+                              phrase_of(described_thing(thing->noun)) + " " + joint + " " + step_.text +
+                                  standing_on(scene_, thing->noun),
+                              step_.text, EditMode::Modify};
+        sentence.instruction = "make the " + thing->noun + " look like " + step_.text;
+        return sentence;
+    }
+
+    /// "at night", "in winter".
+    std::optional<StepSentence> environment() {
+        if (!model_.open_vocabulary) return none_for_operation();
+        const auto words = words_of(step_.text);
+        const bool hour = !words.empty() && has(Class::hour, words.back());
+        return of_scene(hour ? "at" : "in", "make it " + step_.text);
     }
 
     std::optional<StepSentence> ground() {
@@ -147,7 +224,7 @@ private:
     }
 
     std::optional<StepSentence> replacement() {
-        const Thing* thing = subject();
+        const Thing* thing = whole_subject();
         if (thing == nullptr || several()) return std::nullopt;
         return StepSentence{thing->noun, phrase_of(step_.thing) + standing_on(scene_, thing->noun),
                             step_.thing.noun, EditMode::Replace};
@@ -156,7 +233,7 @@ private:
     /// Flames are a thing that models add; any other look is not drawn from a plan.
     std::optional<StepSentence> fire() {
         if (!is_in(Burning, step_.text)) return none_for_operation();
-        const Thing* thing = subject();
+        const Thing* thing = whole_subject();
         if (thing == nullptr) return std::nullopt;
         return StepSentence{
             thing->noun,
@@ -225,6 +302,7 @@ private:
 
     const Step& step_;
     const SceneWords& scene_;
+    const ModelAbility& model_;
     StepProblem problem_;
 };
 
@@ -241,8 +319,9 @@ std::string phrase_of(const Thing& thing) {
     return (std::string_view("aeiou").find(words.front()) != std::string_view::npos ? "an " : "a ") + words;
 }
 
-std::optional<StepSentence> sentence_of(const Step& step, const SceneWords& scene, StepProblem* problem) {
-    Describer describer(step, scene);
+std::optional<StepSentence> sentence_of(const Step& step, const SceneWords& scene, StepProblem* problem,
+                                        const ModelAbility& model) {
+    Describer describer(step, scene, model);
     auto sentence = describer.described();
     if (!sentence && problem != nullptr) *problem = describer.problem();
     return sentence;

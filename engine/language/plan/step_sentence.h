@@ -17,6 +17,17 @@ struct StepSentence {
     std::string prompt;
     std::string target;  // the look, or the noun of the new thing
     EditMode mode = EditMode::Modify;
+    std::string part_of = {};      // thing that the source is a part of; empty = a thing of its own
+    bool whole_scene = false;      // everything changes its look; nothing is looked for
+    std::string instruction = {};  // order for models that edit by instructions; empty = from the prompt
+};
+
+/// Traits of a model that decide which steps it can do. Without any, only steps that every model can do are
+/// described.
+struct ModelAbility {
+    bool open_vocabulary = false;         // it is told any word: styles, weather
+    std::vector<std::string> known = {};  // words that it finds; empty = any, or not known
+    bool operator==(const ModelAbility&) const = default;
 };
 
 /// Reason why a step cannot be done, and what to do instead; both are parts of a sentence.
@@ -25,9 +36,10 @@ struct StepProblem {
     std::string remedy;
 };
 
-/// The step's description; nothing where none would bring it about. Then `problem` says why.
+/// The step's description; nothing where none would bring it about with that `model`. Then `problem` says
+/// why.
 std::optional<StepSentence> sentence_of(const Step& step, const SceneWords& scene,
-                                        StepProblem* problem = nullptr);
+                                        StepProblem* problem = nullptr, const ModelAbility& model = {});
 
 /// The scene's words once the step is done.
 SceneWords after(const Step& step, SceneWords scene);

@@ -8,7 +8,7 @@
 #include "engine/base/file.h"
 #include "engine/base/json.h"
 #include "engine/base/log.h"
-#include "engine/edit/request/dye_words.h"
+#include "engine/edit/words/dye_words.h"
 #ifdef GSE_NEURAL
 #include "engine/language/lexicon.h"
 #include "engine/language/vocabulary.h"
@@ -83,6 +83,12 @@ std::vector<std::string> word_list(const fs::path& folder, const char* key) {
 }  // namespace
 
 std::vector<std::string> model_words(const fs::path& folder) { return word_list(folder, "vocabulary"); }
+
+language::plan::ModelAbility model_ability(const fs::path& folder) {
+    auto known = model_words(folder);
+    const bool open = known.empty();
+    return {open, std::move(known)};
+}
 
 std::vector<std::string> drawn_words(const fs::path& folder) {
     const auto known = model_words(folder);

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/language/plan/step_sentence.h"
+
 namespace gse::pipeline {
 
 /// A small JSON file of a model (gseditpro.json, unet/config.json); null where there is none, discarded where
@@ -18,6 +20,9 @@ std::vector<std::string> model_words(const std::filesystem::path& folder);
 /// Words that it draws besides and does not look for (neural::TextToImage::drawn_words()), and colours that
 /// it is dyed in (edit::dye_words()); empty for an open vocabulary.
 std::vector<std::string> drawn_words(const std::filesystem::path& folder);
+
+/// Which steps of a plan the model in `folder` can do, by its files.
+language::plan::ModelAbility model_ability(const std::filesystem::path& folder);
 
 /// Counts the words of a sentence that the model's text encoder reads; all of them where that is not known.
 /// Words that a model of a fixed vocabulary is not told take no room. Reads the model's tokenizer when it is

@@ -27,7 +27,7 @@ const char* DrawStrategy::name() const {
 
 std::optional<edit::GroundUnder> plain_ground_under(const SceneEdit& scene_edit) {
     const auto& [workplace, scene, located, plan, recipe, observer, control] = scene_edit;
-    if (!recipe.guidance.plain_ground) return std::nullopt;
+    if (!recipe.guidance.plain_ground || recipe.request.whole_scene()) return std::nullopt;
     const auto& request = recipe.request;
     if (edit::replaces_accessory(request.sentence(), plan.mode)) {
         workplace.look_for_ground(located.views.views);

@@ -12,8 +12,8 @@
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/base/log_quiet.h"
-#include "engine/edit/request/dye_words.h"
 #include "engine/edit/request/vocabulary.h"
+#include "engine/edit/words/dye_words.h"
 #include "engine/language/grammar.h"
 #include "engine/language/news.h"
 #include "engine/language/vocabulary.h"
@@ -187,6 +187,9 @@ void EditJob::begin(Scene scene, std::shared_ptr<neural::TextToImage> model, Seg
         std::make_unique<RunContext>(std::move(scene), std::move(model), recipe_.job, std::move(segmenters));
     auto words = recipe_.request.sentence().sentence().words();
     for (auto& word : language::words_of(recipe_.request.source())) words.push_back(std::move(word));
+    if (!recipe_.request.part_of().empty())  // a part is told by its thing's shape, where it has no word
+        for (const auto& part : language::words_of(recipe_.request.source())) std::erase(words, part);
+    if (recipe_.request.whole_scene()) words = recipe_.request.sentence().sentence().words();
     std::sort(words.begin(), words.end());
     words.erase(std::unique(words.begin(), words.end()), words.end());
     const auto known = workplace_->model().known_words();

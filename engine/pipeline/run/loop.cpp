@@ -7,6 +7,7 @@
 #include "engine/base/content_hash.h"
 #include "engine/base/log.h"
 #include "engine/edit/request/edit_method.h"
+#include "engine/language/vocabulary.h"
 #include "engine/language/words.h"
 #include "engine/pipeline/models/neural_loader.h"
 #include "engine/pipeline/models/recipe_model.h"
@@ -35,6 +36,12 @@ neural::SdsParameters with_sentence_before(neural::SdsParameters guidance,
 
 std::string told_to_editor(const edit::CheckedRequest& request) {
     return language::normalised_prompt(edit::instruction_of(request));
+}
+
+edit::CheckedRequest told_to_model(const neural::TextToImage& model, const edit::CheckedRequest& request) {
+    const bool unknown =
+        !request.part_of().empty() && !language::vocabulary_contains(model.known_words(), request.source());
+    return unknown ? request.in_look_of_whole() : request;
 }
 
 edit::EditPlan plan_of(RunContext& workplace, const Located& located, const CheckedRecipe& recipe) {
@@ -121,7 +128,7 @@ Edited fit_to_views(const SceneEdit& scene_edit) {
 Edited follow_gradient(const SceneEdit& scene_edit) {
     const auto& [workplace, scene, located, plan, recipe, observer, control] = scene_edit;
     const auto& model = workplace.model();
-    const auto& request = recipe.request;
+    const auto request = told_to_model(model, recipe.request);
     const auto prompt = model.kind() == neural::BundleKind::InstructPix2Pix ? told_to_editor(request)
                                                                             : request.sentence().prompt();
     const auto guidance = model.guidance(prompt, with_sentence_before(recipe.guidance, request.sentence()));

@@ -46,6 +46,10 @@ neural::SdsParameters with_sentence_before(neural::SdsParameters guidance,
 /// Instruction for a model that edits pictures by instructions.
 std::string told_to_editor(const edit::CheckedRequest& request);
 
+/// The request in words that the model is told: where it has no word for a part that changes, the look of the
+/// thing.
+edit::CheckedRequest told_to_model(const neural::TextToImage& model, const edit::CheckedRequest& request);
+
 /// Masks, label and seeds for the loop. The recipe counts for how far masks are grown.
 edit::EditPlan plan_of(RunContext& workplace, const Located& located, const CheckedRecipe& recipe);
 

@@ -18,16 +18,17 @@
 #include "engine/edit/placement/head.h"
 #include "engine/edit/placement/placement_volume.h"
 #include "engine/edit/placement/upright_bounds.h"
-#include "engine/edit/request/dye_words.h"
 #include "engine/edit/request/excluded_views.h"
 #include "engine/edit/search/front_reading.h"
 #include "engine/edit/search/place_drawing.h"
 #include "engine/edit/search/scene_reading.h"
 #include "engine/edit/search/second_look.h"
+#include "engine/edit/words/dye_words.h"
 #include "engine/language/grammar.h"
 #include "engine/language/news.h"
 #include "engine/language/vocabulary.h"
 #include "engine/localize/focus.h"
+#include "engine/pipeline/run/search_from.h"
 #include "engine/pipeline/select/cut_out.h"
 
 namespace gse::pipeline {
@@ -162,29 +163,6 @@ Located finished(RunContext& workplace, Located located) {
     return located;
 }
 
-/// Looks for a ground, where it is wanted; the first views that are looked at decide.
-void look_for_ground(RunContext& workplace, const CheckedRecipe& recipe, const Views& views) {
-    if (recipe.guidance.plain_ground) workplace.look_for_ground(views.views);
-}
-
-/// The ground on which words are looked for; a label is what it is.
-std::optional<edit::StudioBackground> ground_shown(RunContext& workplace, const CheckedRecipe& recipe,
-                                                   const Views& views) {
-    look_for_ground(workplace, recipe, views);
-    return recipe.guidance.plain_ground ? workplace.ground(recipe.request.sentence().before()) : std::nullopt;
-}
-
-edit::LocateResult search_from(RunContext& workplace, const Views& views, const CheckedRecipe& recipe,
-                               const std::vector<std::uint8_t>* label, const JobControl& control) {
-    auto input = question(workplace, recipe, views, label);
-    input.ground = label == nullptr ? ground_shown(workplace, recipe, views) : std::nullopt;
-    auto tools = workplace.tools(views, input.ground, control);
-    const auto drawing = workplace.place_drawing(recipe.request.sentence());
-    tools.drawing = drawing.get();
-    tools.plain_ground = recipe.guidance.plain_ground;
-    return edit::locate(input, tools);
-}
-
 /// One search; every step of it gives a new value.
 class Search {
 public:
@@ -194,12 +172,27 @@ public:
     }
 
     Located run() {
+        if (recipe_.request.whole_scene()) return located_everywhere(workplace_, recipe_, views_, control_);
+        if (!recipe_.request.part_of().empty() && hints_.label.empty()) return part();
         Located located = shown_whole(searched());
         located.result.room = room_on_wearer(located);
         return located;
     }
 
 private:
+    /// Looks for the thing, and for the part within it.
+    Located part() {
+        CheckedRecipe whole = recipe_;
+        whole.request = recipe_.request.search_for_whole();
+        const Hints hints{{}, hints_.said};
+        Located located =
+            finished(workplace_, Search(workplace_, std::move(whole), views_, hints, control_).run());
+        located.recipe = recipe_;
+        if (!located.found()) return located;
+        located.within = *located.result.label.bits;
+        return locate_part(workplace_, std::move(located), control_);
+    }
+
     Located searched() {
         const bool by_label =
             !hints_.label.empty() &&
@@ -538,25 +531,6 @@ private:
 
 }  // namespace
 
-edit::LocateInput question(const RunContext& workplace, const CheckedRecipe& recipe, const Views& views,
-                           const std::vector<std::uint8_t>* label) {
-    const auto& scene = workplace.scene();
-    const auto elevations = views.azimuths.empty() ? std::vector<double>{} : elevations_above(views);
-    return {workplace.drawn(),
-            views.views,
-            views.words,
-            recipe.request,
-            render_settings(scene, recipe.request),
-            scene.info.up,
-            views.front,
-            label,
-            workplace.model().known_words(),
-            views.azimuths,
-            elevations,
-            {},
-            workplace.traits()};
-}
-
 Located locate(RunContext& workplace, const CheckedRecipe& recipe, const Views& views, const Hints& hints,
                const JobControl& control) {
     if (hints.label.empty())
@@ -576,6 +550,13 @@ Located locate_again(RunContext& workplace, const Located& located, const Checke
                      const JobControl& control) {
     workplace.ask(recipe.attention);
     Located again{located.views, recipe, located.label, {}, located.target_read, {}};
+    if (recipe.request.whole_scene())
+        return finished(workplace, located_everywhere(workplace, recipe, located.views, control));
+    if (!located.within.empty() && !again.by_label()) {
+        again.within = located.within;
+        again.result = located.result;
+        return finished(workplace, locate_part(workplace, std::move(again), control));
+    }
     const auto* label = again.by_label() ? &again.label : nullptr;
     again.result = search_from(workplace, again.views, recipe, label, control);
     if (edit::moves_worn_place(recipe.request.sentence(), again.result.mode))

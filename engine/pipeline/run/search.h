@@ -23,8 +23,9 @@ struct Located {
     CheckedRecipe recipe;             // for which: with the word that the pictures said is new
     std::vector<std::uint8_t> label;  // by hand, where that alone says what may change; empty = the words did
     edit::LocateResult result;
-    bool target_read = false;  // the pictures said which word is new, and not the recipe
-    std::string key;           // of all that it follows from, beside the scene and the model
+    bool target_read = false;               // the pictures said which word is new, and not the recipe
+    std::string key;                        // of all that it follows from, beside the scene and the model
+    std::vector<std::uint8_t> within = {};  // [N] the thing, where a part of it was looked for
 
     bool found() const { return result.problem == edit::SearchProblem::None; }
     bool by_label() const { return !label.empty(); }

@@ -8,8 +8,9 @@
 
 #include "engine/base/log.h"
 #include "engine/edit/placement/head.h"
-#include "engine/edit/request/colour_word.h"
 #include "engine/edit/target_views/strategies/default_ground_colour.h"
+#include "engine/edit/target_views/strategies/whole_thing.h"
+#include "engine/edit/words/colour_word.h"
 #include "engine/language/description.h"
 #include "engine/language/vocabulary.h"
 #include "engine/language/words.h"
@@ -105,6 +106,7 @@ ViewCandidate::ViewCandidate(const SceneEdit& scene_edit, const DrawStrategy& st
     : scene_edit_(scene_edit), request_(scene_edit.recipe.request) {
     const auto& [workplace, scene, located, plan, recipe, observer, control] = scene_edit;
     const auto& model = workplace.model();
+    request_ = told_to_model(model, request_);
     if (model.kind() != neural::BundleKind::InstructPix2Pix) {
         request_ = in_usual_colour(model, std::move(request_), plan.mode, workplace.traits());
         remap_ = edit::dye_of(request_.sentence(), plan.mode,
@@ -148,6 +150,10 @@ void ViewCandidate::add_editors(const DrawStrategy& strategy, const std::optiona
         editors_.push_back(model.views(remap_ ? edit::told_with(*remap_, prompt) : prompt, settings_));
         if (remap_) remapped_ = &add<edit::DyedViews>(*editors_.back(), *remap_);
     }
+    const auto& located = scene_edit_.located;
+    if (!located.within.empty() && request_.part_of().empty())  // the model is told the thing itself
+        add<edit::WholeThing>(*editors_.back(), scene_edit_.workplace.painter().rasterizer(),
+                              scene_edit_.workplace.drawn(), located.within, plan.settings);
     if (strategy.ground == DrawStrategy::Ground::Plain && ground)
         add<edit::OnPlainGround>(*editors_.back(), ground->plain, shown_before(plan, recipe));
     if (drawn != nullptr) add<CachedViews>(*editors_.back(), *drawn);

@@ -79,6 +79,8 @@ DOCTEST_TEST_CASE("two changes of one sentence wait as one result, and are two e
     DOCTEST_CHECK(app.model().results.size() == 1);
     check_names(app.model().verdict.changes, {"a blue bear", "a blue bear wearing a red hat"});
     DOCTEST_CHECK(app.model().verdict.asked == 2);
+    DOCTEST_CHECK(session.until([&] { return app.model().estimate.seconds > 0; }, 5));
+    DOCTEST_CHECK(app.model().estimate.step_seconds.size() == 2);
     DOCTEST_CHECK(app.document().state().stack.empty());
     const auto shown = session.preview.last.set;
     DOCTEST_CHECK(shown.size() > base.size());  // with the hat

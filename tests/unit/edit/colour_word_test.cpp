@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/edit/interfaces/model_traits.h"
-#include "engine/edit/request/colour_word.h"
+#include "engine/edit/words/colour_word.h"
 #include "engine/language/description.h"
 
 namespace colour_word_test {

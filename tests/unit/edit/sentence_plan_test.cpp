@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "engine/base/error.h"
@@ -142,6 +143,56 @@ DOCTEST_TEST_CASE("every step that can be done is an edit whose words pass the c
             DOCTEST_CHECK(checked.prompt() == step.words->prompt);
             DOCTEST_CHECK(checked.target() == step.words->target);
         }
+    }
+}
+
+DOCTEST_TEST_CASE("a part is described with its thing, and refused where the model cannot find it") {
+    const auto scene = plan::scene_words("red bear; grass");
+    const auto step_for = [&](const std::string& prompt, const plan::ModelAbility& model) {
+        const auto steps = edit::planned_steps(edit::plan_of(request(prompt), scene), scene, model);
+        DOCTEST_REQUIRE(steps.size() == 1);
+        return steps.front();
+    };
+    const plan::ModelAbility open{true, {}},
+        few{false, {"a", "bear", "on", "the", "grass", "blue", "golden"}};
+    const auto ears = step_for("make the bear's ears blue", open);
+    DOCTEST_REQUIRE(ears.words);
+    DOCTEST_CHECK(ears.words->source == "ears");
+    DOCTEST_CHECK(ears.words->part_of == "bear");
+    DOCTEST_CHECK(ears.words->prompt == "a bear with blue ears on the grass");
+    const auto checked = edit::check(edit::request_of(request("make the bear's ears blue"), *ears.words));
+    DOCTEST_CHECK(checked.search_for_whole().prompt() == "a bear on the grass");
+    DOCTEST_CHECK(checked.search_for_whole().source() == "bear");
+    DOCTEST_CHECK(checked.in_look_of_whole().prompt() == "a blue bear on the grass");
+    DOCTEST_CHECK(edit::instruction_of(checked) == "make the ears of the bear blue");
+    const auto unknown = step_for("make the bear's ears blue", few);
+    DOCTEST_CHECK(!unknown.words);
+    DOCTEST_CHECK(unknown.problem.reason.find("ears") != std::string::npos);
+    const auto head = step_for("a bear with a golden head", few);
+    DOCTEST_REQUIRE(head.words);
+    DOCTEST_CHECK(head.words->prompt == "a bear with a golden head on the grass");
+    DOCTEST_CHECK(!step_for("replace the bear's ears with horns", open).words);
+}
+
+DOCTEST_TEST_CASE("styles and weather are steps of a model that is told any word") {
+    const auto scene = plan::scene_words("red bear; blue hat; grass");
+    for (const auto& [prompt, told, instruction, whole] :
+         {std::tuple{"at night", "a red bear on the grass at night", "make it night", true},
+          std::tuple{"make it winter", "a red bear on the grass in winter", "make it winter", true},
+          std::tuple{"turn the scene into a watercolor", "a red bear on the grass in the style of watercolor",
+                     "make it look like watercolor", true}}) {
+        const std::string typed = prompt;
+        DOCTEST_CAPTURE(typed);
+        const auto plan = edit::plan_of(request(typed), scene);
+        const auto closed = edit::planned_steps(plan, scene).front();
+        DOCTEST_CHECK(!closed.words);
+        DOCTEST_CHECK(closed.problem.remedy.find("Stable Diffusion") != std::string::npos);
+        const auto open = edit::planned_steps(plan, scene, {true, {}}).front();
+        DOCTEST_REQUIRE(open.words);
+        DOCTEST_CHECK(open.words->prompt == told);
+        DOCTEST_CHECK(open.words->instruction == instruction);
+        DOCTEST_CHECK(open.words->whole_scene == whole);
+        DOCTEST_CHECK(edit::check(edit::request_of(request(typed), *open.words)).whole_scene());
     }
 }
 

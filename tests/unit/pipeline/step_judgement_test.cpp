@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/pipeline/run/step_judgement.h"
+#include "engine/pipeline/steps/step_judgement.h"
 
 namespace step_judgement_test {
 

@@ -478,6 +478,8 @@ void draw_result_notice(Context& context, const char* prefix) {
                              result_sentence(verdict)));
     for (std::size_t i = 0; i < verdict.changes.size(); ++i)
         dim_text(fmt::format("{} {}", i + 1, verdict.changes[i]));
+    for (const auto& change : verdict.kept_out)
+        coloured_text(palette::Warning, fmt::format("Kept out: {}", change));
     if (verdict.warns) coloured_text(palette::Warning, verdict.text);
     if (button(context, {.name = fmt::format("{}.apply", prefix),
                          .text = verdict.warns ? "Apply anyway" : "Apply",

@@ -10,7 +10,7 @@
 
 #include "engine/edit/interfaces/interfaces.h"
 #include "engine/edit/placement/upright_bounds.h"
-#include "engine/edit/request/dye_words.h"
+#include "engine/edit/words/dye_words.h"
 #include "engine/language/sentence.h"
 #include "engine/scene/surface_pattern.h"
 

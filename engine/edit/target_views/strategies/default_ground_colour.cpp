@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/edit/request/colour_word.h"
+#include "engine/edit/words/colour_word.h"
 #include "engine/language/description.h"
 
 namespace gse::edit {

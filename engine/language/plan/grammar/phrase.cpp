@@ -336,7 +336,10 @@ bool Cursor::take_body(Phrase& phrase, bool split) {
     return false;
 }
 
-void Cursor::take_owner_behind(Phrase& phrase) {
+void Cursor::take_owner_behind(Phrase& phrase, bool split) {
+    Cursor behind = *this;  // "give the bear wings": no wings of the bear
+    if (split && behind.take(Class::part) && (behind.at_end_of_clause() || behind.peek(Class::conjunction)))
+        return;
     const bool plural_owner = phrase.plural && is_scene_noun(words_[at - 1].singular) && peek(Class::part) &&
                               !ends_phrase(0, false);
     const bool bare_owner =
@@ -406,7 +409,7 @@ bool Cursor::take_phrase(Phrase& phrase, bool split) {
         if (is(Class::word_one) || is(Class::word_ones)) ++at;
     } else if (has(Class::thing_name, phrase.noun) && (phrase.noun == "one" || phrase.noun == "ones"))
         phrase.noun.clear();
-    take_owner_behind(phrase);
+    take_owner_behind(phrase, split);
     if (phrase.definite && !phrase.owner) {  // "the car on the left"
         const auto side = peek(Class::direction);
         if (side.length > 2 && !is(Class::word_to) && has(Class::side, side.value) &&

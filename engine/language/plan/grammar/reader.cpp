@@ -145,7 +145,8 @@ void Reader::skip_rest() {
     Cursor ahead = c_;
     Phrase other;
     Attribute attribute;
-    const bool changes = frame_ == Frame::Make || frame_ == Frame::Paint || frame_ == Frame::Turn;
+    const bool changes = frame_ == Frame::Make || frame_ == Frame::Paint || frame_ == Frame::Turn ||
+                         (frame_ == Frame::None && d_.size() > 0);  // "could it be yellow instead of red"
     Cursor place = c_;  // "paint the bear golden on the grass": the grass is there
     if (const auto relation = place.take(Class::relation);
         changes && (relation.value == "on" || relation.value == "in")) {

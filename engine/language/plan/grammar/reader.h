@@ -48,6 +48,7 @@ private:
     bool paint_clause();
     bool turn_clause();
     std::optional<bool> use_clause(bool substitute);
+    bool swaps_colours();
     bool replace_clause();
     bool swap_clause();
     bool give_clause();
@@ -105,6 +106,7 @@ private:
     std::optional<bool> describe_place(const Phrase& phrase, bool bare);
     std::optional<bool> describe_instead(const Phrase& phrase);
     bool describe_beside(const Phrase& phrase);
+    bool stands_by_other(const Phrase& phrase) const;
     bool describe_new(const Phrase& phrase);
     bool describe_other(const Phrase& phrase);
     bool skip_instead();
@@ -117,6 +119,8 @@ private:
     bool complement(const Targets& targets);
     bool described_as(const Targets& targets);
     bool complement_once(const Targets& targets);
+    bool as_much_as(const Targets& targets);
+    bool looks_somewhere(const Targets& targets);
     bool measure(const Targets& targets);
     bool compared(const Targets& targets);
     bool alike(const Targets& targets);
@@ -147,6 +151,7 @@ private:
     bool in_place(const Cursor& ahead, const std::string& before);
     bool surroundings(const Target& subject, std::string_view relation);
     bool relative(const Target& subject);
+    bool skip_likeness();
     void nested(const Target& made, const Target& bearer);
     bool list_goes_on();
 
@@ -164,6 +169,7 @@ private:
     std::string missing_;
     std::vector<Phrase> instead_;
     std::optional<Target> described_;
+    bool described_definite_ = false;  // "the bear", not "a bear"
     bool requested_ = false, refused_part_ = false;
     std::size_t word_count_ = 0;
 };

@@ -338,8 +338,8 @@ bool Reader::pose_text(const Targets& targets) {
     Phrase place;
     if (where.take(Class::relation) && where.take_phrase(place)) {
         const auto found = d_.resolve(place);
-        if (place.naming != Naming::Thing || (found.thing && d_.scene().things[*found.thing].is_ground))
-            c_.at = where.at;
+        const bool other = found.thing && !targets.empty() && found.thing != targets.front().thing;
+        if (place.naming != Naming::Thing || other) c_.at = where.at;
     }
     return true;
 }
@@ -362,15 +362,49 @@ bool Reader::described_as(const Targets& targets) {
             c_.take(Class::colour_word);
             Cursor like = c_;  // "green like a frog"
             Phrase of_that;
-            if (model && like.take(Class::like) && like.take_phrase(of_that)) c_.at = like.at;
+            Attribute stuff;  // "as black as coal"
+            if (model && like.take(Class::like) &&
+                (like.take_phrase(of_that) || like.take_attribute(stuff, false)))
+                c_.at = like.at;
             return apply_all(targets, attributes);
         }
     }
     return false;
 }
 
+/// "as black as coal": the likeness says nothing more.
+bool Reader::as_much_as(const Targets& targets) {
+    Cursor ahead = c_;
+    Attribute attribute;
+    Phrase model;
+    if (!ahead.is(Class::word_as)) return false;
+    ++ahead.at;
+    if (!ahead.take_attribute(attribute, false) || !ahead.is(Class::word_as)) return false;
+    if (attribute.quality == Quality::Size) return false;
+    ++ahead.at;
+    if (!ahead.take_phrase(model) || !ahead.at_end_of_clause()) return false;
+    c_.at = ahead.at;
+    return apply_all(targets, {attribute});
+}
+
+/// "look to the left", "looks up".
+bool Reader::looks_somewhere(const Targets& targets) {
+    Cursor ahead = c_;
+    if (!ahead.take(Class::look_word)) return false;
+    const auto way = ahead.take(Class::direction);
+    if (!way || !ahead.at_end_of_clause()) return false;
+    c_.at = ahead.at;
+    const std::string side(way.value);
+    for (const auto& target : targets) {
+        if (side == "up" || side == "down") d_.step(Operation::Pose, target, "looking " + side);
+        else d_.step(Operation::Transform, target, "face " + side);
+    }
+    return true;
+}
+
 bool Reader::complement_once(const Targets& targets) {
     const std::size_t start = c_.at;
+    if (looks_somewhere(targets)) return true;
     while (c_.take(Class::look_word) || c_.take(Class::copula) || c_.take(Class::to) ||
            c_.take(Class::modal) || c_.take(Class::verb_become)) {}
     c_.take(Class::as_well);
@@ -386,7 +420,7 @@ bool Reader::complement_once(const Targets& targets) {
         }
     }
     if (c_.peek(Class::negation)) return denied(targets);
-    if (measure(targets) || compared(targets)) return true;
+    if (measure(targets) || as_much_as(targets) || compared(targets)) return true;
     if (c_.peek(Class::made_of) || c_.peek(Class::of)) return material_of(targets);
     if (c_.peek(Class::verb_make) && c_.is(Class::word_made)) ++c_.at;
     if (const auto turned = c_.peek(Class::flipping)) {
@@ -413,6 +447,8 @@ bool Reader::complement_once(const Targets& targets) {
             return true;
         }
     }
+    if (c_.peek(Class::inverse_relation) && targets.size() == 1)  // "full of flowers"
+        return inversely_related(targets.front());
     if (described_as(targets)) return true;
     if (pose_text(targets)) return true;
     Phrase phrase;

@@ -89,6 +89,7 @@ bool Reader::describe(const Phrase& phrase) {
         !found.thing) {  // "green eyes"
         return describe_part(phrase, found);
     }
+    if (!described_) described_definite_ = phrase.definite;
     described_ = described_ ? described_ : std::optional(found);
     if (phrase.count.empty() || phrase.count == "all" || found.reference.links[0].count == "all" ||
         found.kind == Target::Kind::Made) {
@@ -177,6 +178,19 @@ std::optional<bool> Reader::describe_instead(const Phrase& phrase) {
     return std::nullopt;
 }
 
+/// Tells whether the phrase is placed at another thing of the scene, and is of another kind than what the
+/// sentence is about: it does not stand in its place.
+bool Reader::stands_by_other(const Phrase& phrase) const {
+    const auto focus = d_.focus();
+    Cursor ahead = c_;
+    Phrase place;
+    if (!focus.thing || !ahead.take(Class::relation) || !ahead.take_phrase(place) || !place.definite)
+        return false;
+    const auto found = d_.resolve(place);
+    if (!found.thing || found.thing == focus.thing || d_.scene().things[*found.thing].is_ground) return false;
+    return (kinds_of(phrase.noun) & kinds_of(d_.scene().things[*focus.thing].noun) & Concrete) == 0;
+}
+
 /// A thing that the scene does not show.
 bool Reader::describe_new(const Phrase& phrase) {
     const auto focus = d_.focus();
@@ -203,6 +217,10 @@ bool Reader::describe_new(const Phrase& phrase) {
         if (const auto read = describe_instead(phrase)) return *read;
     }
     const bool later = mentions_focus(c_.at);
+    if (!later && stands_by_other(phrase)) {  // "graffiti on the wall" of a bicycle before a wall
+        Targets made;
+        return place_new(phrase, made) && describe_more();
+    }
     if (later || (wears && focus.found() && (d_.can_wear(focus)) && is_worn(phrase))) {
         return describe_beside(phrase);
     }

@@ -64,7 +64,7 @@ bool Reader::move_to(const Target& target, const Match& relation) {
     Target body = d_.focus();
     if (!place.found() && on_bearer(where, body)) place = body;
     if (!place.found()) {
-        if (is_ground(where) && !where.definite && name == "on") {  // "put it on snow"
+        if (is_ground(where) && name == "on") {  // "put it on snow", "on the beach"
             d_.ground(where);
             return true;
         }
@@ -161,6 +161,16 @@ bool Reader::move_clause() {
     if (lift && (c_.at_end_of_clause() || !goes)) {
         for (const auto& target : targets) d_.step(Operation::Transform, target, std::string(lift.value));
         return c_.at_end_of_clause() || ends_well();
+    }
+    if (lift && goes) {  // "lift the bear 1 meter"
+        Cursor before = c_;
+        const auto amount = take_amount();
+        if (!amount.empty() && ends_well()) {
+            for (const auto& target : targets)
+                d_.step(Operation::Transform, target, std::string(lift.value) + amount);
+            return true;
+        }
+        c_.at = before.at;
     }
     if (lift && way.is(Class::word_up)) {
         ++way.at;

@@ -267,6 +267,17 @@ bool Reader::lack_list(const Target& subject) {
     return true;
 }
 
+/// Steps over how a new thing is: "(wings) like an eagle".
+bool Reader::skip_likeness() {
+    Cursor like = c_;
+    Phrase model;
+    if (c_.is(Class::word_as) || !like.take(Class::like) || !like.take_phrase(model) || model.noun.empty() ||
+        !like.at_end_of_clause())
+        return false;
+    c_.at = like.at;
+    return true;
+}
+
 /// Place of a new thing on or beside who has it: "on its head", "next to him", "made of gold", "that is red".
 void Reader::nested(const Target& made, const Target& bearer) {
     while (true) {
@@ -312,6 +323,7 @@ void Reader::nested(const Target& made, const Target& bearer) {
             return;
         }
         if (c_.peek(Class::made_of) && made.step && material_of({made})) continue;
+        if (made.step && skip_likeness()) continue;
         if (c_.peek(Class::relative) && relative(made)) continue;
         Attribute behind;
         if (made.step && ahead.at == c_.at && ahead.take_attribute(behind, false) &&

@@ -71,7 +71,7 @@ bool Reader::surroundings(const Target& subject, std::string_view relation) {
     style.take(Class::article);
     if (style.take(Class::style_word) && style.take(Class::of)) {
         const auto whole = described_ && subject.found() && described_->reference == subject.reference &&
-                                   frame_ == Frame::Describe
+                                   frame_ == Frame::Describe && !described_definite_
                                ? d_.scene_target()
                                : subject;
         c_.at = style.at;

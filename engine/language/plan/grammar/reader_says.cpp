@@ -8,14 +8,27 @@ namespace gse::language::plan {
 bool Reader::only_clause() {
     Cursor ahead = c_;
     Phrase phrase;
-    if (!ahead.take(Class::only) || !ahead.take_phrase(phrase) || !ahead.at_end_of_clause()) return false;
+    const bool keeps = ahead.take(Class::verb_keep).length > 0;
+    if (!ahead.take(Class::only) || !ahead.take_phrase(phrase)) return false;
+    Cursor said = ahead;
+    said.take(Class::modal);
+    bool stays = said.is(Class::word_stay) || said.is(Class::word_stays) || said.is(Class::word_remain) ||
+                 said.is(Class::word_remains);
+    if (stays) ahead.at = said.at + 1;
+    stays = stays || keeps;
+    if (!ahead.at_end_of_clause()) return false;
     if (d_.size() > 0 || !phrase.attributes.empty() || phrase.naming != Naming::Thing) return false;
     const auto found = d_.resolve(phrase);
     const auto focus = d_.focus();
     if (!found.thing || !focus.found()) return false;
     c_.at = ahead.at;
     d_.already_so();
-    if (d_.scene().things[*found.thing].is_ground) d_.remove(focus);
+    const auto& things = d_.scene().things;
+    if (things[*found.thing].is_ground) d_.remove(focus);
+    for (std::size_t i = 0; stays && i < things.size(); ++i)  // "only the dog should stay"
+        if (i != *found.thing && !things[i].is_ground && !things[i].is_worn &&
+            !(things[*found.thing].is_ground && d_.target_of_thing(i).reference == focus.reference))
+            d_.remove(d_.target_of_thing(i));
     return true;
 }
 
@@ -39,6 +52,7 @@ bool Reader::clause() {
         if (!reason_.empty()) return false;
         c_.at = start;
     }
+    if (c_.peek(Class::times) && d_.focus().found() && measure({d_.focus()})) return true;  // "half the size"
     return noun_clause() || attribute_clause();
 }
 
@@ -414,6 +428,11 @@ std::optional<bool> Reader::statement(const std::vector<Phrase>& phrases, bool s
     const auto& phrase = phrases.front();
     Targets subjects;
     bool all = true;
+    if (phrases.size() == 1 && phrase.indefinite && is_worn(phrase) && c_.peek(Class::emerging) &&
+        d_.things_named(phrase).empty()) {  // "a crown sits on its head"
+        Targets made;
+        return place_new(phrase, made);
+    }
     for (const auto& each : phrases) {
         const auto found = d_.resolve(each);
         all = all && found.found();

@@ -35,7 +35,7 @@ bool Reader::starts_object(std::size_t ahead) const {
 bool Reader::starts_verb(std::size_t ahead) const {
     Cursor here = c_;
     here.at += ahead;
-    if (here.done() || here.word().mark) return false;
+    if (here.done() || here.word().mark || here.peek(Class::compound).length > 1) return false;
     std::size_t length = 0;
     for (const auto kind : Verbs) length = std::max(length, here.peek(kind).length);
     if (length == 0) return false;
@@ -337,6 +337,28 @@ std::optional<bool> Reader::use_clause(bool substitute) {
     return std::nullopt;
 }
 
+/// "replace red with yellow": of what is red.
+bool Reader::swaps_colours() {
+    Cursor ahead = c_;
+    Attribute old, made;
+    if (!ahead.take_attribute(old, false) || old.quality != Quality::Colour) return false;
+    const bool joint = ahead.is(Class::word_with) || ahead.is(Class::word_by) || ahead.is(Class::word_for) ||
+                       ahead.is(Class::word_to);
+    if (!joint) return false;
+    ++ahead.at;
+    if (!ahead.take_attribute(made, false) || made.quality != Quality::Colour || !ahead.at_end_of_clause())
+        return false;
+    Targets coloured;
+    const auto& things = d_.scene().things;
+    for (std::size_t i = 0; i < things.size(); ++i)
+        if (std::find(things[i].attributes.begin(), things[i].attributes.end(), old.value) !=
+            things[i].attributes.end())
+            coloured.push_back(d_.target_of_thing(i));
+    if (coloured.empty()) return fail(reason::Ambiguous);
+    c_.at = ahead.at;
+    return apply_all(coloured, {made});
+}
+
 bool Reader::replace_clause() {
     if (c_.peek(Class::verb_swap) && c_.peek(Class::verb_replace).length == 0) return false;
     const bool use = c_.is(Class::word_use), substitute = c_.is(Class::word_substitute);
@@ -348,6 +370,7 @@ bool Reader::replace_clause() {
         if (const auto read = use_clause(substitute)) return *read;
         if (use) return false;
     }
+    if (swaps_colours()) return true;
     Targets targets;
     if (!objects(targets)) return false;
     frame_ = Frame::Replace;
@@ -373,6 +396,7 @@ bool Reader::replace_clause() {
 
 bool Reader::swap_clause() {
     if (!c_.take(Class::verb_swap)) return false;
+    if (swaps_colours()) return true;
     Cursor positions = c_;
     positions.take(Class::definite);
     if (positions.is(Class::word_positions) || positions.is(Class::word_places) ||
@@ -418,6 +442,13 @@ bool Reader::give_clause() {
     Phrase first;
     Cursor ahead = c_;
     if (!ahead.take_phrase(first, true)) return fail(reason::Incomplete);
+    const bool whom = first.possessive && ahead.at_end_of_clause() && c_.peek(Class::pronoun_person);
+    if (whom) {  // "give her long hair"
+        ahead = c_;
+        ahead.take(Class::pronoun_person);
+        first = {};
+        first.naming = Naming::Person;
+    }
     Target receiver = first.naming == Naming::It ? d_.pronoun(Naming::It, true) : d_.resolve(first);
     const bool indirect = !receiver.found() || first.indefinite;
     if (indirect && first.naming == Naming::Thing && ahead.is(Class::word_to)) {  // "give a hat to the bear"

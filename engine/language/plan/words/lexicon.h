@@ -30,7 +30,7 @@ enum class Class : std::uint16_t {
     container, floating, covering, compound, masculine, feminine, person, animal, thing, fire_words,
     fire_verb, meta_verb, meta_noun, meta, question, question_word, injection, narrative, subordinate,
     do_not, whatever, never_mind, correction, same_noise, irregular, irregular_verb, foreign, foreign_weak,
-    empty, except, what_stands, shade_of, contrast_change, dressed_as, only, unwanted, verb_around,
+    empty, except, what_stands, shade_of, contrast_change, dressed_as, only, unwanted, hour, verb_around,
     verb_fill, word_a, word_against, word_all, word_and, word_around, word_as, word_at, word_away, word_by,
     word_chop, word_clear, word_cut, word_dark, word_down, word_during, word_except, word_facing,
     word_factor, word_fall, word_for, word_from, word_get, word_give, word_half, word_has, word_have,

@@ -10,6 +10,7 @@
 
 #include "engine/base/disk_cache.h"
 #include "engine/edit/request/sentence_plan.h"
+#include "engine/edit/request/step_progress.h"
 #include "engine/pipeline/recipe/recipe.h"
 #include "engine/pipeline/run/edit_job.h"
 
@@ -21,6 +22,7 @@ struct EditSteps {
     language::plan::SceneWords scene;  // before the first step
     std::vector<edit::PlannedStep> steps;
     bool nothing_to_change = false;
+    language::plan::ModelAbility model = {};
 };
 
 /// The scene's words for a recipe: `given` ("red bear; grass"), else the source and what pictures of the
@@ -52,15 +54,15 @@ public:
     using FirstJob = std::function<std::unique_ptr<EditJob>(EditRecipe recipe)>;
 
     StepSequence(EditRecipe recipe, EditSteps steps);
-    std::size_t size() const { return steps_.steps.size(); }
+    std::size_t size() const { return steps_.size(); }
     /// A step in the words of the scene as it is by now. Without words it cannot be done.
-    const edit::PlannedStep& step(std::size_t i) const { return steps_.steps[i]; }
+    const edit::PlannedStep& step(std::size_t i) const { return steps_.step(i); }
     /// Job of a step that has words. Throws as EditJob's constructors do.
     std::unique_ptr<EditJob> job_of(std::size_t i, const FirstJob& first, const JobControl& control) const;
     /// Goes on from what a step's job came to.
     void take(std::size_t i, std::unique_ptr<EditJob> job);
     /// Goes on from the scene before a step. Later steps are described anew.
-    void leave_out(std::size_t i);
+    void leave_out(std::size_t i) { steps_.leave_out(i); }
     /// Job of the last step taken; null before one was.
     EditJob* last() const { return job_.get(); }
     /// Number of steps taken.
@@ -68,8 +70,7 @@ public:
 
 private:
     EditRecipe recipe_;
-    EditSteps steps_;
-    language::plan::SceneWords scene_;  // by now
+    edit::StepProgress steps_;
     std::unique_ptr<EditJob> job_;
     std::vector<std::string> said_;
     std::size_t taken_ = 0;

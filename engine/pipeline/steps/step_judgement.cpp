@@ -1,5 +1,5 @@
 // Renders before and after, and thresholds on what they show.
-#include "engine/pipeline/run/step_judgement.h"
+#include "engine/pipeline/steps/step_judgement.h"
 
 #include <fmt/format.h>
 

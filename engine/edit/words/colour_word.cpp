@@ -1,5 +1,5 @@
 // Pixels to basic colour terms; a word into a sentence.
-#include "engine/edit/request/colour_word.h"
+#include "engine/edit/words/colour_word.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "engine/base/check.h"
-#include "engine/edit/request/request.h"
 #include "engine/language/vocabulary.h"
 
 namespace gse::edit {

@@ -1,5 +1,5 @@
 // Tables of colours, metals and what may stand before them.
-#include "engine/edit/request/dye_words.h"
+#include "engine/edit/words/dye_words.h"
 
 #include <algorithm>
 #include <iterator>

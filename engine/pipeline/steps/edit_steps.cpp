@@ -1,5 +1,5 @@
 // Sentences as lists of steps, and jobs that follow each other.
-#include "engine/pipeline/run/edit_steps.h"
+#include "engine/pipeline/steps/edit_steps.h"
 
 #include <fmt/format.h>
 
@@ -10,6 +10,8 @@
 #include "engine/base/log.h"
 #include "engine/language/plan/plan_text.h"
 #include "engine/language/words.h"
+#include "engine/pipeline/models/model_words.h"
+#include "engine/pipeline/models/recipe_model.h"
 #include "engine/scene/row_values.h"
 
 namespace gse::pipeline {
@@ -55,7 +57,8 @@ EditSteps steps_of_sentence(const EditRecipe& recipe, const plan::SceneWords& sc
     result.nothing_to_change = result.plan.steps.front().operation == plan::Operation::None;
     if (result.nothing_to_change) return result;
     if (const auto refused = edit::refusal_of(result.plan, recipe.request.source)) throw *refused;
-    result.steps = edit::planned_steps(result.plan, scene);
+    result.model = model_ability(model_path(recipe.job));
+    result.steps = edit::planned_steps(result.plan, scene, result.model);
     const bool any = std::any_of(result.steps.begin(), result.steps.end(),
                                  [](const auto& step) { return step.words.has_value(); });
     if (!partly || !any) require_all(result);
@@ -99,7 +102,8 @@ nlohmann::ordered_json plan_to_json(const EditSteps& steps) {
 }
 
 StepSequence::StepSequence(EditRecipe recipe, EditSteps steps)
-    : recipe_(std::move(recipe)), steps_(std::move(steps)), scene_(steps_.scene) {}
+    : recipe_(std::move(recipe)),
+      steps_(std::move(steps.steps), std::move(steps.scene), std::move(steps.model)) {}
 
 std::unique_ptr<EditJob> StepSequence::job_of(std::size_t i, const FirstJob& first,
                                               const JobControl& control) const {
@@ -110,16 +114,9 @@ std::unique_ptr<EditJob> StepSequence::job_of(std::size_t i, const FirstJob& fir
 
 void StepSequence::take(std::size_t i, std::unique_ptr<EditJob> job) {
     for (auto& word : language::words_of(step(i).words->target)) said_.push_back(std::move(word));
-    scene_ = plan::after(step(i).step, std::move(scene_));
+    steps_.take(i);
     job_ = std::move(job);
     ++taken_;
-}
-
-void StepSequence::leave_out(std::size_t i) {
-    plan::Plan rest;
-    for (std::size_t later = i + 1; later < size(); ++later) rest.steps.push_back(step(later).step);
-    auto described = edit::planned_steps(rest, scene_);
-    std::move(described.begin(), described.end(), steps_.steps.begin() + static_cast<std::ptrdiff_t>(i) + 1);
 }
 
 }  // namespace gse::pipeline

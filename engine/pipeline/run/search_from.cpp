@@ -1,0 +1,96 @@
+// Questions put to views, and what comes of them.
+#include "engine/pipeline/run/search_from.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "engine/base/log.h"
+#include "engine/edit/placement/body_part.h"
+#include "engine/language/vocabulary.h"
+
+namespace gse::pipeline {
+
+edit::LocateInput question(const RunContext& workplace, const CheckedRecipe& recipe, const Views& views,
+                           const std::vector<std::uint8_t>* label) {
+    const auto& scene = workplace.scene();
+    const auto elevations = views.azimuths.empty() ? std::vector<double>{} : elevations_above(views);
+    return {workplace.drawn(),
+            views.views,
+            views.words,
+            recipe.request,
+            render_settings(scene, recipe.request),
+            scene.info.up,
+            views.front,
+            label,
+            workplace.model().known_words(),
+            views.azimuths,
+            elevations,
+            {},
+            workplace.traits()};
+}
+
+void look_for_ground(RunContext& workplace, const CheckedRecipe& recipe, const Views& views) {
+    if (recipe.guidance.plain_ground) workplace.look_for_ground(views.views);
+}
+
+std::optional<edit::StudioBackground> ground_shown(RunContext& workplace, const CheckedRecipe& recipe,
+                                                   const Views& views) {
+    look_for_ground(workplace, recipe, views);
+    return recipe.guidance.plain_ground ? workplace.ground(recipe.request.sentence().before()) : std::nullopt;
+}
+
+edit::LocateResult search_from(RunContext& workplace, const Views& views, const CheckedRecipe& recipe,
+                               const std::vector<std::uint8_t>* label, const JobControl& control,
+                               const std::vector<std::uint8_t>* within) {
+    auto input = question(workplace, recipe, views, label);
+    input.within = within;
+    input.ground = label == nullptr ? ground_shown(workplace, recipe, views) : std::nullopt;
+    auto tools = workplace.tools(views, input.ground, control);
+    const auto drawing = workplace.place_drawing(recipe.request.sentence());
+    tools.drawing = drawing.get();
+    tools.plain_ground = recipe.guidance.plain_ground;
+    return edit::locate(input, tools);
+}
+
+namespace {
+
+bool is_known(const RunContext& workplace, const std::string& word) {
+    return language::vocabulary_contains(workplace.model().known_words(), word);
+}
+
+}  // namespace
+
+Located locate_part(RunContext& workplace, Located located, const JobControl& control) {
+    const auto& request = located.recipe.request;
+    const std::string part = request.source();
+    auto& result = located.result;
+    if (is_known(workplace, part)) {
+        result = search_from(workplace, located.views, located.recipe, nullptr, control, &located.within);
+        if (!located.found())
+            result.message = fmt::format("\"{}\" was not found within \"{}\" ({})", part, request.part_of(),
+                                         result.message);
+        return located;
+    }
+    const auto rows = edit::labelled_part(part, workplace.drawn(), located.within, located.views.orbit.up);
+    result = edit::part_of_finding(question(workplace, located.recipe, located.views, nullptr),
+                                   workplace.painter().rasterizer(), std::move(result), rows, part);
+    log::info("\"{}\" is told by the shape of \"{}\": {} splats", part, request.part_of(),
+              std::count(rows.begin(), rows.end(), std::uint8_t{1}));
+    return located;
+}
+
+Located located_everywhere(RunContext& workplace, const CheckedRecipe& recipe, const Views& views,
+                           const JobControl& control) {
+    Located located{views, recipe, std::vector<std::uint8_t>(workplace.drawn().size(), 1), {}, false, {}};
+    located.result = search_from(workplace, views, recipe, &located.label, control);
+    for (auto& view : located.result.views) {
+        std::fill(view.mask.data.begin(), view.mask.data.end(), std::uint8_t{1});
+        view.region = view.mask;
+        view.failed = false;
+        view.step = edit::ViewStep::Found;
+    }
+    return located;
+}
+
+}  // namespace gse::pipeline
