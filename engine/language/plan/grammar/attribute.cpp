@@ -136,8 +136,8 @@ bool Cursor::take_other_attribute(Attribute& attribute, bool in_phrase) {
         (kinds & Kind::Adjective) != 0 && (kinds & (Concrete | Perhaps)) == 0 && noun_length() <= 1;
     const bool noun_follows = in_phrase && noun_length(1) > 0 && !ends_phrase(1, true);
     const bool ends = ends_phrase(1, true) && (kinds & Other) == 0;
-    if (only_adjective && !peek(Class::part) && !peek(Class::worn) && (noun_follows || ends) &&
-        !is_scene_noun(word().text)) {
+    if (only_adjective && !peek(Class::colour_word) && !peek(Class::part) && !peek(Class::worn) &&
+        (noun_follows || ends) && !is_scene_noun(word().text)) {
         attribute = {Quality::Other, word().text, word().text, ""};
         ++at;
         return true;

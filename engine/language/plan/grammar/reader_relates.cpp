@@ -152,6 +152,8 @@ bool Reader::related(const Target& subject) {
         c_.at = start;
         return false;
     }
+    if (relation.value == "in" && phrase.indefinite && is_worn(phrase) && d_.can_wear(subject))
+        return own(subject, phrase, "worn by");  // "in a hood"
     if (relation.value == "between" && c_.peek(Class::conjunction)) {
         if (between(subject, phrase)) return true;
     }

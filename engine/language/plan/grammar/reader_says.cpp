@@ -345,8 +345,11 @@ std::optional<bool> Reader::has_something(const Targets& subjects) {
 
 /// "is blue", "is painted blue", "is replaced by a cat", "is behind the statue".
 bool Reader::is_somehow(const Targets& subjects) {
+    if (c_.peek(Class::look_word).length > c_.peek(Class::copula).length) c_.take(Class::look_word);
     c_.take(Class::copula);
     c_.take(Class::as_well);
+    if (c_.peek(Class::holding) || c_.peek(Class::wearing))
+        if (const auto read = has_something(subjects)) return *read;  // "is holding balloons"
     if (!c_.peek(Class::like) && c_.peek(Class::relation) && !c_.peek(Class::flipping))
         return related(subjects.front());
     // "is replaced by a cat", "is painted blue", "is removed"

@@ -286,6 +286,10 @@ bool Reader::turn_clause() {
         if (!target.found()) return false;
         c_.at = whole.at;
         d_.mention(target);
+        Cursor from = c_;  // "the pillow's color from green to orange"
+        Attribute old;
+        if (from.take(Class::from) && from.take_attribute(old, false) && from.peek(Class::to))
+            c_.at = from.at;
         while (c_.take(Class::to) || c_.take(Class::into) || c_.take(Class::from)) {}
         if (c_.at_end_of_clause()) return fail(reason::Incomplete);
         return complement({target});
