@@ -110,6 +110,10 @@ bool Cursor::take_graded(Attribute& attribute) {
             if (attribute.quality != Quality::Colour && attribute.quality != Quality::Shift)
                 attribute.quality = Quality::State;
         }
+        if (attribute.quality == Quality::Colour) {  // "less red" of a red bear is no red
+            if (more) attribute.value = "more " + attribute.value;
+            attribute.typed = attribute.value;
+        }
         if (more && attribute.quality == Quality::State) attribute.value = "more " + attribute.value;
         return true;
     }

@@ -174,6 +174,13 @@ void Reader::skip_rest() {
     }
     if (!changes || (!ahead.take(Class::rather_than) && !ahead.take(Class::except))) return;
     Cursor thing = ahead;
+    Cursor part = ahead;
+    if (c_.peek(Class::except) && part.take_phrase(other) && is_part(other) &&
+        d_.things_named(other).empty()) {  // "blue except for the head": no step says it
+        c_.at = part.at;
+        d_.refuse(reason::NotASentence);
+        return;
+    }
     if (thing.take_phrase(other) && d_.resolve(other).found()) c_.at = thing.at;
     else if (ahead.take_attribute(attribute, false)) c_.at = ahead.at;
 }

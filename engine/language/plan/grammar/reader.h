@@ -44,6 +44,7 @@ private:
     // reader_verbs.cpp: imperatives
     bool verb_clause();
     bool try_verbs();
+    void leave_as_it_is(const Phrase& phrase);
     bool keep_clause();
     bool make_clause();
     bool paint_clause();

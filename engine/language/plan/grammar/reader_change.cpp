@@ -76,7 +76,7 @@ bool Reader::material_of(const Targets& targets) {
         if (!c_.peek(Class::made_of)) return false;
         Phrase stuff;
         const bool noun = ahead.take_phrase(stuff) && !stuff.noun.empty() && !stuff.definite &&
-                          d_.things_named(stuff).empty();
+                          d_.things_named(stuff).empty() && (kinds_of(stuff.noun) & (Animal | Person)) == 0;
         if (!noun) return false;
         found.push_back(material_attribute(stuff.typed));
     }

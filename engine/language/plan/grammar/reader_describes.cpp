@@ -164,6 +164,7 @@ bool Reader::describe_beside(const Phrase& phrase) {
             described_ = found;
             posts(found);
         } else {
+            if (other.definite && !other.owner) return expect(other).found();
             const auto more = d_.add(other, "beside", focus.found() ? Targets{focus} : Targets{});
             nested(more, focus);
             posts(more);
@@ -219,10 +220,17 @@ std::optional<bool> Reader::describe_on_top(const Phrase& phrase) {
     const auto focus = d_.focus();
     Cursor place = c_;
     const auto relation = place.take(Class::relation);
-    if (!relation || !place.at_end_of_clause() || !focus.found() || described_ || relation.value == "in")
-        return std::nullopt;
+    if (!relation || !focus.found() || described_) return std::nullopt;
+    Phrase backdrop;
+    const bool behind = relation.value == "in" && place.take_phrase(backdrop) &&
+                        has(Class::backdrop, backdrop.noun) && d_.things_named(backdrop).empty();
+    if (!place.at_end_of_clause() || (relation.value == "in" && !behind)) return std::nullopt;
     c_.at = place.at;
-    d_.mention(d_.add(phrase, is_worn(phrase) ? std::string_view("worn by") : relation.value, {focus}));
+    d_.mention(d_.add(phrase,
+                      behind            ? std::string_view("behind")
+                      : is_worn(phrase) ? std::string_view("worn by")
+                                        : relation.value,
+                      {focus}));
     return true;
 }
 

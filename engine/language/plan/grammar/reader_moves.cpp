@@ -84,6 +84,10 @@ bool Reader::move_to(const Target& target, const Match& relation) {
         return true;
     }
     if (target.reference == place.reference) return fail(reason::Incomplete);
+    if (name == "on" && place.thing && !where.attributes.empty() && !where.definite) {
+        d_.already_so();  // "put it on blue grass"
+        return apply_all({place}, where.attributes);
+    }
     const bool usual = name == "on" && target.thing && place.thing &&
                        !d_.scene().things[*place.thing].is_ground && d_.scene().things.size() == 2;
     const bool worn = target.thing && d_.scene().things[*target.thing].is_worn && d_.can_wear(place);
