@@ -3,7 +3,7 @@ import json
 import pathlib
 import unittest
 
-from program import ProgramTest, run
+from program import SHARED, ProgramTest, run
 
 ASSETS = pathlib.Path(__file__).resolve().parents[2] / "assets"
 QUICK = ["--turntable-frames", 3, "--turntable-size", 64]
@@ -99,9 +99,29 @@ class Steps(ProgramTest):
         self.assertEqual(report["changed_outside_label"], 0)
         self.assertGreater(report["labelled"], 0)
         self.assertLess(report["labelled"], report["splats"] / 3)
-        process = self.edit("paint the bear's ears blue", "--overwrite")
+        process = self.edit("paint the bear's ears blue")
         self.assertEqual(process.returncode, 2)
         self.assertIn("no word for the part \"ears\"", process.stderr)
+
+    @unittest.skipUnless((SHARED / "goldens/unet_sd1").is_dir(), "[skip] the small networks are not there")
+    def test_a_whole_scene_is_changed_by_a_model_of_an_open_vocabulary_alone(self):
+        process = self.edit("turn the scene into a watercolor")
+        self.assertEqual(process.returncode, 2)
+        self.assertIn("Stable Diffusion", process.stderr)
+        goldens, model = SHARED.resolve() / "goldens", self.folder / "model"
+        model.mkdir()
+        for name, case in [("unet", "unet_sd1"), ("vae", "vae"), ("text_encoder", "clip_text_sd1"),
+                           ("tokenizer", "pipeline_sd1/tokenizer"), ("scheduler", "pipeline_sd1/scheduler")]:
+            (model / name).symlink_to(goldens / case)
+        (model / "model_index.json").write_text("{}")
+        process = self.edit("turn the scene into a watercolor", "--model", model, "--method", "views",
+                            "--image-size", 64, "--views", 4, "--edited-views", 4, "--fit-steps", 10,
+                            "--rounds", 1)
+        self.assertEqual(process.returncode, 0, process.stderr)
+        report = self.report()
+        self.assertEqual(report["labelled"], report["splats_before"])
+        recipe = json.loads((self.out / "recipe.json").read_text())
+        self.assertTrue(recipe["request"]["whole_scene"])
 
     def test_what_is_no_edit_is_refused_in_one_sentence(self):
         for prompt, word in [("remove the bear", "not removed"), ("ein blauer Bär auf dem Gras", "English"),

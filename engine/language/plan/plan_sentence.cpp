@@ -70,10 +70,13 @@ std::optional<Plan> with_a_slip(const SentenceWords& sentence, const SceneWords&
         const Word typed = word;
         for (auto& other : slips_of(typed.text, needed, MostSlips)) {
             const bool is_needed = std::find(needed.begin(), needed.end(), other) != needed.end();
-            const bool thing =
-                has(Class::worn, other) || has(Class::held, other) || has(Class::colour, other);
-            if (!is_needed && (towards_scene_only || !thing)) continue;
-            if (!is_needed && !has(Class::colour, other) && !may_name_thing(words, at)) continue;
+            const bool thing = has(Class::worn, other) || has(Class::held, other);
+            // "biger", "waring": a form that some word could have, and no word of the list
+            const bool describes =
+                has(Class::colour, other) ||
+                (kinds_of(typed.text) == 0 && (is_grammatical(other) || has(Class::material, other)));
+            if (!is_needed && (towards_scene_only || (!thing && !describes))) continue;
+            if (!is_needed && !describes && !may_name_thing(words, at)) continue;
             word = word_of(std::move(other));
             auto plan = Reader(words, scene, source).read();
             if (!plan.is_refusal()) return plan;

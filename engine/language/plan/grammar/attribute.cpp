@@ -110,6 +110,10 @@ bool Cursor::take_graded(Attribute& attribute) {
             if (attribute.quality != Quality::Colour && attribute.quality != Quality::Shift)
                 attribute.quality = Quality::State;
         }
+        if (attribute.quality == Quality::Colour) {  // "less red" of a red bear is no red
+            if (more) attribute.value = "more " + attribute.value;
+            attribute.typed = attribute.value;
+        }
         if (more && attribute.quality == Quality::State) attribute.value = "more " + attribute.value;
         return true;
     }
@@ -136,8 +140,8 @@ bool Cursor::take_other_attribute(Attribute& attribute, bool in_phrase) {
         (kinds & Kind::Adjective) != 0 && (kinds & (Concrete | Perhaps)) == 0 && noun_length() <= 1;
     const bool noun_follows = in_phrase && noun_length(1) > 0 && !ends_phrase(1, true);
     const bool ends = ends_phrase(1, true) && (kinds & Other) == 0;
-    if (only_adjective && !peek(Class::part) && !peek(Class::worn) && (noun_follows || ends) &&
-        !is_scene_noun(word().text)) {
+    if (only_adjective && !peek(Class::colour_word) && !peek(Class::part) && !peek(Class::worn) &&
+        (noun_follows || ends) && !is_scene_noun(word().text)) {
         attribute = {Quality::Other, word().text, word().text, ""};
         ++at;
         return true;

@@ -229,6 +229,7 @@ void Cursor::close_noun(Phrase& phrase, std::size_t begin, std::size_t end) cons
 
 bool Cursor::reads_as_noun(const Phrase& phrase) const {
     if (is_scene_noun(word().singular)) return true;
+    if (peek(Class::colour) && is(Class::colour_word, 1)) return false;  // "a violet color"
     bool last = ends_phrase(1, true);
     const std::size_t length = noun_length();
     if (length > 1) return true;
@@ -266,6 +267,15 @@ bool Cursor::reads_as_noun(const Phrase& phrase) const {
            (kinds & (Plant | Food)) != 0;
 }
 
+/// Tells whether nothing but a colour, a ground, a material or a pattern stands before the end.
+bool Cursor::describes_to_the_end() const {
+    for (const auto kind : {Class::colour, Class::ground, Class::material, Class::pattern}) {
+        Cursor behind = *this;
+        if (behind.take(kind) && behind.at_end_of_clause()) return true;
+    }
+    return false;
+}
+
 /// Nouns one behind the other: "fire truck".
 void Cursor::take_nouns(Phrase& phrase, bool split, std::size_t length) {
     const std::size_t begin = at;
@@ -277,6 +287,7 @@ void Cursor::take_nouns(Phrase& phrase, bool split, std::size_t length) {
         if (owner &&
             (split || peek(Class::part) || peek(Class::colour_word) || is_scene_noun(word().singular)))
             break;
+        if (owner && describes_to_the_end()) break;  // "make the bear violet", "make the grass gravel"
         Attribute ignored;
         Cursor ahead = *this;
         const std::size_t more = noun_length();
@@ -349,6 +360,7 @@ void Cursor::take_owner_behind(Phrase& phrase, bool split) {
         !(peek(Class::verb_face) && (peek(Class::direction, 1) || peek(Class::definite, 1))) &&
         !peek(Class::pose) && !peek(Class::state);
     if (is_owner_mark() || plural_owner || bare_owner) {
+        const std::size_t mark = at;
         if (is_owner_mark()) ++at;
         Phrase owned;
         owned.begin = phrase.begin;
@@ -364,9 +376,21 @@ void Cursor::take_owner_behind(Phrase& phrase, bool split) {
             take_owner_behind(phrase);
             return;
         }
-        at = before;
+        Cursor said = *this;  // "the bear's blue", where nothing is owned
+        said.at = before;
+        const auto attributes = said.take_attributes();
+        const bool described = !attributes.empty() &&
+                               std::none_of(attributes.begin(), attributes.end(), [](const Attribute& each) {
+                                   return each.quality == Quality::Other;
+                               });
+        at = described ? before : mark;
         return;
     }
+    take_whole_behind(phrase);
+}
+
+/// "(ear) of the bear", "(bowl) of fruit".
+void Cursor::take_whole_behind(Phrase& phrase) {
     if (!peek(Class::of)) return;
     Cursor ahead = *this;
     ahead.take(Class::of);

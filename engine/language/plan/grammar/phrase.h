@@ -97,6 +97,8 @@ private:
     void take_nouns(Phrase& phrase, bool split, std::size_t length);
     bool take_body(Phrase& phrase, bool split);
     void take_owner_behind(Phrase& phrase, bool split = false);
+    void take_whole_behind(Phrase& phrase);
+    bool describes_to_the_end() const;
     bool reads_as_noun(const Phrase& phrase) const;
     void close_noun(Phrase& phrase, std::size_t begin, std::size_t end) const;
     std::span<const Word> words_;

@@ -23,6 +23,18 @@ Plan Reader::failure() const {
     return refusal(reason_.empty() ? reason::NotASentence : reason_);
 }
 
+/// "can the bear be blue?": a wish. Steps over its first word.
+bool Reader::wishes(const Cursor& start) {
+    Cursor at = start;
+    Phrase subject;
+    if (!at.take(Class::wish) || !at.take_phrase(subject) || !d_.resolve(subject).found()) return false;
+    if (!at.peek(Class::copula) && !at.peek(Class::wearing) && !at.peek(Class::having) &&
+        !at.peek(Class::holding) && !at.peek(Class::verb_become))
+        return false;
+    c_.at = start.at + 1;
+    return true;
+}
+
 std::optional<Plan> Reader::whole_sentence() {
     Cursor at = c_;
     const auto ends = [](Cursor here) {
@@ -46,6 +58,7 @@ std::optional<Plan> Reader::whole_sentence() {
         if (here.peek(Class::injection)) return refusal(reason::NotAnEdit);
     if (at.done()) return refusal(c_.done() ? reason::NotASentence : reason::NotAnEdit);
     if (at.peek(Class::request)) return std::nullopt;
+    if (wishes(at)) return std::nullopt;
     bool asked = at.peek(Class::question_word).length > 0;
     Cursor last = c_;
     bool mark = false;
@@ -64,7 +77,8 @@ std::optional<Plan> Reader::whole_sentence() {
             program = program || here.peek(Class::meta_noun).length > 0;
         bool scene_too = false;
         for (Cursor here = at; !here.done(); ++here.at)
-            scene_too = scene_too || here.is_scene_noun(here.word().singular);
+            scene_too = scene_too || here.is_scene_noun(here.word().singular) ||
+                        here.peek(Class::style);  // "convert the scene to a cartoon"
         if (!other || (program && !scene_too && verb.length >= 1 && !at.is(Class::word_make)))
             return refusal(reason::NotAnEdit);
     }
@@ -118,7 +132,8 @@ void Reader::skip_lead_in() {
             if (ahead.done()) break;
             const bool verb_of_ours = found.length == 1 &&
                                       (c_.peek(Class::verb_make) || c_.peek(Class::verb_add)) &&
-                                      !c_.is(Class::word_want) && !c_.is(Class::word_try);
+                                      !c_.is(Class::word_want) && !c_.is(Class::word_try) &&
+                                      !starts_verb(found.length);  // "let's paint it"
             if (verb_of_ours) break;
             c_.at = ahead.at;
             requested_ = true;
@@ -159,6 +174,13 @@ void Reader::skip_rest() {
     }
     if (!changes || (!ahead.take(Class::rather_than) && !ahead.take(Class::except))) return;
     Cursor thing = ahead;
+    Cursor part = ahead;
+    if (c_.peek(Class::except) && part.take_phrase(other) && is_part(other) &&
+        d_.things_named(other).empty()) {  // "blue except for the head": no step says it
+        c_.at = part.at;
+        d_.refuse(reason::NotASentence);
+        return;
+    }
     if (thing.take_phrase(other) && d_.resolve(other).found()) c_.at = thing.at;
     else if (ahead.take_attribute(attribute, false)) c_.at = ahead.at;
 }

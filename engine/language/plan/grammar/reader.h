@@ -26,6 +26,7 @@ private:
     enum class Frame { None, Make, Turn, Paint, Replace, Add, Give, Remove, Describe };
 
     // reader.cpp: the whole sentence, and what stands before and between clauses
+    bool wishes(const Cursor& start);
     std::optional<Plan> whole_sentence();
     void skip_lead_in();
     bool skip_noise();
@@ -43,6 +44,7 @@ private:
     // reader_verbs.cpp: imperatives
     bool verb_clause();
     bool try_verbs();
+    void leave_as_it_is(const Phrase& phrase);
     bool keep_clause();
     bool make_clause();
     bool paint_clause();
@@ -107,6 +109,8 @@ private:
     std::optional<bool> describe_instead(const Phrase& phrase);
     bool describe_beside(const Phrase& phrase);
     bool stands_by_other(const Phrase& phrase) const;
+    bool describe_pattern(const Phrase& phrase);
+    std::optional<bool> describe_on_top(const Phrase& phrase);
     bool describe_new(const Phrase& phrase);
     bool describe_other(const Phrase& phrase);
     bool skip_instead();

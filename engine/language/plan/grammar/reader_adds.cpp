@@ -90,6 +90,10 @@ bool Reader::place_at(const Phrase& phrase, const Target& thing, const Target& b
         return true;
     }
     if (anchor.kind == Target::Kind::Ambiguous) return fail(reason::Ambiguous);
+    if (!anchor.found() && relation == "in" && has(Class::backdrop, where.noun) && focus.found()) {
+        d_.set_anchor(thing, "behind", focus);  // "in the background"
+        return true;
+    }
     if (!anchor.found()) {
         if (is_ground(where) && !where.definite) {
             d_.ground(where);

@@ -76,7 +76,7 @@ bool Reader::material_of(const Targets& targets) {
         if (!c_.peek(Class::made_of)) return false;
         Phrase stuff;
         const bool noun = ahead.take_phrase(stuff) && !stuff.noun.empty() && !stuff.definite &&
-                          d_.things_named(stuff).empty();
+                          d_.things_named(stuff).empty() && (kinds_of(stuff.noun) & (Animal | Person)) == 0;
         if (!noun) return false;
         found.push_back(material_attribute(stuff.typed));
     }
@@ -391,7 +391,8 @@ bool Reader::as_much_as(const Targets& targets) {
 bool Reader::looks_somewhere(const Targets& targets) {
     Cursor ahead = c_;
     if (!ahead.take(Class::look_word)) return false;
-    const auto way = ahead.take(Class::direction);
+    auto way = ahead.take(Class::viewer);
+    if (!way) way = ahead.take(Class::direction);
     if (!way || !ahead.at_end_of_clause()) return false;
     c_.at = ahead.at;
     const std::string side(way.value);
@@ -437,7 +438,9 @@ bool Reader::complement_once(const Targets& targets) {
     if (c_.peek(Class::verb_face) || c_.is(Class::word_facing)) {
         Cursor side = c_;
         ++side.at;
-        if (const auto direction = side.take(Class::direction)) {
+        auto direction = side.take(Class::viewer);
+        if (!direction) direction = side.take(Class::direction);
+        if (direction) {
             c_.at = side.at;
             for (const auto& target : targets)
                 d_.step(Operation::Transform, target,

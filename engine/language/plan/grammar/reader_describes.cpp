@@ -49,6 +49,11 @@ bool Reader::describe_part(const Phrase& phrase, const Target& found) {
         return describe_more();
     }
     if (!apply_all({found}, attributes) && !complement({found})) return fail(reason::Incomplete);
+    Cursor whose = c_;  // "blue ears for the bear"
+    Phrase owner;
+    if (whose.is(Class::word_for) && ++whose.at && whose.take_phrase(owner) &&
+        d_.resolve(owner).reference.root() == found.reference.root())
+        c_.at = whose.at;
     return describe_more();
 }
 
@@ -129,6 +134,12 @@ std::optional<bool> Reader::describe_place(const Phrase& phrase, bool bare) {
         d_.environment(phrase.typed);
         return true;
     }
+    if (bare && has(Class::environment, phrase.noun)) {  // "golden sunlight"
+        std::string text;
+        for (const auto& attribute : phrase.attributes) text += attribute.typed + " ";
+        d_.environment(text + phrase.typed);
+        return true;
+    }
     return std::nullopt;
 }
 
@@ -153,6 +164,7 @@ bool Reader::describe_beside(const Phrase& phrase) {
             described_ = found;
             posts(found);
         } else {
+            if (other.definite && !other.owner) return expect(other).found();
             const auto more = d_.add(other, "beside", focus.found() ? Targets{focus} : Targets{});
             nested(more, focus);
             posts(more);
@@ -191,6 +203,37 @@ bool Reader::stands_by_other(const Phrase& phrase) const {
     return (kinds_of(phrase.noun) & kinds_of(d_.scene().things[*focus.thing].noun) & Concrete) == 0;
 }
 
+/// "a striped pattern on the bear".
+bool Reader::describe_pattern(const Phrase& phrase) {
+    const auto focus = d_.focus();
+    if (!focus.found() || !own_pattern(focus, phrase)) return false;
+    Cursor place = c_;
+    Phrase where;
+    if ((place.take(Class::relation) || place.take(Class::to)) && place.take_phrase(where) &&
+        d_.resolve(where).reference == focus.reference)
+        c_.at = place.at;
+    return true;
+}
+
+/// "pink frosting on top": of the thing that the sentence is about; nothing for other phrases.
+std::optional<bool> Reader::describe_on_top(const Phrase& phrase) {
+    const auto focus = d_.focus();
+    Cursor place = c_;
+    const auto relation = place.take(Class::relation);
+    if (!relation || !focus.found() || described_) return std::nullopt;
+    Phrase backdrop;
+    const bool behind = relation.value == "in" && place.take_phrase(backdrop) &&
+                        has(Class::backdrop, backdrop.noun) && d_.things_named(backdrop).empty();
+    if (!place.at_end_of_clause() || (relation.value == "in" && !behind)) return std::nullopt;
+    c_.at = place.at;
+    d_.mention(d_.add(phrase,
+                      behind            ? std::string_view("behind")
+                      : is_worn(phrase) ? std::string_view("worn by")
+                                        : relation.value,
+                      {focus}));
+    return true;
+}
+
 /// A thing that the scene does not show.
 bool Reader::describe_new(const Phrase& phrase) {
     const auto focus = d_.focus();
@@ -198,8 +241,10 @@ bool Reader::describe_new(const Phrase& phrase) {
         missing_ = d_.source_word();
         return fail(reason::NotInScene);
     }
+    if (describe_pattern(phrase)) return true;
     if (!is_thing(phrase)) return fail(reason::NotASentence);
     const bool bare = c_.at_end_of_clause();
+    if (const auto placed = describe_on_top(phrase)) return *placed;
     if (const auto read = describe_place(phrase, bare)) return *read;
     const bool wears = is_worn(phrase) || (is_held(phrase) && described_);
     const auto bearer = described_ && described_->found() ? *described_ : focus;
@@ -221,9 +266,8 @@ bool Reader::describe_new(const Phrase& phrase) {
         Targets made;
         return place_new(phrase, made) && describe_more();
     }
-    if (later || (wears && focus.found() && (d_.can_wear(focus)) && is_worn(phrase))) {
+    if (later || (wears && focus.found() && d_.can_wear(focus) && is_worn(phrase)))
         return describe_beside(phrase);
-    }
     const bool many = phrase.count == "some" || (phrase.plural && phrase.count.empty());
     if (many && !has(Class::pair_noun, phrase.noun)) {  // "lots of flowers in the grass"
         const auto made = d_.add(phrase, "in", {d_.scene_target()});

@@ -84,6 +84,10 @@ bool Reader::move_to(const Target& target, const Match& relation) {
         return true;
     }
     if (target.reference == place.reference) return fail(reason::Incomplete);
+    if (name == "on" && place.thing && !where.attributes.empty() && !where.definite) {
+        d_.already_so();  // "put it on blue grass"
+        return apply_all({place}, where.attributes);
+    }
     const bool usual = name == "on" && target.thing && place.thing &&
                        !d_.scene().things[*place.thing].is_ground && d_.scene().things.size() == 2;
     const bool worn = target.thing && d_.scene().things[*target.thing].is_worn && d_.can_wear(place);
@@ -157,7 +161,8 @@ bool Reader::move_clause() {
         (!way.word().text.empty() && std::isdigit(static_cast<unsigned char>(way.word().text[0])) != 0) ||
         way.peek(Class::number) || way.is(Class::word_from);
     Cursor position = c_;
-    const bool stands = position.peek(Class::pose) || position.peek(Class::flipping);
+    const bool stands =
+        (position.peek(Class::pose) && !position.peek(Class::direction)) || position.peek(Class::flipping);
     if (lift && (c_.at_end_of_clause() || !goes)) {
         for (const auto& target : targets) d_.step(Operation::Transform, target, std::string(lift.value));
         return c_.at_end_of_clause() || ends_well();
@@ -356,8 +361,9 @@ bool Reader::face_clause() {
     if (!objects(targets)) return false;
     if (c_.take(Class::to) && !c_.peek(Class::verb_face)) --c_.at;
     if (c_.peek(Class::verb_face)) ++c_.at;
-    else if (verb.at > 0 && !c_.peek(Class::direction)) return false;
-    const auto way = c_.take(Class::direction);
+    else if (verb.at > 0 && !c_.peek(Class::direction) && !c_.peek(Class::viewer)) return false;
+    auto way = c_.take(Class::viewer);
+    if (!way) way = c_.take(Class::direction);
     if (!way) return false;
     std::string side(way.value == "up" ? "back" : way.value == "down" ? "forward" : way.value);
     for (const auto& target : targets) d_.step(Operation::Transform, target, "face " + side);

@@ -182,10 +182,13 @@ bool Reader::has_list(const Target& subject, std::string_view relation) {
             c_.take(Class::without);
             return lack_list(subject);
         }
+        if (c_.is(Class::word_nothing) && (c_.peek(Class::contrast, 1) || c_.peek(Class::except, 1)))
+            c_.at += 2;  // "wearing nothing but a tie"
         if (c_.is(Class::word_nothing)) return false;
         if (!c_.take_phrase(phrase) || phrase.naming != Naming::Thing) {
             // "with blue" and "with stripes" have no noun
             c_.at = start;
+            if (relation == "held by") return false;  // "eats honey" is no colour
             const auto attributes = c_.take_attributes();
             if (!apply_all({subject}, attributes)) return false;
             continue;

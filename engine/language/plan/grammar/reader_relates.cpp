@@ -128,6 +128,8 @@ bool Reader::between(const Target& subject, const Phrase& phrase) {
             d_.add(second, "right of", {subject});
             return true;
         }
+        for (const auto& each : {phrase, second})  // "the camera" is no thing of the scene, and none to add
+            if (each.definite && !d_.resolve(each).found()) return expect(each).found();
         if (subject.kind == Target::Kind::There) {
             for (const auto& each : {phrase, second})
                 if (!d_.resolve(each).found()) d_.add(each, "beside", {subject});
@@ -152,6 +154,8 @@ bool Reader::related(const Target& subject) {
         c_.at = start;
         return false;
     }
+    if (relation.value == "in" && phrase.indefinite && is_worn(phrase) && d_.can_wear(subject))
+        return own(subject, phrase, "worn by");  // "in a hood"
     if (relation.value == "between" && c_.peek(Class::conjunction)) {
         if (between(subject, phrase)) return true;
     }
@@ -183,7 +187,9 @@ bool Reader::relate_there(const Target& subject, std::string_view relation, cons
         return true;
     }
     if (subject.step && subject.kind == Target::Kind::Made) {
-        d_.set_anchor(subject, relation, found);
+        const bool worn =
+            relation == "on" && has(Class::worn, subject.reference.root()) && d_.can_wear(found);
+        d_.set_anchor(subject, worn ? std::string_view("worn by") : relation, found);
         apply_all({found}, found.thing ? phrase.attributes : std::vector<Attribute>{});
         return true;
     }

@@ -189,6 +189,12 @@ bool Reader::shave_clause() {
     return true;
 }
 
+/// Nothing is asked of it. A part of what just changed is another matter: no step leaves it out.
+void Reader::leave_as_it_is(const Phrase& phrase) {
+    if (d_.size() > 0 && is_part(phrase) && d_.things_named(phrase).empty()) d_.refuse(reason::NotASentence);
+    else d_.nothing_asked();
+}
+
 /// "keep the hat", "leave the grass as it is", "everything stays": nothing is asked of them.
 bool Reader::keep_clause() {
     Cursor ahead = c_;
@@ -207,6 +213,7 @@ bool Reader::keep_clause() {
             d_.nothing_asked();
             return true;
         }
+        const Phrase kept = phrase;
         while (true) {
             Cursor more = object;
             more.take_mark(',');
@@ -231,7 +238,7 @@ bool Reader::keep_clause() {
                !object.peek(Class::conjunction))
             ++object.at;
         c_.at = object.at;
-        d_.nothing_asked();
+        leave_as_it_is(kept);
         return true;
     }
     Phrase subject;

@@ -285,7 +285,7 @@ bool Reader::negative_clause() {
         if (!probe.take_attribute(attribute, false) && behind.take_phrase(other) &&
             other.naming == Naming::Thing && behind.at_end_of_clause() && (d_.size() > 0 || !behind.done())) {
             c_.at = behind.at;  // "not the hat, the bear should be yellow"
-            d_.nothing_asked();
+            leave_as_it_is(other);
             return true;
         }
         const auto focus = d_.last() ? *d_.last() : d_.focus();
@@ -345,8 +345,11 @@ std::optional<bool> Reader::has_something(const Targets& subjects) {
 
 /// "is blue", "is painted blue", "is replaced by a cat", "is behind the statue".
 bool Reader::is_somehow(const Targets& subjects) {
+    if (c_.peek(Class::look_word).length > c_.peek(Class::copula).length) c_.take(Class::look_word);
     c_.take(Class::copula);
     c_.take(Class::as_well);
+    if (c_.peek(Class::holding) || c_.peek(Class::wearing))
+        if (const auto read = has_something(subjects)) return *read;  // "is holding balloons"
     if (!c_.peek(Class::like) && c_.peek(Class::relation) && !c_.peek(Class::flipping))
         return related(subjects.front());
     // "is replaced by a cat", "is painted blue", "is removed"
@@ -394,6 +397,11 @@ bool Reader::predicate(const Targets& subjects) {
     }
     if (modal && c_.take(Class::negation)) {
         if (c_.peek(Class::copula)) c_.take(Class::copula);
+        if (c_.is(Class::word_here) || c_.is(Class::word_there)) {  // "should not be here"
+            ++c_.at;
+            for (const auto& subject : subjects) d_.remove(subject);
+            return true;
+        }
         if (c_.take(Class::having) || c_.take(Class::wearing) || c_.take(Class::holding))
             return lack_list(subjects.front()) || back();
         const auto attributes = c_.take_attributes();

@@ -272,6 +272,7 @@ bool Reader::turn_clause() {
     const bool colour_first = c_.peek(Class::verb_turn).length > 0;
     if (!colour_first || !c_.take(Class::verb_turn)) return false;
     if (c_.done()) return fail(reason::Incomplete);
+    if (swaps_colours()) return true;
     Targets targets;
     // "change the color of the bear to blue", "change bear color green"
     Cursor ahead = c_;
@@ -286,6 +287,10 @@ bool Reader::turn_clause() {
         if (!target.found()) return false;
         c_.at = whole.at;
         d_.mention(target);
+        Cursor from = c_;  // "the pillow's color from green to orange"
+        Attribute old;
+        if (from.take(Class::from) && from.take_attribute(old, false) && from.peek(Class::to))
+            c_.at = from.at;
         while (c_.take(Class::to) || c_.take(Class::into) || c_.take(Class::from)) {}
         if (c_.at_end_of_clause()) return fail(reason::Incomplete);
         return complement({target});
@@ -344,8 +349,9 @@ bool Reader::swaps_colours() {
     if (!ahead.take_attribute(old, false) || old.quality != Quality::Colour) return false;
     const bool joint = ahead.is(Class::word_with) || ahead.is(Class::word_by) || ahead.is(Class::word_for) ||
                        ahead.is(Class::word_to);
-    if (!joint) return false;
+    if (!joint && !ahead.peek(Class::into)) return false;
     ++ahead.at;
+    ahead.take(Class::article);
     if (!ahead.take_attribute(made, false) || made.quality != Quality::Colour || !ahead.at_end_of_clause())
         return false;
     Targets coloured;
@@ -354,7 +360,7 @@ bool Reader::swaps_colours() {
         if (std::find(things[i].attributes.begin(), things[i].attributes.end(), old.value) !=
             things[i].attributes.end())
             coloured.push_back(d_.target_of_thing(i));
-    if (coloured.empty()) return fail(reason::Ambiguous);
+    if (coloured.empty()) return false;
     c_.at = ahead.at;
     return apply_all(coloured, {made});
 }

@@ -142,6 +142,8 @@ std::vector<std::string> slips_of(std::string_view typed, std::span<const std::s
             cost += 10;
         }
         if (is_needed) cost -= 2;
+        // what sentences are made of, before parts of rare names ("bale" of "hay bale")
+        if (has(Class::colour, word) || has(Class::worn, word) || is_grammatical(word)) cost -= 1;
         if (std::none_of(found.begin(), found.end(), [&](const auto& each) { return each.second == word; }))
             found.emplace_back(cost, word);
     });
