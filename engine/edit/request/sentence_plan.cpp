@@ -173,6 +173,8 @@ bool is_planned(const EditRequest& request) {
            !request.source.empty();
 }
 
+bool is_caption(const EditRequest& request) { return is_description(language::Sentence(request.prompt)); }
+
 bool says_itself(const EditRequest& request, const plan::StepSentence& words, const News& news) {
     const auto guessed = with_target(request, news);
     const language::EditSentence sentence(language::Sentence(request.prompt),
