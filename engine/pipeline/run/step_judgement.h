@@ -25,6 +25,8 @@ struct StepFigures {
     double old_left = 0;             // replace: pixels of the old thing that mainly show splats of it
     double new_shown = 0;            // replace: pixels of the new thing, as a share of those of the old one
     double seen = 0;                 // add: views that show the new thing
+    bool beside = false;             // add: the sentence puts it to a side of the thing
+    double on_thing = 0;             // add: pixels of the new thing that showed the thing before
     std::size_t added = 0;           // new splats
     std::size_t changed_rows = 0;    // splats outside the label that changed
 };

@@ -64,6 +64,11 @@ DOCTEST_TEST_CASE("judgement of a step: each way of failing has its reason, and 
     }
     DOCTEST_CHECK(contains(reason(EditMode::Add, &StepFigures::added, 0), "no hat was added"));
     DOCTEST_CHECK(contains(reason(EditMode::Add, &StepFigures::seen, 0.1), "from 10 % of the views"));
+    auto smeared = right(EditMode::Add);
+    smeared.on_thing = 0.9;
+    DOCTEST_CHECK(judge_step(smeared).passed());  // worn
+    smeared.beside = true;
+    DOCTEST_CHECK(contains(judge_step(smeared).reason, "on the bear, not beside it"));
     DOCTEST_CHECK(contains(reason(EditMode::Replace, &StepFigures::old_left, 0.6), "60 % of the bear"));
     DOCTEST_CHECK(contains(reason(EditMode::Replace, &StepFigures::new_shown, 0.01), "hardly any cat"));
 }
