@@ -27,7 +27,8 @@ constexpr double MostOldLeft = 0.25;      // right edits leave nothing
 constexpr double LeastNewShown = 0.15;    // what comes may be smaller
 constexpr double LeastSeen = 0.25;        // what is on one side is seen from about half of the views
 constexpr double MostOnThing = 0.5;       // what stands beside hides the thing from two sides only
-constexpr double LeastScore = 0.1;        // no change scores about zero
+constexpr double LeastLikeness = 0.15;  // what keeps the old thing's colour scores half of what another does
+constexpr double LeastScore = 0.1;      // no change scores about zero
 
 constexpr double Percent = 100;
 
@@ -190,7 +191,7 @@ Verdict fault_of_surroundings(const StepFigures& figures) {
 /// The better of two scores counts: the encoder misses some things in the redrawn views, and others in the
 /// scene.
 Verdict fault_of_meaning(const StepFigures& figures) {
-    if (figures.is_lump)
+    if (figures.likeness && *figures.likeness < LeastLikeness)
         return Fault{fmt::format("what came is like no known thing, and hardly like a {}", figures.news),
                      AnotherTry};
     if (!figures.pictures && !figures.scene) return {};
@@ -223,7 +224,7 @@ StepFigures measure_step(EditJob& job) {
         figures.mode == edit::EditMode::Modify ? sentence.target() : new_thing(sentence, figures.mode);
     if (const auto& verdict = job.edited().verdict) {
         figures.pictures = verdict->score;
-        figures.is_lump = !verdict->score && verdict->is_poor();
+        figures.likeness = verdict->likeness;
     }
     figures.scene = judge(job.model(), sentence, sentence.prompt(), seen.pairs()).score;
     figures.changed = share(shares.changed, shares.thing);
@@ -261,7 +262,7 @@ nlohmann::ordered_json judgement_to_json(const StepJudgement& judgement) {
     if (!judgement.passed()) json["reason"] = judgement.reason, json["remedy"] = judgement.remedy;
     json["score_pictures"] = score(figures.pictures);
     json["score_scene"] = score(figures.scene);
-    if (figures.is_lump) json["is_lump"] = true;
+    if (figures.likeness) json["likeness"] = *figures.likeness;
     json["changed"] = figures.changed;
     json["spilled"] = figures.spilled;
     json["changed_rows_outside"] = figures.changed_rows;

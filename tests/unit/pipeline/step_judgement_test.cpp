@@ -60,7 +60,7 @@ DOCTEST_TEST_CASE("judgement of a step: each way of failing has its reason, and 
         DOCTEST_CHECK(contains(reason(mode, &StepFigures::changed_rows, 3), "3 splats outside"));
         DOCTEST_CHECK(contains(reason(mode, &StepFigures::changed, 0.04), "only 4 %"));
         DOCTEST_CHECK(contains(reason(mode, &StepFigures::spilled, 0.2), "20 % of what surrounds the bear"));
-        DOCTEST_CHECK(contains(reason(mode, &StepFigures::is_lump, true), "like no known thing"));
+        DOCTEST_CHECK(contains(reason(mode, &StepFigures::likeness, 0.05), "like no known thing"));
     }
     DOCTEST_CHECK(contains(reason(EditMode::Add, &StepFigures::added, 0), "no hat was added"));
     DOCTEST_CHECK(contains(reason(EditMode::Add, &StepFigures::seen, 0.1), "from 10 % of the views"));
