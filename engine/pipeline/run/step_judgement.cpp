@@ -20,7 +20,8 @@ constexpr double LeastOfView = 0.002;   // share of a picture's pixels in which 
 
 // Thresholds lie far from the figures of right edits, which must not be refused (METHOD.md, Judging what came
 // of it).
-constexpr double LeastChanged = 0.25;  // a look near the old one ("crimson", of red) changes less than others
+constexpr double LeastChanged = 0.25;     // right edits change most of the thing
+constexpr double LeastDyed = 0.05;        // a dye near the old colour (gray, of stone) hardly shows
 constexpr double LeastAddedChange = 0.1;  // what is added may look like what is behind it
 constexpr double MostSpilled = 0.02;      // soft edges of splats reach out of the masks
 constexpr double MostOldLeft = 0.25;      // right edits leave nothing
@@ -148,7 +149,9 @@ Verdict fault_of_rows(const StepFigures& figures) {
 }
 
 Verdict fault_of_amount(const StepFigures& figures) {
-    if (figures.mode == edit::EditMode::Add || figures.changed >= LeastChanged) return {};
+    const bool scored = figures.pictures || figures.scene;
+    if (figures.mode == edit::EditMode::Add || figures.changed >= (scored ? LeastChanged : LeastDyed))
+        return {};
     return Fault{
         fmt::format("only {:.0f} % of the {} changed visibly", Percent * figures.changed, figures.thing),
         "raise the strength, or say what differs more: the scene may show it already"};

@@ -91,6 +91,10 @@ DOCTEST_TEST_CASE("judgement of a step: the better score counts, and none is no 
     }
     figures.pictures = figures.scene = std::nullopt;
     DOCTEST_CHECK(judge_step(figures).passed());
+    figures.changed = 0.2;  // a dye near the colour that is there
+    DOCTEST_CHECK(judge_step(figures).passed());
+    figures.scene = 0.5;
+    DOCTEST_CHECK(contains(judge_step(figures).reason, "only 20 %"));
 }
 
 DOCTEST_TEST_CASE("judgement of a step: the report says what failed and what to try") {
