@@ -69,7 +69,8 @@ class Edits(ProgramTest):
         self.assertEqual([edit["name"] for edit in summary["edits"]], ["a blue bear on the grass"])
         self.assertEqual([label["name"] for label in summary["labels"]], ["bear"])
         again = self.folder / "again"
-        self.edit(again, "--use-label", scene=out / "edit.gsep")
+        # The bear is blue already: an edit that changes nothing counts as failed.
+        self.edit(again, "--use-label", "--keep-failed", scene=out / "edit.gsep")
         first, second = (json.loads((folder / "report.json").read_text()) for folder in (out, again))
         self.assertEqual(second["labelled"], first["labelled"] + first["added"] - first["removed"])
 
@@ -80,7 +81,7 @@ class Edits(ProgramTest):
         out = self.folder / "out"
         process = run("-q", "edit", scene, "--source", "bear", "--prompt", "a blue bear on the grass",
                       "--target", "blue",
-                      "--out", out, *QUICK, "--no-gate", "--least-confidence", 0)
+                      "--out", out, *QUICK, "--no-gate", "--least-confidence", 0, "--keep-failed")
         self.assertEqual(process.returncode, 0, process.stderr)
         self.assertEqual(len([line for line in process.stderr.splitlines() if "cannot be drawn" in line]), 1,
                          process.stderr)

@@ -53,6 +53,13 @@ class Steps(ProgramTest):
         self.assertEqual([step["done"] for step in report["steps"]], [True, False])
         self.assertIn("not moved", report["steps"][1]["reason"])
 
+    def test_an_order_or_a_telegram_is_told_as_a_caption(self):
+        for prompt in ["blue bear", "not red but blue"]:
+            process = self.edit(prompt, "--quality", "draft")
+            self.assertEqual(process.returncode, 0, process.stderr)
+            recipe = json.loads((self.out / "recipe.json").read_text())
+            self.assertEqual(recipe["request"]["prompt"], "a blue bear", prompt)
+
     # Edits that change next to nothing: so few optimisation steps move no colour far.
     FAILING = ["--fit-steps", 1, "--rounds", 1]
 

@@ -188,6 +188,8 @@ bool is_planned(const EditRequest& request) {
            !request.source.empty() && request.part_of.empty() && !request.whole_scene;
 }
 
+bool is_caption(const EditRequest& request) { return is_description(language::Sentence(request.prompt)); }
+
 bool says_itself(const EditRequest& request, const plan::StepSentence& words, const News& news) {
     if (!words.part_of.empty() || words.whole_scene || !words.instruction.empty()) return false;
     const auto guessed = with_target(request, news);

@@ -56,6 +56,9 @@ bool is_planned(const EditRequest& request);
 /// or one of what is around the source.
 bool is_told_as_typed(const EditRequest& request, const language::plan::Plan& plan);
 
+/// True for a sentence in the form of a caption ("a blue bear on the grass"), and no order or telegram.
+bool is_caption(const EditRequest& request);
+
 /// True where the typed sentence is read as the step already, by source, kind of change and new words.
 bool says_itself(const EditRequest& request, const language::plan::StepSentence& words,
                  const News& news = {});

@@ -60,8 +60,8 @@ Json compound_summary(const Json& edits) {
     for (const auto& [kind, reduction] : reductions)
         summary["compound_" + kind + "_l1_reduction"] = reduction.value();
     summary["compound_psnr_outside_db"] = outside.value();
-    summary["compound_splats_of_earlier_steps"] = rows;
-    summary["compound_splats_met"] = met;
+    summary["compound_earlier_splats"] = rows;
+    summary["compound_met_splats"] = met;
     summary["compound_lost_splats"] = lost;
     summary["compound_colour_error"] = then.value();
     summary["compound_colour_error_at_end"] = finally.value();

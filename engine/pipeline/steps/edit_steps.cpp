@@ -62,7 +62,9 @@ EditSteps steps_of_sentence(const EditRecipe& recipe, const plan::SceneWords& sc
     const bool any = std::any_of(result.steps.begin(), result.steps.end(),
                                  [](const auto& step) { return step.words.has_value(); });
     if (!partly || !any) require_all(result);
-    if (result.steps.size() == 1 && edit::says_itself(recipe.request, *result.steps.front().words))
+    // Models learned from captions: "blue bear" and "not red but green" are told as captions, too.
+    if (result.steps.size() == 1 && edit::is_caption(recipe.request) &&
+        edit::says_itself(recipe.request, *result.steps.front().words))
         result.steps.clear();
     return result;
 }

@@ -20,11 +20,15 @@ constexpr double LeastOfView = 0.002;   // share of a picture's pixels in which 
 
 // Thresholds lie far from the figures of right edits, which must not be refused (METHOD.md, Judging what came
 // of it).
-constexpr double LeastChanged = 0.1;    // a look near the old one changes little
-constexpr double MostSpilled = 0.02;    // soft edges of splats reach out of the masks
-constexpr double MostOldLeft = 0.25;    // right edits leave nothing
-constexpr double LeastNewShown = 0.15;  // what comes may be smaller
-constexpr double LeastSeen = 0.25;      // what is on one side is seen from about half of the views
+constexpr double LeastChanged = 0.25;     // right edits change most of the thing
+constexpr double LeastDyed = 0.05;        // a dye near the old colour (gray, of stone) hardly shows
+constexpr double LeastAddedChange = 0.1;  // what is added may look like what is behind it
+constexpr double MostSpilled = 0.02;      // soft edges of splats reach out of the masks
+constexpr double MostOldLeft = 0.25;      // right edits leave nothing
+constexpr double LeastNewShown = 0.15;    // what comes may be smaller
+constexpr double LeastSeen = 0.25;        // what is on one side is seen from about half of the views
+constexpr double MostOnThing = 0.5;       // what stands beside hides the thing from two sides only
+constexpr double LeastLikeness = 0.15;  // what keeps the old thing's colour scores half of what another does
 constexpr double LeastScore = 0.1;      // no change scores about zero
 
 constexpr double Percent = 100;
@@ -33,7 +37,7 @@ struct Shares {
     double thing = 0, changed = 0;       // pixels
     double outside = 0, spilled = 0;     // pixels
     double old_left = 0, new_shown = 0;  // pixels
-    double views = 0, seen = 0;
+    double views = 0, seen = 0, on_thing = 0;
 };
 
 double share(double part, double all) { return all > 0 ? part / all : 0; }
@@ -82,6 +86,7 @@ public:
         shares_.views += 1;
         const auto least = LeastOfView * static_cast<double>(thing.data.size());
         shares_.seen += static_cast<double>(thing.count()) > least ? 1 : 0;
+        if (adds) look_behind(thing, camera);
         if (job_.located().mode != edit::EditMode::Replace) return;
         const Mask left = shown(job_.result().set, old_, camera);
         for (std::size_t p = 0; p < left.data.size(); ++p) shares_.old_left += left.data[p] & thing.data[p];
@@ -99,6 +104,15 @@ public:
     }
 
 private:
+    /// Counts the pixels of a new thing that showed the source before.
+    void look_behind(const Mask& thing, const Camera& camera) {
+        const auto& bits = job_.located().source_label.bits;
+        if (!bits) return;
+        const Mask source = shown(job_.scene().gaussians, *bits, camera);
+        for (std::size_t p = 0; p < thing.data.size(); ++p)
+            shares_.on_thing += thing.data[p] & source.data[p];
+    }
+
     Image paint(const GaussianSet& set, const Camera& camera) {
         Image image = job_.painter().paint(set.spans(), camera, job_.plan().settings).colour;
         for (auto& value : image.data) value = std::clamp(value, 0.0f, 1.0f);
@@ -135,10 +149,12 @@ Verdict fault_of_rows(const StepFigures& figures) {
 }
 
 Verdict fault_of_amount(const StepFigures& figures) {
-    if (figures.mode == edit::EditMode::Add || figures.changed >= LeastChanged) return {};
+    const bool scored = figures.pictures || figures.scene;
+    if (figures.mode == edit::EditMode::Add || figures.changed >= (scored ? LeastChanged : LeastDyed))
+        return {};
     return Fault{
         fmt::format("only {:.0f} % of the {} changed visibly", Percent * figures.changed, figures.thing),
-        "raise the strength, or name what differs more from what is there"};
+        "raise the strength, or say what differs more: the scene may show it already"};
 }
 
 Verdict fault_of_addition(const StepFigures& figures) {
@@ -148,7 +164,10 @@ Verdict fault_of_addition(const StepFigures& figures) {
         return Fault{fmt::format("the {} is seen from {:.0f} % of the views only", figures.news,
                                  Percent * figures.seen),
                      "say where it goes, or try another seed"};
-    if (figures.changed >= LeastChanged) return {};
+    if (figures.beside && figures.on_thing > MostOnThing)
+        return Fault{fmt::format("the {} is on the {}, not beside it", figures.news, figures.thing),
+                     "try another seed, or another place"};
+    if (figures.changed >= LeastAddedChange) return {};
     return Fault{fmt::format("where the {} is, only {:.0f} % of the pictures changed visibly", figures.news,
                              Percent * figures.changed),
                  "give it a colour that differs from what is behind it"};
@@ -175,7 +194,7 @@ Verdict fault_of_surroundings(const StepFigures& figures) {
 /// The better of two scores counts: the encoder misses some things in the redrawn views, and others in the
 /// scene.
 Verdict fault_of_meaning(const StepFigures& figures) {
-    if (figures.is_lump)
+    if (figures.likeness && *figures.likeness < LeastLikeness)
         return Fault{fmt::format("what came is like no known thing, and hardly like a {}", figures.news),
                      AnotherTry};
     if (!figures.pictures && !figures.scene) return {};
@@ -183,6 +202,14 @@ Verdict fault_of_meaning(const StepFigures& figures) {
     if (score >= LeastScore) return {};
     return Fault{fmt::format("the result does not show \"{}\" (score {:.2f})", figures.news, score),
                  std::string(AnotherTry) + ", or a model that knows the words better"};
+}
+
+/// True for what the sentence puts to a side of the thing. Another one of its kind is never worn by it.
+bool is_beside(const language::EditSentence& sentence) {
+    using language::Relation;
+    const auto relation = sentence.relation();
+    return relation == Relation::Beside || relation == Relation::Left || relation == Relation::Right ||
+           sentence.target() == sentence.source();
 }
 
 }  // namespace
@@ -195,11 +222,12 @@ StepFigures measure_step(EditJob& job) {
     const auto& sentence = job.recipe().request.sentence();
     StepFigures figures;
     figures.mode = job.located().mode;
-    figures.thing =
-        figures.mode == edit::EditMode::Modify ? job.located().word : new_thing(sentence, figures.mode);
+    figures.thing = sentence.source();
+    figures.news =
+        figures.mode == edit::EditMode::Modify ? sentence.target() : new_thing(sentence, figures.mode);
     if (const auto& verdict = job.edited().verdict) {
         figures.pictures = verdict->score;
-        figures.is_lump = !verdict->score && verdict->is_poor();
+        figures.likeness = verdict->likeness;
     }
     figures.scene = judge(job.model(), sentence, sentence.prompt(), seen.pairs()).score;
     figures.changed = share(shares.changed, shares.thing);
@@ -207,6 +235,8 @@ StepFigures measure_step(EditJob& job) {
     figures.old_left = share(shares.old_left, shares.thing);
     figures.new_shown = share(shares.new_shown, shares.thing);
     figures.seen = share(shares.seen, shares.views);
+    figures.beside = is_beside(sentence);
+    figures.on_thing = share(shares.on_thing, shares.thing);
     figures.added = seen.added();
     figures.changed_rows = job.result().changed_outside_label;
     return figures;
@@ -235,13 +265,13 @@ nlohmann::ordered_json judgement_to_json(const StepJudgement& judgement) {
     if (!judgement.passed()) json["reason"] = judgement.reason, json["remedy"] = judgement.remedy;
     json["score_pictures"] = score(figures.pictures);
     json["score_scene"] = score(figures.scene);
-    if (figures.is_lump) json["is_lump"] = true;
+    if (figures.likeness) json["likeness"] = *figures.likeness;
     json["changed"] = figures.changed;
     json["spilled"] = figures.spilled;
     json["changed_rows_outside"] = figures.changed_rows;
     if (figures.mode == edit::EditMode::Replace)
         json["old_left"] = figures.old_left, json["new_shown"] = figures.new_shown;
-    if (figures.mode == edit::EditMode::Add) json["seen"] = figures.seen;
+    if (figures.mode == edit::EditMode::Add) json["seen"] = figures.seen, json["on_thing"] = figures.on_thing;
     if (figures.mode != edit::EditMode::Modify) json["new_splats"] = figures.added;
     return json;
 }

@@ -19,12 +19,14 @@ struct StepFigures {
     std::string news;                // what comes: a look, or a new thing
     std::optional<double> pictures;  // score of the redrawn views; none = nobody can tell
     std::optional<double> scene;     // score of renders of the result; none = nobody can tell
-    bool is_lump = false;            // what was drawn is like no known thing
+    std::optional<double> likeness;  // of what is drawn to a known thing, see EditQuality::likeness
     double changed = 0;              // pixels of the thing that changed clearly
     double spilled = 0;              // pixels outside the masks that changed clearly
     double old_left = 0;             // replace: pixels of the old thing that mainly show splats of it
     double new_shown = 0;            // replace: pixels of the new thing, as a share of those of the old one
     double seen = 0;                 // add: views that show the new thing
+    bool beside = false;             // add: the sentence puts it to a side of the thing
+    double on_thing = 0;             // add: pixels of the new thing that showed the thing before
     std::size_t added = 0;           // new splats
     std::size_t changed_rows = 0;    // splats outside the label that changed
 };
@@ -37,7 +39,8 @@ struct StepJudgement {
     bool passed() const { return reason.empty(); }
 };
 
-/// Measures a job whose run() has ended. No network is asked but the image-text encoder.
+/// Measures a job whose run() has ended, with the job's own painter: not beside another call of the job. No
+/// network is asked but the image-text encoder.
 StepFigures measure_step(EditJob& job);
 
 /// Verdict that follows from figures alone. The first thing that failed is the reason.

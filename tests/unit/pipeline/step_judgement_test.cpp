@@ -60,10 +60,15 @@ DOCTEST_TEST_CASE("judgement of a step: each way of failing has its reason, and 
         DOCTEST_CHECK(contains(reason(mode, &StepFigures::changed_rows, 3), "3 splats outside"));
         DOCTEST_CHECK(contains(reason(mode, &StepFigures::changed, 0.04), "only 4 %"));
         DOCTEST_CHECK(contains(reason(mode, &StepFigures::spilled, 0.2), "20 % of what surrounds the bear"));
-        DOCTEST_CHECK(contains(reason(mode, &StepFigures::is_lump, true), "like no known thing"));
+        DOCTEST_CHECK(contains(reason(mode, &StepFigures::likeness, 0.05), "like no known thing"));
     }
     DOCTEST_CHECK(contains(reason(EditMode::Add, &StepFigures::added, 0), "no hat was added"));
     DOCTEST_CHECK(contains(reason(EditMode::Add, &StepFigures::seen, 0.1), "from 10 % of the views"));
+    auto smeared = right(EditMode::Add);
+    smeared.on_thing = 0.9;
+    DOCTEST_CHECK(judge_step(smeared).passed());  // worn
+    smeared.beside = true;
+    DOCTEST_CHECK(contains(judge_step(smeared).reason, "on the bear, not beside it"));
     DOCTEST_CHECK(contains(reason(EditMode::Replace, &StepFigures::old_left, 0.6), "60 % of the bear"));
     DOCTEST_CHECK(contains(reason(EditMode::Replace, &StepFigures::new_shown, 0.01), "hardly any cat"));
 }
@@ -86,6 +91,10 @@ DOCTEST_TEST_CASE("judgement of a step: the better score counts, and none is no 
     }
     figures.pictures = figures.scene = std::nullopt;
     DOCTEST_CHECK(judge_step(figures).passed());
+    figures.changed = 0.2;  // a dye near the colour that is there
+    DOCTEST_CHECK(judge_step(figures).passed());
+    figures.scene = 0.5;
+    DOCTEST_CHECK(contains(judge_step(figures).reason, "only 20 %"));
 }
 
 DOCTEST_TEST_CASE("judgement of a step: the report says what failed and what to try") {
