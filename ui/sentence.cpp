@@ -186,7 +186,7 @@ SentenceFacts facts_of(const edit::EditRequest& request, const SentenceGround& g
             facts.source_suggestions.push_back(with_word(request.source, index, near));
         facts.source_help = language::words_to_use(unknown, ground.known);
     }
-    const auto planned = edit::changes_of(request, edit::assumed_scene(request),
+    const auto planned = edit::changes_of(request, edit::assumed_scene(request, ground.made),
                                           {ground.said, {ground.known.empty(), ground.known}});
     for (const auto& step : planned) facts.steps.push_back(step_facts(request, step, ground));
     facts.follows_plan = edit::follows_plan(request, planned, {ground.said, {}});

@@ -17,6 +17,7 @@ struct SentenceGround {
     std::size_t words_read = 0;           // of the sentence, by the text encoder; 0 = not known, all of them
     // The word that a search of this sentence saw to be new; empty = none has looked.
     std::string read_target = {};
+    std::vector<std::string> made = {};   // things that applied edits have put into the scene
     std::vector<std::string> drawn = {};  // words that the model draws besides and does not look for
 };
 

@@ -367,8 +367,9 @@ struct ViewportPart {
 /// The request and its search results.
 struct SearchPart {
     edit::EditRequest request;
-    std::vector<std::string> said_words;  // by the applied edits of the scene: no news any more
-    std::size_t words_read = 0;           // of the sentence, by the text encoder; 0 = all, or not known
+    std::vector<std::string> said_words;   // by the applied edits of the scene: no news any more
+    std::vector<std::string> made_things;  // by the applied edits
+    std::size_t words_read = 0;            // of the sentence, by the text encoder; 0 = all, or not known
     std::string read_target;  // the word that a search of this sentence saw to be new; empty = none looked
     EditReach reach;
     bool labelled_by_hand = false;  // nothing has to be found: the active label says what may change

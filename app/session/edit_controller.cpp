@@ -45,7 +45,7 @@ template <> void EditController::on(const command::Edit& one) {
     search_.choose_for_source();  // another source is another matter
     if (!search_.sentence().follows_plan()) return start(std::nullopt);
     if (edit::pictures_decide(search_.request())) return read_steps();
-    begin_steps(edit::assumed_scene(search_.request()));
+    begin_steps(search_.sentence().scene());
 }
 
 /// Pictures of the scene tell which of the looks that the sentence names are there already.
@@ -57,7 +57,7 @@ void EditController::read_steps() {
     try {
         recipe.request = edit::check(std::move(recipe.request)).plain();
     } catch (const Error& error) { return workspace_.notices.report(error); }
-    auto scene = std::make_shared<language::plan::SceneWords>(edit::assumed_scene(typed));
+    auto scene = std::make_shared<language::plan::SceneWords>(search_.sentence().scene());
     auto work = [run, recipe, scene, ground = search_.ground(recipe),
                  cache = models_.cache()](const JobControl& control) {
         load_model(*run, recipe.job, cache, control);

@@ -95,7 +95,8 @@ void SearchController::refresh_reading() {
 
 void SearchController::follow_document() {
     last_.set_undone(!workspace_.document.includes(last_.step()));
-    sentence_.set_said(language::words_said(applied_sentences(workspace_.document.state().stack)));
+    const auto& stack = workspace_.document.state().stack;
+    sentence_.set_said(language::words_said(applied_sentences(stack)), things_made(stack));
 }
 
 EditRecipe SearchController::recipe() const {
@@ -435,6 +436,7 @@ void SearchController::refresh_estimate() {
 void SearchController::show(ui::SearchPart& model) const {
     model.request = request();
     model.said_words = sentence_.said();
+    model.made_things = sentence_.made();
     model.words_read = words_read_;
     model.read_target = read_target();
     model.reach = reach_;

@@ -19,9 +19,10 @@ void AskedSentence::set(const edit::EditRequest& request) {
     plan();
 }
 
-void AskedSentence::set_said(std::vector<std::string> said) {
-    if (said == said_) return;
+void AskedSentence::set_said(std::vector<std::string> said, std::vector<std::string> made) {
+    if (said == said_ && made == made_) return;
     said_ = std::move(said);
+    made_ = std::move(made);
     plan();
 }
 
@@ -46,7 +47,7 @@ edit::StepProgress AskedSentence::steps_in(const language::plan::SceneWords& sce
 }
 
 void AskedSentence::plan() {
-    steps_ = edit::changes_of(request_, edit::assumed_scene(request_), {said_, model_, {}});
+    steps_ = edit::changes_of(request_, scene(), {said_, model_, {}});
     follows_plan_ = edit::follows_plan(request_, steps_, {said_, {}});
 }
 

@@ -21,9 +21,12 @@ public:
     /// Settings that no plan depends on.
     edit::EditSettings& settings() { return request_; }
     void forget_target() { request_.target.clear(); }
-    /// Takes the words that applied edits have said: they are no news any more.
-    void set_said(std::vector<std::string> said);
+    /// Takes what applied edits have said: their words are no news any more, and what they `made` is there.
+    void set_said(std::vector<std::string> said, std::vector<std::string> made);
     const std::vector<std::string>& said() const { return said_; }
+    const std::vector<std::string>& made() const { return made_; }
+    /// Words of the scene as far as nobody has looked at pictures of it.
+    language::plan::SceneWords scene() const { return edit::assumed_scene(request_, made_); }
     /// Takes the words that the model finds; none = it takes any.
     void set_known_words(const std::vector<std::string>& known);
 
@@ -44,7 +47,7 @@ private:
     void plan();
 
     edit::EditRequest request_;
-    std::vector<std::string> said_;
+    std::vector<std::string> said_, made_;
     language::plan::ModelAbility model_;
     std::vector<edit::PlannedStep> steps_;
     bool follows_plan_ = false;

@@ -46,17 +46,37 @@ std::optional<edit::EditRequest> recorded_request(const EditNode& node) {
     return request;
 }
 
-std::vector<language::EditSentence> applied_sentences(const std::vector<EditNode>& stack) {
-    std::vector<language::EditSentence> applied;
+namespace {
+
+/// Requests of the edits that are switched on and that a version like this one made.
+std::vector<edit::EditRequest> applied_requests(const std::vector<EditNode>& stack) {
+    std::vector<edit::EditRequest> applied;
     for (const auto& node : stack) {
         if (!node.enabled) continue;
         try {
-            if (const auto request = recorded_request(node))
-                applied.push_back(edit::unchecked_sentence(*request));
+            if (auto request = recorded_request(node)) applied.push_back(std::move(*request));
         } catch (const Error&) {  // of another version: what it said is not known
         }
     }
     return applied;
+}
+
+}  // namespace
+
+std::vector<language::EditSentence> applied_sentences(const std::vector<EditNode>& stack) {
+    std::vector<language::EditSentence> applied;
+    for (const auto& request : applied_requests(stack)) applied.push_back(edit::unchecked_sentence(request));
+    return applied;
+}
+
+std::vector<std::string> things_made(const std::vector<EditNode>& stack) {
+    std::vector<std::string> made;
+    for (const auto& request : applied_requests(stack)) {
+        const auto mode = edit::planned_mode(request);
+        if (mode != edit::EditMode::Modify)
+            made.push_back(language::new_thing(edit::unchecked_sentence(request), mode));
+    }
+    return made;
 }
 
 FoundWith found_with(const DocumentState& state) {

@@ -65,6 +65,9 @@ std::optional<edit::EditRequest> recorded_request(const EditNode& node);
 /// over.
 std::vector<language::EditSentence> applied_sentences(const std::vector<EditNode>& stack);
 
+/// Things that the edits of a stack have put into the scene.
+std::vector<std::string> things_made(const std::vector<EditNode>& stack);
+
 /// Search settings of the active label: thresholds and excluded views. A negative attention threshold = not
 /// by a search.
 struct FoundWith {

@@ -111,7 +111,7 @@ Error several(const std::vector<plan::Step>& steps) {
 
 }  // namespace
 
-plan::SceneWords assumed_scene(const EditRequest& request) {
+plan::SceneWords assumed_scene(const EditRequest& request, const std::vector<std::string>& made) {
     const auto source = language::normalised_prompt(request.source);
     auto scene = plan::scene_words(source);
     const language::Sentence sentence(request.prompt);
@@ -134,6 +134,7 @@ plan::SceneWords assumed_scene(const EditRequest& request) {
                 add(thing, false);
                 break;
             }
+    for (const auto& noun : made) add(noun, false);
     return scene;
 }
 
@@ -211,7 +212,7 @@ bool says_itself(const EditRequest& request, const plan::StepSentence& words, co
 bool follows_plan(const EditRequest& request, const std::vector<PlannedStep>& steps, const News& news) {
     if (steps.size() != 1) return !steps.empty();
     const auto& words = steps.front().words;
-    return words && !says_itself(request, *words, news);
+    return words && !(is_caption(request) && says_itself(request, *words, news));
 }
 
 EditRequest request_of(EditRequest request, const plan::StepSentence& words) {

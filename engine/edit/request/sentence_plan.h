@@ -21,9 +21,10 @@ struct PlannedStep {
     bool may_be_shown = false;                          // a look that pictures of the scene may show already
 };
 
-/// Words of the scene as far as the request tells them: the source, and grounds that the sentence takes for
-/// known ("on the grass").
-language::plan::SceneWords assumed_scene(const EditRequest& request);
+/// Words of the scene as far as the request tells them. They are the source, and grounds that the sentence
+/// takes for known ("on the grass"). Things that applied edits have `made` are there, too.
+language::plan::SceneWords assumed_scene(const EditRequest& request,
+                                         const std::vector<std::string>& made = {});
 
 /// The scene's words with the request's source first, where none of them names it.
 std::string with_source(const std::string& words, const EditRequest& request);
@@ -63,8 +64,9 @@ bool is_caption(const EditRequest& request);
 bool says_itself(const EditRequest& request, const language::plan::StepSentence& words,
                  const News& news = {});
 
-/// True where the steps run in their own words: several, or one that the typed sentence does not say itself.
-bool follows_plan(const EditRequest& request, const std::vector<PlannedStep>& steps, const News& news);
+/// True where the steps run in their own words: several, or one that the typed sentence is no caption of, or
+/// does not say itself.
+bool follows_plan(const EditRequest& request, const std::vector<PlannedStep>& steps, const News& news = {});
 
 /// The request in a step's words.
 EditRequest request_of(EditRequest request, const language::plan::StepSentence& words);

@@ -63,9 +63,7 @@ EditSteps steps_of_sentence(const EditRecipe& recipe, const plan::SceneWords& sc
                                  [](const auto& step) { return step.words.has_value(); });
     if (!partly || !any) require_all(result);
     // Models learned from captions: "blue bear" and "not red but green" are told as captions, too.
-    if (result.steps.size() == 1 && edit::is_caption(recipe.request) &&
-        edit::says_itself(recipe.request, *result.steps.front().words))
-        result.steps.clear();
+    if (!edit::follows_plan(recipe.request, result.steps)) result.steps.clear();
     return result;
 }
 

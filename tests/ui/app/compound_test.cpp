@@ -126,6 +126,7 @@ DOCTEST_TEST_CASE("a step that is left out is not made, and the sentence can be 
     app.run(command::ApplyResult{});
     app.update(session.preview);
     check_stack(app.document().state(), {"bear wearing a red hat"});
+    DOCTEST_CHECK(app.model().made_things == std::vector<std::string>{"hat"});
     const auto& state = app.document().state();
     DOCTEST_CHECK(state.stack[0].name.find("blue") == std::string::npos);
     DOCTEST_CHECK(std::equal(base.sh().begin(), base.sh().end(), state.current.sh().begin()));  // no blue

@@ -83,6 +83,28 @@ DOCTEST_TEST_CASE("a sentence of which nothing can be done says why, and so does
     }
 }
 
+DOCTEST_TEST_CASE("what an applied edit has made can be named, whatever the source field says") {
+    edit::EditRequest request;
+    request.source = "bear";
+    request.prompt = "make the hat green";
+    DOCTEST_CHECK_FALSE(ui::facts_of(request, {}).problem.empty());  // there is none
+    const auto facts = ui::facts_of(request, {.made = {"hat"}});
+    DOCTEST_CHECK(facts.problem.empty());
+    DOCTEST_CHECK(facts.told.source == "hat");
+    DOCTEST_CHECK(facts.told.target == "green");
+}
+
+DOCTEST_TEST_CASE("a style is a step for a model of any word, and refused by one with few") {
+    edit::EditRequest request;
+    request.source = "bear";
+    request.prompt = "make it night";
+    const auto any = ui::facts_of(request, {});
+    DOCTEST_REQUIRE(any.steps.size() == 1);
+    DOCTEST_CHECK(any.problem.empty());
+    DOCTEST_CHECK(any.told.whole_scene);
+    DOCTEST_CHECK_FALSE(ui::facts_of(request, {.known = {"bear", "night"}}).problem.empty());
+}
+
 DOCTEST_TEST_CASE("a clicked word is the target of one edit, whatever the plan") {
     Harness harness(Large);
     ask(harness, BlueWithHat);
