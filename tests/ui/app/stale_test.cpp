@@ -53,11 +53,11 @@ void show(Shown& shown, const ui::ViewportPart& part) {
 }
 
 void show(Shown& shown, const ui::SearchPart& part) {
-    const auto& [request, said, words_read, read_target, reach, by_hand, estimate, attention, word, mode,
-                 threshold, arriving, voting, corrected, search] = part;
+    const auto& [request, said, made, words_read, read_target, reach, by_hand, estimate, attention, word,
+                 mode, threshold, arriving, voting, corrected, search] = part;
     static_cast<void>(estimate);  // of this machine
     shown["search.request"] = text_of(request);
-    shown["search.words"] = fmt::format("{} {} {}", said.size(), words_read, read_target);
+    shown["search.words"] = fmt::format("{} {} {} {}", said.size(), made.size(), words_read, read_target);
     shown["search.reach"] =
         fmt::format("{} {} {} {} {}", reach.label, reach.splats, reach.by_label, reach.corrected, by_hand);
     shown["search.views"] = fmt::format("{}", attention.size());
