@@ -14,7 +14,10 @@
 #include "engine/io/project/load_scene.h"
 #include "engine/language/plan/plan_sentence.h"
 #include "engine/language/plan/plan_text.h"
+#include "engine/pipeline/models/model_words.h"
+#include "engine/pipeline/models/recipe_model.h"
 #include "engine/pipeline/scene/scene_loading.h"
+#include "engine/pipeline/steps/edit_steps.h"
 
 namespace gse::app {
 namespace {
@@ -25,6 +28,7 @@ namespace plan = language::plan;
 struct PlanOptions {
     std::filesystem::path scene, sentences, output;
     std::string prompt, source, words;
+    std::string model;
     ReadingOptions reading;
     bool json = false;
 };
@@ -108,19 +112,45 @@ plan::SceneWords words_of_scene(const PlanOptions& options) {
     return plan::scene_words(words);
 }
 
+/// The plan's steps, each told to the model or with the reason why it cannot be. Refusals have none.
+std::vector<edit::PlannedStep> steps_for_model(const plan::Plan& made, const PlanOptions& options) {
+    edit::EditRequest request;
+    request.source = options.source;
+    request.prompt = options.prompt;
+    pipeline::JobParameters job;
+    job.model = options.model;
+    if (made.is_refusal()) return {};
+    const auto model = pipeline::model_path(job);
+    return pipeline::known_to_model(
+        edit::planned_steps(made, words_of_scene(options), pipeline::model_ability(model)), request, model);
+}
+
+Json step_to_json(const edit::PlannedStep& planned) {
+    const auto& step = planned.step;
+    Json json{{"operation", std::string(plan::name_of(step.operation))},
+              {"text", plan::step_text(step)},
+              {"notation", to_string(step)}};
+    if (planned.words) json["prompt"] = planned.words->prompt;
+    else if (!planned.problem.reason.empty())
+        json["reason"] = planned.problem.reason, json["remedy"] = planned.problem.remedy;
+    return json;
+}
+
 void plan_prompt(const PlanOptions& options) {
     const auto made = plan::plan_sentence(options.prompt, words_of_scene(options), options.source);
-    if (!options.json) {
-        for (std::size_t i = 0; i < made.steps.size(); ++i)
-            print("{} {}\n", i + 1, plan::step_text(made.steps[i]));
-        return;
+    auto steps = steps_for_model(made, options);
+    if (steps.empty())
+        for (const auto& step : made.steps) steps.push_back({step, std::nullopt, {}});
+    Json list = Json::array();
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        list.push_back(step_to_json(steps[i]));
+        if (options.json) continue;
+        print("{} {}\n", i + 1, plan::step_text(steps[i].step));
+        const auto& [reason, remedy] = steps[i].problem;
+        if (!reason.empty()) print("  cannot be done: {}; {}\n", reason, remedy);
     }
-    Json steps = Json::array();
-    for (const auto& step : made.steps)
-        steps.push_back({{"operation", std::string(plan::name_of(step.operation))},
-                         {"text", plan::step_text(step)},
-                         {"notation", to_string(step)}});
-    print_json(Json{{"sentence", options.prompt}, {"plan", to_string(made)}, {"steps", steps}});
+    if (options.json)
+        print_json(Json{{"sentence", options.prompt}, {"plan", to_string(made)}, {"steps", list}});
 }
 
 }  // namespace
@@ -134,6 +164,8 @@ void add_plan_command(CLI::App& app, CommandContext&) {
     command->add_option("--source", options->source, "Thing that the sentence is about");
     command->add_option("--words", options->words,
                         "Words of the scene, as \"red bear; grass\"; without them its labels and the source");
+    command->add_option("--model", options->model,
+                        "Model that the steps are held against; empty = as for an edit");
     command->add_flag("--json", options->json, "Print JSON, with the notation of plans");
     auto* sentences =
         command->add_option("--sentences", options->sentences,

@@ -91,7 +91,7 @@ EditStart EditController::start_from(std::optional<edit::EditSnapshot> from) con
         start.label = *label->bits;
         start.corrected = !label->found_for.empty() && corrected_by_hand(*label);
     }
-    start.brings_label = later && start.label.empty();
+    start.brings_label = chain_.runs() && start.label.empty();
     start.shows_preview = models_.settings().gate && !from && !edit::method_of(recipe_.request).draws_views();
     start.reviews = models_.settings().review;
     start.snapshot = std::move(from);
@@ -328,7 +328,8 @@ template <> void EditController::on(const command::ApplyResult&) {
         return workspace_.notices.toast(
             "The scene was changed since: undo that to apply the edit, or discard the edit.", true);
     const PendingResult result = *results;
-    const auto changes = result.changes.empty() ? std::vector{result} : result.changes;
+    auto changes = result.changes.empty() ? std::vector{result} : result.changes;
+    changes.front().label.reset();  // the document has it, as it was corrected since
     for (const auto& step : changes) {
         DocumentState state = applied(workspace_.document.state(), step, workspace_.next_edit_id++);
         if (result.changes.empty()) workspace_.variations.keep(results, state.stack.back(), before);

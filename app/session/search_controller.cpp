@@ -177,6 +177,7 @@ SearchGround SearchController::ground(const StepChain& chain) const {
     ground.scene.gaussians = state.current;
     ground.scene.extra = current_columns(state);
     ground.said.insert(ground.said.end(), chain.words().begin(), chain.words().end());
+    ground.found = chain.source_found();
     return ground;
 }
 

@@ -30,9 +30,13 @@ struct SearchGround {
     std::vector<View> views;
     std::optional<neural::TunedModel> tuned;
     std::vector<std::string> said;
+    std::vector<std::uint8_t> found = {};  // [N] the source, where a step before has found it
 
     EditJobInput input(const MeasuredRun& run, std::vector<std::uint8_t> label) const {
-        return {scene, views, run.model, std::move(label), {}, tuned, said, run.segmenters};
+        const bool known = label.empty() && !found.empty();
+        return {scene, views,          run.model, std::move(label),
+                {},    tuned,          said,      run.segmenters,
+                known ? found : std::vector<std::uint8_t>{}};
     }
 };
 
@@ -76,7 +80,7 @@ public:
 
     /// The label that says what an edit may change; null = a search does.
     const NamedLabel* scope() const;
-    /// That of another state of the document.
+    /// The label that does so in another state of the document.
     const NamedLabel* scope(const DocumentState& state) const;
     /// Makes that label the active one, which is shown and corrected.
     void show_scope();

@@ -53,6 +53,22 @@ class Steps(ProgramTest):
         self.assertEqual([step["done"] for step in report["steps"]], [True, False])
         self.assertIn("not moved", report["steps"][1]["reason"])
 
+    def test_a_word_that_the_model_does_not_know_stops_before_the_first_step(self):
+        sentence = "make the bear blue and put a unicorn beside it"
+        process = self.edit(sentence)
+        self.assertEqual(process.returncode, 2)
+        self.assertIn("step 2 of 2", process.stderr)
+        self.assertIn("unicorn", process.stderr)
+        self.assertFalse(self.out.exists())
+        plan = run("plan", "--source", "bear", "--words", "red bear; grass", "--prompt", sentence)
+        self.assertEqual(plan.returncode, 0, plan.stderr)
+        self.assertIn("1 colour: bear, blue\n2 add: unicorn", plan.stdout)
+        self.assertIn("cannot be done: the model does not know the word \"unicorn\"", plan.stdout)
+        plan = run("plan", "--source", "bear", "--prompt", sentence, "--json")
+        first, second = json.loads(plan.stdout)["steps"]
+        self.assertEqual(first["prompt"], "a blue bear")
+        self.assertIn("unicorn", second["reason"])
+
     def test_an_order_or_a_telegram_is_told_as_a_caption(self):
         for prompt in ["blue bear", "not red but blue"]:
             process = self.edit(prompt, "--quality", "draft")

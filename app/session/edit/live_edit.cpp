@@ -159,7 +159,7 @@ void run_edit(MeasuredRun& run, const EditStart& start, const neural::NetworkUse
     if (pending.stopped_at < 0 && !run.job->result().failure && !run.job->result().shortage)
         if (const auto judgement = judge_step(*run.job); !judgement.passed())
             pending.failed = fmt::format("{}: {}", judgement.reason, judgement.remedy);
-    if (start.brings_label) pending.label = located_label(*run.job);
+    if (start.brings_label && !run.job->knew_source()) pending.label = located_label(*run.job);
     run.measured.finish = seconds_since(finishing);
     measure_peak(run, peak);
 }

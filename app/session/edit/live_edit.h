@@ -78,7 +78,7 @@ struct EditStart {
     std::vector<std::uint8_t> label;             // empty = as located
     bool corrected = false;                      // by hand, after a search found it
     bool shows_preview = false;                  // what the model makes of a few views, before the loop
-    bool brings_label = false;                   // applying it labels what the search found
+    bool brings_label = false;                   // applying it labels what its own search found
     bool reviews = false;                        // the artist looks at every round before it is fitted to
     std::optional<edit::EditSnapshot> snapshot;  // of an earlier run, to go on from
 };

@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
+#include "app/session/state/edit_scope.h"
 #include "engine/language/words.h"
 #include "engine/scene/row_values.h"
 
@@ -47,6 +49,17 @@ PendingResult StepChain::end() {
 
 std::string StepChain::said() const {
     return several() ? fmt::format("step {} of {}", at_ + 1, steps_.size()) : std::string();
+}
+
+std::vector<std::uint8_t> StepChain::source_found() const {
+    const auto& words = step();
+    if (!words.part_of.empty() || words.whole_scene) return {};
+    const bool among = std::any_of(done_.begin(), done_.end(), [&](const auto& change) {
+        return change.label && change.label->found_for == words.source && change.renamed.to.empty();
+    });
+    const auto label = std::find_if(state_.labels.begin(), state_.labels.end(),
+                                    [&](const auto& one) { return is_label_of(one, words.source); });
+    return among && label != state_.labels.end() ? *label->bits : std::vector<std::uint8_t>{};
 }
 
 std::vector<std::int64_t> StepChain::rows() const { return row_map(*begun_.row_ids, *state_.row_ids); }

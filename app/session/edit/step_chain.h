@@ -35,6 +35,8 @@ public:
     const DocumentState& state() const { return state_; }
     /// Words that the finished steps have put into the scene.
     const std::vector<std::string>& words() const { return words_; }
+    /// The source of the step in state(), [rows] 0 or 1, where a finished step has found it; else empty.
+    std::vector<std::uint8_t> source_found() const;
     /// Row in state() of each row of the document.
     std::vector<std::int64_t> rows() const;
 

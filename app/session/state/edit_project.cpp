@@ -27,7 +27,7 @@ ProjectData project_with(const ProjectData& earlier, EditJob& job, const nlohman
     const DocumentState before = first ? initial_state(job.scene(), {}) : earlier.state;
     PendingResult result;
     fill_pending(job, report, result);
-    result.label = located_label(job);
+    if (!job.knew_source()) result.label = located_label(job);  // else an earlier edit brought it
     project.state = applied(before, result, first ? FirstEdit : earlier.state.stack.back().id + 1);
     project.thumbnail = result.thumbnail;
     project.ui["request"] = fields_to_json(job.recipe().request.plain());

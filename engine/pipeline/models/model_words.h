@@ -21,7 +21,7 @@ std::vector<std::string> model_words(const std::filesystem::path& folder);
 /// it is dyed in (edit::dye_words()); empty for an open vocabulary.
 std::vector<std::string> drawn_words(const std::filesystem::path& folder);
 
-/// Which steps of a plan the model in `folder` can do, by its files.
+/// Ability of the model in `folder` to do steps of a plan, by its files.
 language::plan::ModelAbility model_ability(const std::filesystem::path& folder);
 
 /// Counts the words of a sentence that the model's text encoder reads; all of them where that is not known.

@@ -130,6 +130,7 @@ EditJob::EditJob(EditRecipe recipe, EditJobInput input, JobControl control)
     : recipe_(check(std::move(recipe), {input.said})), control_(std::move(control)) {
     hints_.said = std::move(input.said);
     hints_.label = std::move(input.label);
+    hints_.found = std::move(input.found);
     auto model = std::move(input.model);
     if (recipe_.use_dreambooth && input.tuned) {
         model = std::move(input.tuned->model);
@@ -253,6 +254,18 @@ void EditJob::take(Located located) {
 language::plan::SceneWords EditJob::words_shown(language::plan::SceneWords assumed) {
     workplace_->ask_anew(recipe_.attention);
     return scene_words_shown(*workplace_, recipe_, *views_, std::move(assumed), control_);
+}
+
+std::vector<std::uint8_t> EditJob::source_in_result() const {
+    if (edited_ == nullptr || located().mode == edit::EditMode::Replace) return {};
+    const auto& after = result();
+    if (located().mode == edit::EditMode::Modify) return after.label;  // with rows that came while it ran
+    std::vector<std::uint8_t> source(after.set.size(), 0);
+    const auto& before = *located().source_label.bits;
+    for (std::size_t row = 0; row < before.size(); ++row)
+        if (before[row] != 0 && after.base_to_new[row] >= 0)
+            source[static_cast<std::size_t>(after.base_to_new[row])] = 1;
+    return source;
 }
 
 void EditJob::locate() {

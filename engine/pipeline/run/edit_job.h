@@ -32,6 +32,7 @@ struct EditJobInput {
     std::optional<neural::TunedModel> tuned = {};
     std::vector<std::string> said = {};  // words that the scene is known to show: no news
     Segmenters segmenters = {};
+    std::vector<std::uint8_t> found = {};  // [N] the source, see Hints::found
 };
 
 /// A run from stage to stage (views.h, search.h, loop.h): keeps what each came to and how long it took.
@@ -127,6 +128,10 @@ public:
     /// Tells whether the pictures said which word is new, and not the recipe.
     bool target_read() const { return located_->target_read; }
     bool automatic_views() const { return views_->automatic; }
+    /// True where the source was known beforehand (EditJobInput::found).
+    bool knew_source() const { return !hints_.found.empty(); }
+    /// The edit's source in the result, [rows] 0 or 1; empty where nothing of it is left, or it has not run.
+    std::vector<std::uint8_t> source_in_result() const;
     /// Orbit around what was edited, for films.
     OrbitParameters film_orbit() const;
     /// Azimuth on it, radians, from which the front is seen where one is known; 0 otherwise.

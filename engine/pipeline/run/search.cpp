@@ -1,6 +1,5 @@
 // Reads the scene, looks, moves in, looks again.
 #include "engine/pipeline/run/search.h"
-#include "engine/edit/request/decide_mode.h"
 
 #include <fmt/format.h>
 
@@ -18,6 +17,7 @@
 #include "engine/edit/placement/head.h"
 #include "engine/edit/placement/placement_volume.h"
 #include "engine/edit/placement/upright_bounds.h"
+#include "engine/edit/request/decide_mode.h"
 #include "engine/edit/request/excluded_views.h"
 #include "engine/edit/search/front_reading.h"
 #include "engine/edit/search/place_drawing.h"
@@ -194,6 +194,7 @@ private:
     }
 
     Located searched() {
+        if (!hints_.found.empty()) return from_found();
         const bool by_label =
             !hints_.label.empty() &&
             (recipe_.job.brings_label() ||
@@ -241,6 +242,16 @@ private:
     }
 
     Located from_label() { return moved_in(views_, hints_.label); }
+
+    /// Looks at the place of what comes alone, from as near as that needs: the source is known.
+    Located from_found() {
+        if (!moves()) return moved_in(views_, hints_.found);
+        const auto mode = edit::decide_mode(recipe_.request, std::nullopt).first;
+        const Label known = make_label(recipe_.request.source(),
+                                       std::vector<float>(hints_.found.begin(), hints_.found.end()), 0.5f);
+        return moved_in(views_on(focused_on(known, mode, views_.orbit, views_.front), recipe_),
+                        hints_.found);
+    }
 
     /// Asks the model's encoders, where it has them, which word is new and which distances are worth a
     /// search.

@@ -15,6 +15,8 @@ namespace gse::pipeline {
 struct Hints {
     std::vector<std::uint8_t> label;  // [N] made by hand: says where when the words do not; empty = none
     std::vector<std::string> said;    // words that the scene is known to show: no news
+    // [N] the source, as an earlier search found it: it is not looked for again. Empty = it is.
+    std::vector<std::uint8_t> found = {};
 };
 
 /// Result of a search. A value: another threshold or a corrected label makes another one.

@@ -8,6 +8,8 @@
 
 #include "engine/base/error.h"
 #include "engine/base/log.h"
+#include "engine/edit/request/edit_method.h"
+#include "engine/edit/request/vocabulary.h"
 #include "engine/language/plan/plan_text.h"
 #include "engine/language/words.h"
 #include "engine/pipeline/models/model_words.h"
@@ -57,8 +59,10 @@ EditSteps steps_of_sentence(const EditRecipe& recipe, const plan::SceneWords& sc
     result.nothing_to_change = result.plan.steps.front().operation == plan::Operation::None;
     if (result.nothing_to_change) return result;
     if (const auto refused = edit::refusal_of(result.plan, recipe.request.source)) throw *refused;
-    result.model = model_ability(model_path(recipe.job));
-    result.steps = edit::planned_steps(result.plan, scene, result.model);
+    const auto model = model_path(recipe.job);
+    result.model = model_ability(model);
+    result.steps =
+        known_to_model(edit::planned_steps(result.plan, scene, result.model), recipe.request, model);
     const bool any = std::any_of(result.steps.begin(), result.steps.end(),
                                  [](const auto& step) { return step.words.has_value(); });
     if (!partly || !any) require_all(result);
@@ -67,13 +71,30 @@ EditSteps steps_of_sentence(const EditRecipe& recipe, const plan::SceneWords& sc
     return result;
 }
 
+std::vector<edit::PlannedStep> known_to_model(std::vector<edit::PlannedStep> steps,
+                                              const edit::EditRequest& request,
+                                              const std::filesystem::path& folder) {
+    const auto known = model_words(folder), drawn = drawn_words(folder);
+    if (known.empty()) return steps;
+    for (auto& step : steps) try {
+            if (!step.words) continue;
+            const auto valid = edit::check(edit::request_of(request, *step.words));
+            const bool draws = edit::method_of(valid).draws_views();
+            edit::require_known_words(valid, known, draws ? drawn : std::vector<std::string>{}, false);
+        } catch (const Error& error) {
+            step.words.reset();
+            step.problem = {error.message(), error.hint()};
+        }
+    return steps;
+}
+
 EditRecipe recipe_of_step(EditRecipe recipe, const edit::PlannedStep& step) {
     recipe.request = edit::request_of(std::move(recipe.request), *step.words);
     recipe.guidance.before_prompt.clear();
     return recipe;
 }
 
-EditJobInput next_input(EditJob& job, std::vector<std::string> said) {
+EditJobInput next_input(EditJob& job, std::vector<std::string> said, const std::string& source) {
     EditJobInput input;
     input.scene = job.scene();
     const auto& result = job.result();
@@ -84,6 +105,9 @@ EditJobInput next_input(EditJob& job, std::vector<std::string> said) {
     input.model = job.shared_model();
     input.said = std::move(said);
     input.segmenters = open_segmenters(job.recipe().job, nullptr);
+    const auto& request = job.recipe().request;
+    const bool whole = request.part_of().empty() && !request.whole_scene();
+    if (whole && request.source() == source) input.found = job.source_in_result();
     return input;
 }
 
@@ -109,7 +133,9 @@ std::unique_ptr<EditJob> StepSequence::job_of(std::size_t i, const FirstJob& fir
                                               const JobControl& control) const {
     auto recipe = recipe_of_step(recipe_, step(i));
     if (job_ == nullptr) return first(std::move(recipe));
-    return std::make_unique<EditJob>(std::move(recipe), next_input(*job_, said_), control);
+    const auto& words = *step(i).words;
+    const std::string source = words.part_of.empty() && !words.whole_scene ? words.source : std::string();
+    return std::make_unique<EditJob>(std::move(recipe), next_input(*job_, said_, source), control);
 }
 
 void StepSequence::take(std::size_t i, std::unique_ptr<EditJob> job) {

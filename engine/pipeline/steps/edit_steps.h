@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -37,12 +38,19 @@ bool has_steps(const EditRecipe& recipe);
 /// or a step cannot be done and `partly` is false.
 EditSteps steps_of_sentence(const EditRecipe& recipe, const language::plan::SceneWords& scene, bool partly);
 
+/// Steps that name a word which the model in `folder` cannot find or draw become steps that cannot be done.
+/// `request` has the settings.
+std::vector<edit::PlannedStep> known_to_model(std::vector<edit::PlannedStep> steps,
+                                              const edit::EditRequest& request,
+                                              const std::filesystem::path& folder);
+
 /// The recipe of one step that has words.
 EditRecipe recipe_of_step(EditRecipe recipe, const edit::PlannedStep& step);
 
 /// Scene, views and model that a job left, for the job of the next step. `said`: words that earlier steps
-/// brought along.
-EditJobInput next_input(EditJob& job, std::vector<std::string> said);
+/// brought along. `source`: thing that the next step is about. It is not looked for again where the job was
+/// about it too.
+EditJobInput next_input(EditJob& job, std::vector<std::string> said, const std::string& source);
 
 /// {"plan": notation, "steps": [{"step", "text", "prompt" or "reason"}, ...]}.
 nlohmann::ordered_json plan_to_json(const EditSteps& steps);

@@ -44,7 +44,7 @@ void back_to_defaults(Context& context) {
 
 void nothing_before(const char*, bool&) {}
 
-/// Which settings count for nothing with the method that the edit is led by.
+/// Settings that count for nothing with the method that the edit is led by.
 UnusedField unused_by_method(const Context& context) {
     return [&method = edit::method_of(context.request)](unsigned uses) {
         return edit::why_unused(method, uses);
