@@ -34,8 +34,14 @@ struct SearchGround {
 
     EditJobInput input(const MeasuredRun& run, std::vector<std::uint8_t> label) const {
         const bool known = label.empty() && !found.empty();
-        return {scene, views,          run.model, std::move(label),
-                {},    tuned,          said,      run.segmenters,
+        return {scene,
+                views,
+                run.model,
+                std::move(label),
+                {},
+                tuned,
+                said,
+                run.segmenters,
                 known ? found : std::vector<std::uint8_t>{}};
     }
 };

@@ -249,8 +249,7 @@ private:
         const auto mode = edit::decide_mode(recipe_.request, std::nullopt).first;
         const Label known = make_label(recipe_.request.source(),
                                        std::vector<float>(hints_.found.begin(), hints_.found.end()), 0.5f);
-        return moved_in(views_on(focused_on(known, mode, views_.orbit, views_.front), recipe_),
-                        hints_.found);
+        return moved_in(views_on(focused_on(known, mode, views_.orbit, views_.front), recipe_), hints_.found);
     }
 
     /// Asks the model's encoders, where it has them, which word is new and which distances are worth a
