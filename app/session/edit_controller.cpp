@@ -75,12 +75,21 @@ void EditController::read_steps() {
 /// Makes the steps that can be done and are not left out, one after another, in a scene of these words.
 void EditController::begin_steps(const language::plan::SceneWords& scene) {
     auto steps = search_.sentence().steps_in(scene, left_out_);
-    if (steps.size() == 0)
-        return workspace_.notices.toast("Nothing to change: the scene shows what the sentence says.");
+    if (steps.size() == 0) return say_why_nothing_runs();
     chain_.begin(search_.request().prompt, std::move(steps), workspace_.document.state(),
                  workspace_.next_edit_id);
     search_.sentence().set_step(chain_.step());
     start(std::nullopt);
+}
+
+void EditController::say_why_nothing_runs() {
+    const auto& planned = search_.sentence().steps();
+    const auto undone =
+        std::find_if(planned.begin(), planned.end(), [](const auto& step) { return !step.words; });
+    if (undone == planned.end())
+        return workspace_.notices.toast("Nothing to change: the scene shows what the sentence says.");
+    workspace_.notices.report(
+        Error(ErrorCode::InvalidArgument, undone->problem.reason, undone->problem.remedy));
 }
 
 /// Inputs of the edit that begins, with the label that is its scope.

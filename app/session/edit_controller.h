@@ -57,6 +57,7 @@ private:
     template <class N> void take(N&& news);
     EditStart start_from(std::optional<edit::EditSnapshot> from) const;
     void read_steps();
+    void say_why_nothing_runs();
     void begin_steps(const language::plan::SceneWords& scene);
     void start(std::optional<edit::EditSnapshot> from);
     std::string title_of(const EditRecipe& recipe) const;

@@ -212,7 +212,7 @@ bool says_itself(const EditRequest& request, const plan::StepSentence& words, co
 bool follows_plan(const EditRequest& request, const std::vector<PlannedStep>& steps, const News& news) {
     if (steps.size() != 1) return !steps.empty();
     const auto& words = steps.front().words;
-    return words && !(is_caption(request) && says_itself(request, *words, news));
+    return !words || !(is_caption(request) && says_itself(request, *words, news));
 }
 
 EditRequest request_of(EditRequest request, const plan::StepSentence& words) {

@@ -65,7 +65,7 @@ bool says_itself(const EditRequest& request, const language::plan::StepSentence&
                  const News& news = {});
 
 /// True where the steps run in their own words: several, or one that the typed sentence is no caption of, or
-/// does not say itself.
+/// does not say itself. One that cannot be done does not run as it is typed either.
 bool follows_plan(const EditRequest& request, const std::vector<PlannedStep>& steps, const News& news = {});
 
 /// The request in a step's words.

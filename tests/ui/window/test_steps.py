@@ -6,49 +6,47 @@ from window import WindowTest
 
 
 class Steps(WindowTest):
-    def start(self):
-        window = self.open()
-        window.click("start.sample")
-        window.wait(lambda s: s["splats"] > 0 and not s["busy"], "the sample did not open")
-        window.write("prompt.source", "bear")
-        window.write("prompt.sentence", "a blue bear wearing a red hat")
-        window.wait_widget("prompt.step.2")
-        return window
-
-    def run_edit(self, window):
+    def run_edit(self, window, applied):
         window.wait_widget("prompt.edit", enabled=True)
         window.click("prompt.edit")
         window.wait(lambda s: s["job"]["running"], "the edit did not start", 20)
         window.wait(lambda s: s["result_waiting"] and not s["job"]["running"], "no result waits", 300)
-
-    def test_two_changes_are_made_together_and_undone_one_by_one(self):
-        window = self.start()
-        window.picture("steps_01_plan")
-        splats = window.state()["splats"]
-        self.run_edit(window)
-        window.picture("steps_02_result")
+        window.picture(f"steps_{applied}_result")
         window.click("result.apply")
-        window.wait(lambda s: s["stack"] == 2, "two edits are not on the stack", 20)
+        window.wait(lambda s: s["stack"] == applied, f"{applied} edits are not on the stack", 20)
+
+    def test_steps_are_left_out_made_together_and_undone_one_by_one(self):
+        window = self.open()
+        window.click("start.sample")
+        window.wait(lambda s: s["splats"] > 0 and not s["busy"], "the sample did not open")
+        splats = window.state()["splats"]
+        window.write("prompt.source", "bear")
+        window.write("prompt.sentence", "a blue bear wearing a red hat")
+        window.wait_widget("prompt.step.2")
+        window.picture("steps_plan")
+        window.scroll_to("prompt.quality.draft", "panel.Prompt")
+        window.click("prompt.quality.draft")
+        window.scroll_to("prompt.step.2", "panel.Prompt")
+        window.click("prompt.step.2")
+        self.run_edit(window, 1)
+        window.key("ctrl+z")
+        window.wait(lambda s: s["stack"] == 0 and s["splats"] == splats, "the colour was not taken back", 10)
+
+        window.click("tab.Prompt")
+        window.scroll_to("prompt.step.2", "panel.Prompt")
+        window.click("prompt.step.2")
+        self.run_edit(window, 2)
         self.assertGreater(window.state()["splats"], splats)
-        window.picture("steps_03_applied")
         window.key("ctrl+z")
         window.wait(lambda s: s["stack"] == 1, "the hat was not taken back", 10)
         window.key("ctrl+z")
         window.wait(lambda s: s["stack"] == 0 and s["splats"] == splats, "the colour was not taken back", 10)
-        window.close()
 
-    def test_a_step_is_left_out(self):
-        window = self.start()
-        splats = window.state()["splats"]
-        window.click("prompt.step.2")
-        self.run_edit(window)
-        window.click("result.apply")
-        window.wait(lambda s: s["stack"] == 1, "the colour is not on the stack", 20)
         window.click("tab.Prompt")
         for sentence in ("leave the bear as it is", "gib ihm einen roten Hut"):
             window.write("prompt.sentence", sentence)
             window.wait(lambda s: not window.widgets()["prompt.edit"]["enabled"], "Edit is on", 10)
-            window.picture("steps_04_" + sentence.split()[0])
+            window.picture("steps_" + sentence.split()[0])
         window.close()
 
 
