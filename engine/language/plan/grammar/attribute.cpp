@@ -14,6 +14,20 @@ std::string text_of(std::span<const Word> words) {
     return text;
 }
 
+/// "riper", "floppier": no word of the lists, made of an adjective.
+bool is_comparative(const std::string& word) {
+    if (word.size() < 5 || !word.ends_with("er")) return false;
+    const auto stem = word.substr(0, word.size() - 2);
+    const auto describes = [](const std::string& text) {
+        return (kinds_of(text) & Kind::Adjective) != 0 || has(Class::state, text) || has(Class::pose, text) ||
+               has(Class::material_surface, text);
+    };
+    const bool doubled = stem[stem.size() - 1] == stem[stem.size() - 2];
+    return describes(stem) || describes(stem + "e") ||
+           (stem.ends_with('i') && describes(stem.substr(0, stem.size() - 1) + "y")) ||
+           (doubled && describes(stem.substr(0, stem.size() - 1)));
+}
+
 /// Length and name of the colour that the words begin with, shades before it ("dark blue"); 0 for none.
 std::size_t colour_length(std::span<const Word> words, std::string& name) {
     std::size_t at = 0;
@@ -137,7 +151,8 @@ bool Cursor::take_other_attribute(Attribute& attribute, bool in_phrase) {
     }
     const auto kinds = kinds_of(word().text);
     const bool only_adjective =
-        (kinds & Kind::Adjective) != 0 && (kinds & (Concrete | Perhaps)) == 0 && noun_length() <= 1;
+        ((kinds & Kind::Adjective) != 0 && (kinds & (Concrete | Perhaps)) == 0 && noun_length() <= 1) ||
+        (kinds == 0 && is_comparative(word().text));
     const bool noun_follows = in_phrase && noun_length(1) > 0 && !ends_phrase(1, true);
     const bool ends = ends_phrase(1, true) && (kinds & Other) == 0;
     if (only_adjective && !peek(Class::colour_word) && !peek(Class::part) && !peek(Class::worn) &&

@@ -33,7 +33,8 @@ private:
     bool skip_separators();
     bool clause();
     bool ends_well() const;
-    void skip_rest();
+    void skip_rest(std::size_t steps);
+    bool leaves_out(std::size_t steps);
     bool skip_narrative(std::size_t start);
     bool fail(std::string_view reason);
     Plan failure() const;

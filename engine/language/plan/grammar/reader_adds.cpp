@@ -141,7 +141,7 @@ bool Reader::place_new(const Phrase& phrase, Targets& made) {
         const std::size_t start = c_.at;
         while (c_.take(Class::emerging) || c_.take(Class::pose)) {}
         if (const auto side = c_.peek(Class::direction);
-            side && !c_.peek(Class::relation) && (side.value == "left" || side.value == "right")) {
+            side.length > c_.peek(Class::relation).length && !c_.peek(Class::of, side.length) && (side.value == "left" || side.value == "right")) {
             c_.at += side.length;
             if (focus.found()) d_.set_anchor(thing, side.value == "left" ? "left of" : "right of", focus);
             continue;

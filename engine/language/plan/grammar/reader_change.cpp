@@ -138,9 +138,14 @@ bool Reader::compared(const Targets& targets) {
     if (const auto size = ahead.peek(Class::size); size && !same) {
         ahead.at += size.length;
         if (!ahead.take(Class::like) && !ahead.take(Class::than)) return false;
+        const bool equal = ahead.word().text.empty() ? false : c_.is(Class::word_as);
         if (!ahead.take_phrase(other)) return false;
         c_.at = ahead.at;
-        for (const auto& target : targets) d_.step(Operation::Transform, target, std::string(size.value));
+        const auto model = d_.resolve(other);
+        const bool whole = size.value == "bigger" || size.value == "smaller";
+        for (const auto& target : targets)
+            if (equal && whole && model.thing) d_.move(target, "same size as", model);
+            else d_.step(Operation::Transform, target, std::string(size.value));
         return true;
     }
     const bool colour = ahead.peek(Class::colour_word).length > 0,
@@ -262,6 +267,15 @@ bool Reader::style_text(const Targets& targets) {
     if (!ahead.at_end_of_clause() && !ahead.peek(Class::of) && ahead.noun_length() > 0 &&
         !ahead.ends_phrase(0, true))
         return false;
+    const bool of_things = std::none_of(targets.begin(), targets.end(), [](const Target& each) {
+        return each.is_scene();
+    });
+    Attribute colours;  // "everything but the horse black and white"
+    if (of_things && c_.at < ahead.at && targets.front().reference.except) {
+        Cursor plain = c_;
+        if (plain.take_attribute(colours, false) && colours.quality == Quality::Colour && plain.at == ahead.at)
+            return false;
+    }
     c_.at = ahead.at;
     for (const auto& target : targets) d_.style(target, text);
     return true;
@@ -278,7 +292,7 @@ bool Reader::become(const Targets& targets, const Phrase& phrase) {
         const auto material = meaning(Class::material, phrase.noun);
         if (on_ground &&
             (is_ground(phrase) || has(Class::material, phrase.noun) || has(Class::place, phrase.noun))) {
-            d_.ground(phrase);
+            d_.ground(phrase, frame_ == Frame::Replace);
         } else if (material && !phrase.indefinite && phrase.count.empty()) {
             apply_all({target}, {material_attribute(*material)});
             apply_all({target}, phrase.attributes);

@@ -10,7 +10,9 @@ namespace {
 bool is_one_slip(const std::string& noun, const std::string& other) {
     const std::vector<std::string> needed{other};
     const auto near = slips_of(noun, needed, 100);
-    return std::find(near.begin(), near.end(), other) != near.end();
+    const auto blank = other.rfind(' ');  // "bear" of a teddy bear
+    return std::find(near.begin(), near.end(), other) != near.end() ||
+           (blank != std::string::npos && is_one_slip(noun, other.substr(blank + 1)));
 }
 
 }  // namespace
@@ -41,8 +43,9 @@ bool Reader::describe_part(const Phrase& phrase, const Target& found) {
     std::vector<Attribute> attributes;
     for (const auto& attribute : phrase.attributes)
         if (attribute.quality != Quality::Side) attributes.push_back(attribute);
-    if (attributes.empty() && phrase.indefinite && !phrase.owner)
-        return describe_new(phrase);  // "a chimney on the house"
+    const bool placed = phrase.plural && !phrase.has_determiner() && c_.peek(Class::relation);
+    if (attributes.empty() && (phrase.indefinite || placed) && !phrase.owner)
+        return describe_new(phrase);  // "a chimney on the house", "leaves on the pavement"
     const bool own_worn = is_worn(phrase) && !phrase.owner && (kinds_of(phrase.noun) & Body) == 0;
     if (own_worn) {
         d_.add(phrase, "worn by", {d_.focus()});
@@ -51,7 +54,8 @@ bool Reader::describe_part(const Phrase& phrase, const Target& found) {
     if (!apply_all({found}, attributes) && !complement({found})) return fail(reason::Incomplete);
     Cursor whose = c_;  // "blue ears for the bear"
     Phrase owner;
-    if (whose.is(Class::word_for) && ++whose.at && whose.take_phrase(owner) &&
+    const bool of_whom = whose.is(Class::word_for) || whose.is(Class::word_on) || whose.is(Class::word_of);
+    if (of_whom && ++whose.at && whose.take_phrase(owner) &&
         d_.resolve(owner).reference.root() == found.reference.root())
         c_.at = whose.at;
     return describe_more();
@@ -80,6 +84,10 @@ bool Reader::describe(const Phrase& phrase) {
     }
     const auto found = d_.resolve(phrase);
     if (found.kind == Target::Kind::Ambiguous) return fail(reason::Ambiguous);
+    if (found.thing && phrase.indefinite && !exact && c_.peek(Class::instead)) {  // "an armchair instead"
+        c_.take(Class::instead);
+        return c_.at_end_of_clause() && become({found}, phrase);
+    }
     if (!found.found()) return describe_new(phrase);
     const bool on_ground = found.thing && d_.scene().things[*found.thing].is_ground;
     if (on_ground && !phrase.attributes.empty() && has(Class::empty, phrase.attributes.front().typed) &&
@@ -277,7 +285,10 @@ bool Reader::describe_new(const Phrase& phrase) {
     }
     // "a blue beer": food is no likely slip of a pen, but of the bear's name
     const bool being = (kinds_of(phrase.noun) & (Animal | Person | Artifact | Vehicle)) != 0;
-    if (focus.found() && !being && is_one_slip(phrase.noun, focus.reference.root()))
+    const bool lives = (kinds_of(phrase.noun) & (Animal | Person)) != 0 || has(Class::person, phrase.noun) ||
+                       has(Class::animal, phrase.noun) || has(Class::thing, phrase.noun);
+    const bool acts = c_.peek(Class::wearing) || c_.peek(Class::holding);  // "a bar wearing a scarf"
+    if (focus.found() && (!being || (acts && !lives)) && is_one_slip(phrase.noun, focus.reference.root()))
         return fail(reason::NotASentence);
     if (focus.found()) {
         const auto made = d_.replace(focus, phrase);
@@ -318,7 +329,7 @@ bool Reader::skip_instead() {
     Phrase old;
     Cursor probe = ahead;
     Attribute attribute;
-    if (probe.take_phrase(old) && !old.noun.empty()) {
+    if (probe.take_phrase(old) && (!old.noun.empty() || old.definite)) {
         c_.at = probe.at;
         return true;
     }

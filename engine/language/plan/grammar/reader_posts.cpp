@@ -13,13 +13,13 @@ std::string last_word(std::string_view phrase) {
 }
 
 /// Relation of a thing that someone has "with" them.
-std::string_view having_relation(const Phrase& phrase, bool animate) {
+std::string_view having_relation(const Phrase& phrase, bool animate, bool furniture) {
     if (is_worn(phrase)) return "worn by";
     if (has(Class::floating, phrase.noun) || has(Class::floating, phrase.typed))
         return animate && is_held(phrase) ? "held by" : "on";
     if (is_held(phrase) && animate) return "held by";
     if (is_part(phrase)) return "worn by";
-    return "beside";
+    return furniture ? "on" : "beside";
 }
 
 }  // namespace
@@ -136,6 +136,7 @@ bool Reader::own(const Target& subject, const Phrase& phrase, std::string_view r
     if (there && !d_.scene().things[found.front()].is_ground) {
         const auto target = d_.target_of_thing(found.front());
         if (target.reference == subject.reference) return false;
+        if (relation == "ridden by" && subject.step) d_.set_anchor(subject, "on", target);
         d_.already_so();
         apply_all({target}, phrase.attributes);
         nested(target, subject);
@@ -155,7 +156,8 @@ bool Reader::own(const Target& subject, const Phrase& phrase, std::string_view r
         return true;
     }
     const auto how = relation == "with"
-                         ? having_relation(phrase, d_.is_animate(subject) || d_.can_wear(subject))
+                         ? having_relation(phrase, d_.is_animate(subject) || d_.can_wear(subject),
+                                           has(Class::furniture, subject.reference.root()))
                          : relation;
     if (how == "worn by" && is_ground(phrase)) return false;
     Cursor instead = c_;

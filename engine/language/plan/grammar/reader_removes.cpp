@@ -132,7 +132,7 @@ Reader::Targets Reader::things_on(const Target& target) const {
     const bool container = has(Class::container, noun) || has(Class::held, noun);
     for (std::size_t i = 0; i < things.size(); ++i) {
         const bool stays =
-            things[i].is_ground || things[i].is_worn || has(Class::furniture_name, things[i].noun);
+            things[i].is_ground || things[i].is_worn || has(Class::furniture, things[i].noun);
         if (i != *target.thing && !stays && (!container || i > *target.thing))
             on.push_back(d_.target_of_thing(i));
     }

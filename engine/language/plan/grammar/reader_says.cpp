@@ -17,6 +17,15 @@ bool Reader::only_clause() {
     if (stays) ahead.at = said.at + 1;
     stays = stays || keeps;
     if (!ahead.at_end_of_clause()) return false;
+    if (const auto told = d_.resolve(phrase); ahead.is_mark(",:") && told.found() && !stays) {
+        Cursor order = ahead;  // "only the tail, make it black"
+        ++order.at;
+        if (starts_verb(order.at - c_.at) && (order.peek(Class::pronoun_it, 1) || order.peek(Class::pronoun_all, 1))) {
+            d_.mention(told);
+            c_.at = order.at;
+            return clause();
+        }
+    }
     if (d_.size() > 0 || !phrase.attributes.empty() || phrase.naming != Naming::Thing) return false;
     const auto found = d_.resolve(phrase);
     const auto focus = d_.focus();
@@ -226,6 +235,7 @@ bool Reader::no_thing_clause() {
         c_.at = but.at;  // "not a bear but a lion"
         return become({d_.resolve(phrase)}, other);
     }
+    if (const auto found = d_.resolve(phrase); found.found() && d_.replaces(found)) return true;
     return lack(d_.focus(), phrase);
 }
 
@@ -268,6 +278,15 @@ bool Reader::negative_clause() {
     if (ahead.is(Class::word_neither)) {
         ++ahead.at;
         Phrase phrase;
+        Cursor said = ahead;  // "neither the car nor the house should change"
+        while (said.take_phrase(phrase) && said.is(Class::word_nor)) ++said.at;
+        if (said.take(Class::modal)) {
+            said.take(Class::copula);
+            if (!said.take(Class::verb_become) && !said.take(Class::verb_turn)) return false;
+            c_.at = said.at;
+            d_.nothing_asked();
+            return true;
+        }
         c_.at = ahead.at;
         do {
             if (!c_.take_phrase(phrase) || !lack(d_.focus(), phrase)) return false;
@@ -350,6 +369,9 @@ bool Reader::is_somehow(const Targets& subjects) {
     c_.take(Class::as_well);
     if (c_.peek(Class::holding) || c_.peek(Class::wearing))
         if (const auto read = has_something(subjects)) return *read;  // "is holding balloons"
+    if (const auto stands = c_.peek(Class::emerging);  // "is parked on the beach"
+        stands && c_.peek(Class::relation, stands.length) && !c_.peek(Class::pose))
+        c_.at += stands.length;
     if (!c_.peek(Class::like) && c_.peek(Class::relation) && !c_.peek(Class::flipping))
         return related(subjects.front());
     // "is replaced by a cat", "is painted blue", "is removed"

@@ -42,6 +42,11 @@ bool Reader::starts_verb(std::size_t ahead) const {
     const auto& word = here.word();
     const bool form = word.text == word.base || word.text.ends_with("ing");
     if (!form) return false;
+    Cursor next = here;  // "dirty truck" describes
+    ++next.at;
+    const bool bare = length == 1 && next.is_scene_noun(next.word().singular) &&
+                      (here.peek(Class::material_surface) || here.peek(Class::state));
+    if (bare) return false;
     if (starts_object(ahead + length)) return true;
     if (length > 1) return true;
     const auto kinds = kinds_of(word.text);
@@ -262,7 +267,6 @@ bool Reader::paint_clause() {
     if (!carve && gold.take_attribute(metal, false) && metal.quality == Quality::Material) {
         c_.at = gold.at;
         for (const auto& target : targets) d_.step(Operation::Recolour, target, metal.value);
-        skip_rest();
         return true;
     }
     return complement(targets);

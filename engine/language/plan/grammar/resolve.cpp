@@ -36,7 +36,7 @@ bool names(const SceneThing& thing, const Phrase& phrase) {
     if (has(Class::person_name, noun)) return is_kind(thing.noun, Person) || has(Class::person, thing.noun);
     if (has(Class::vehicle_name, noun)) return is_kind(thing.noun, Vehicle) && noun == "vehicle";
     if (has(Class::plant_name, noun)) return is_kind(thing.noun, Plant);
-    if (has(Class::furniture_name, noun)) return has(Class::furniture_name, thing.noun);
+    if (has(Class::furniture_name, noun)) return has(Class::furniture, thing.noun);
     return false;
 }
 

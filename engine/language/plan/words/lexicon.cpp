@@ -273,7 +273,8 @@ constexpr std::string_view ClassNames[] = {"spelling",
                                            "word_wide",
                                            "word_wipe",
                                            "word_with",
-                                           "word_x"};
+                                           "word_x",
+                                           "furniture"};
 static_assert(std::size(ClassNames) == ClassCount);
 
 struct Entry {
