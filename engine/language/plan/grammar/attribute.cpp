@@ -55,7 +55,8 @@ std::size_t colour_length(std::span<const Word> words, std::string& name) {
         return 1;
     }
     // "gold colored"
-    const bool named = words.size() > 1 && words[1].text == "colored" && !words[0].mark;
+    const bool named = words.size() > 1 && words[1].text == "colored" && !words[0].mark &&
+                       match(Class::pattern_plain, words).length < 2;  // "rainbow colored"
     if (named) {
         const auto metal = meaning(Class::material, word);
         name = metal && is_colour(word) ? word : metal ? std::string(*metal) : word;
@@ -143,7 +144,8 @@ bool Cursor::take_graded(Attribute& attribute) {
 /// Adjectives that are in no class: "grumpy", "thatched".
 bool Cursor::take_other_attribute(Attribute& attribute, bool in_phrase) {
     if (peek(Class::thing_name) || peek(Class::number)) return false;
-    const bool participle = word().text.ends_with("ed") && word().base != word().text && noun_length() == 0;
+    const bool participle = (word().text.ends_with("ed") || word().text.ends_with("ing")) &&
+                            word().base != word().text && noun_length() == 0;
     if (participle && in_phrase && noun_length(1) > 0 && !ends_phrase(1, true)) {  // "a thatched roof"
         attribute = {Quality::Other, word().text, word().text, ""};
         ++at;
@@ -201,6 +203,10 @@ bool Cursor::take_plain_attribute(Attribute& attribute, bool in_phrase) {
         return made(Quality::Side, found, false);
     if (const auto found = peek(Class::pose); found && !peek(Class::fire_words))
         return made(Quality::Pose, found, true);
+    if (in_phrase && is(Class::environment) && peek(Class::environment).length == 1 &&
+        (is_scene_noun(word(1).text) || is_scene_noun(word(1).singular)) && ends_phrase(2, true) &&
+        !peek(Class::compound))  // "autumn trees"
+        return made(Quality::State, peek(Class::environment), true);
     if (in_phrase)
         if (const auto found = peek(Class::pattern_animal);
             found && noun_length(found.length) > 0 && !ends_phrase(found.length, true))
@@ -267,7 +273,10 @@ std::string brace_text(const Attribute& attribute) {
 Thing thing_of(const Phrase& phrase) {
     Thing thing{phrase.noun, phrase.count == "all" ? "some" : phrase.count, {}};
     if (thing.count == "2" && has(Class::pair_noun, phrase.noun)) thing.count.clear();  // "a pair of glasses"
-    if (phrase.plural && thing.count.empty() && !has(Class::pair_noun, phrase.noun)) thing.count = "some";
+    const auto last = phrase.noun.substr(phrase.noun.rfind(' ') + 1);                   // "stick arms"
+    if (phrase.plural && thing.count.empty() && !has(Class::pair_noun, phrase.noun) &&
+        !has(Class::pair_noun, last))
+        thing.count = "some";
     for (const auto& attribute : phrase.attributes) {
         if (attribute.quality == Quality::Worn || attribute.quality == Quality::Unworn) continue;
         if (attribute.quality == Quality::Colour && attribute.value.find(" and ") != std::string::npos) {

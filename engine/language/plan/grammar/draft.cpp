@@ -248,6 +248,22 @@ void Draft::refuse(std::string_view reason, std::string_view word) {
     push(made);
 }
 
+void Draft::share_place(std::size_t from) {
+    if (from + 1 >= steps_.size()) return;
+    const auto& last = steps_.back();
+    const bool placed = last.operation == Operation::Add && last.anchors.size() == 1 &&
+                        !last.anchors.front().is_scene() && last.relation != "worn by" &&
+                        last.relation != "held by";
+    for (std::size_t i = from; placed && i + 1 < steps_.size(); ++i) {
+        auto& step = steps_[i];
+        if (step.operation != Operation::Add || step.anchors.size() != 1 || !step.anchors.front().is_scene())
+            continue;
+        if (last.anchors.front().root() == step.thing.noun) continue;  // "a table and a cup on it"
+        step.relation = last.relation;
+        step.anchors = last.anchors;
+    }
+}
+
 bool Draft::replaces(const Target& target) const {
     return std::any_of(steps_.begin(), steps_.end(), [&](const Step& step) {
         return step.operation == Operation::Replace && step.subject == target.reference;

@@ -123,8 +123,10 @@ std::size_t Cursor::noun_length(std::size_t ahead) const {
 
 bool Cursor::ends_phrase(std::size_t ahead, bool after_noun) const {
     if (word(ahead).text.empty() || word(ahead).mark) return true;
+    const bool describes = peek(Class::relation, ahead).length == 1 && peek(Class::state, ahead) &&
+                           noun_length(ahead + 1) > 0 && !after_noun;  // "round window"
     for (const auto kind : EndingClasses)
-        if (peek(kind, ahead)) return true;
+        if (peek(kind, ahead) && !describes) return true;
     if (!after_noun) return peek(Class::copula, ahead).length > 0 && noun_length(ahead) == 0;
     const bool thing = (kinds_of(word(ahead).text) & Concrete) != 0;
     const bool owner = at + ahead > 0 && is_scene_noun(words_[at + ahead - 1].singular);  // "the bear fly"
@@ -175,6 +177,13 @@ bool Cursor::take_pronoun(Phrase& phrase) {
             if (ahead.take_phrase(excepted)) {
                 phrase.excepted.push_back(excepted);
                 at = ahead.at;
+                while (ahead.take_mark(','), ahead.take(Class::conjunction), ahead.at > at) {
+                    if (!ahead.take_phrase(excepted) || excepted.noun.empty() || !excepted.definite ||
+                        !ahead.at_end_of_clause())
+                        break;
+                    phrase.excepted.push_back(excepted);
+                    at = ahead.at;
+                }
                 phrase.end = at;
             }
         }

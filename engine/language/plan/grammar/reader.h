@@ -113,6 +113,10 @@ private:
     bool describe_pattern(const Phrase& phrase);
     std::optional<bool> describe_on_top(const Phrase& phrase);
     bool describe_new(const Phrase& phrase);
+    bool describe_clinging(const Phrase& phrase);
+    bool is_slip_of_focus(const Phrase& phrase) const;
+    std::optional<bool> describe_other_kind(const Phrase& phrase, const Target& found);
+    bool describe_in_style(const Phrase& phrase, std::size_t thing);
     bool describe_other(const Phrase& phrase);
     bool skip_instead();
     bool describe_more();
@@ -127,6 +131,7 @@ private:
     bool as_much_as(const Targets& targets);
     bool looks_somewhere(const Targets& targets);
     bool measure(const Targets& targets);
+    bool percent(const Targets& targets);
     bool compared(const Targets& targets);
     bool alike(const Targets& targets);
     bool become(const Targets& targets, const Phrase& phrase);
@@ -163,6 +168,7 @@ private:
     bool objects(Targets& targets, std::vector<Phrase>* phrases = nullptr, bool split = false);
     bool contradicts_colour(const Phrase& phrase, const Target& found) const;
     Targets things_on(const Target& target) const;
+    bool all_but(const std::vector<Phrase>& excepted, Targets& targets);
     bool object(Targets& targets, Phrase& phrase, bool split = false);
     Target expect(const Phrase& phrase);
     bool on_bearer(const Phrase& phrase, Target& bearer) const;

@@ -12,13 +12,16 @@ std::string last_word(std::string_view phrase) {
     return std::string(blank == std::string_view::npos ? phrase : phrase.substr(blank + 1));
 }
 
+/// Tells whether things stand on what has that name: furniture, grounds.
+bool carries(const std::string& noun) { return has(Class::furniture, noun) || has(Class::ground, noun); }
+
 /// Relation of a thing that someone has "with" them.
 std::string_view having_relation(const Phrase& phrase, bool animate, bool furniture) {
     if (is_worn(phrase)) return "worn by";
     if (has(Class::floating, phrase.noun) || has(Class::floating, phrase.typed))
         return animate && is_held(phrase) ? "held by" : "on";
     if (is_held(phrase) && animate) return "held by";
-    if (is_part(phrase)) return "worn by";
+    if (is_part(phrase)) return animate ? "worn by" : "on";
     return furniture ? "on" : "beside";
 }
 
@@ -146,18 +149,18 @@ bool Reader::own(const Target& subject, const Phrase& phrase, std::string_view r
         !has(Class::floating, phrase.noun) && !has(Class::thing, phrase.noun))
         return relate(subject, "on", phrase);
     if (is_part(phrase) && relation != "worn by" && own_part(subject, phrase)) return true;
-    if (is_part(phrase) && !is_worn(phrase) && (kinds_of(phrase.noun) & Body) != 0 && relation == "with") {
-        if (phrase.another || phrase.count.empty() == false) {
+    if (is_part(phrase) && !is_worn(phrase) && relation == "with" &&
+        ((kinds_of(phrase.noun) & Body) != 0 ||
+         (has(Class::body_place, phrase.noun) && !phrase.count.empty()))) {
+        if (phrase.another || !phrase.count.empty())
             d_.step(Operation::Alter, subject,
                     (phrase.count.empty() ? "another" : phrase.count) + " " + phrase.typed);
-            return true;
-        }
-        d_.already_so();
+        else d_.already_so();
         return true;
     }
     const auto how = relation == "with"
                          ? having_relation(phrase, d_.is_animate(subject) || d_.can_wear(subject),
-                                           has(Class::furniture, subject.reference.root()))
+                                           carries(subject.reference.root()))
                          : relation;
     if (how == "worn by" && is_ground(phrase)) return false;
     Cursor instead = c_;
@@ -180,8 +183,11 @@ bool Reader::has_list(const Target& subject, std::string_view relation) {
     Phrase phrase;
     do {
         const std::size_t start = c_.at;
-        if (c_.peek(Class::without)) {
-            c_.take(Class::without);
+        Cursor lacking = c_;
+        lacking.take(Class::article);  // "with a missing arm"
+        if (lacking.peek(Class::without) && (lacking.at == c_.at || lacking.peek(Class::gone))) {
+            lacking.take(Class::without);
+            c_.at = lacking.at;
             return lack_list(subject);
         }
         if (c_.is(Class::word_nothing) && (c_.peek(Class::contrast, 1) || c_.peek(Class::except, 1)))

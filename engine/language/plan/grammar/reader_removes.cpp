@@ -103,6 +103,10 @@ bool Reader::remove_clause() {
     if (targets.size() == 1 && targets[0].is_scene() &&
         (c_.peek(Class::contrast) || c_.is(Class::word_except)))
         return false;
+    if (first.excepted.size() > 1)
+        std::erase_if(targets, [&](const Target& each) {
+            return each.thing && d_.scene().things[*each.thing].is_ground;
+        });
     skip_from(targets);
     frame_ = Frame::Remove;
     remove_all(targets);
@@ -131,8 +135,7 @@ Reader::Targets Reader::things_on(const Target& target) const {
     const auto& noun = things[*target.thing].noun;
     const bool container = has(Class::container, noun) || has(Class::held, noun);
     for (std::size_t i = 0; i < things.size(); ++i) {
-        const bool stays =
-            things[i].is_ground || things[i].is_worn || has(Class::furniture, things[i].noun);
+        const bool stays = things[i].is_ground || things[i].is_worn || has(Class::furniture, things[i].noun);
         if (i != *target.thing && !stays && (!container || i > *target.thing))
             on.push_back(d_.target_of_thing(i));
     }

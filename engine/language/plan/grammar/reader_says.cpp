@@ -20,7 +20,8 @@ bool Reader::only_clause() {
     if (const auto told = d_.resolve(phrase); ahead.is_mark(",:") && told.found() && !stays) {
         Cursor order = ahead;  // "only the tail, make it black"
         ++order.at;
-        if (starts_verb(order.at - c_.at) && (order.peek(Class::pronoun_it, 1) || order.peek(Class::pronoun_all, 1))) {
+        if (starts_verb(order.at - c_.at) &&
+            (order.peek(Class::pronoun_it, 1) || order.peek(Class::pronoun_all, 1))) {
             d_.mention(told);
             c_.at = order.at;
             return clause();
@@ -159,6 +160,18 @@ bool Reader::style_clause() {
     if (ahead.is(Class::word_in) || ahead.is(Class::word_as)) ++ahead.at;
     c_.at = ahead.at;
     if (style_text({d_.scene_target()})) {
+        Cursor whom = c_, last = c_;
+        --last.at;
+        Phrase model;
+        if (last.is(Class::word_version) && whom.take(Class::of) && whom.take_phrase(model) &&
+            model.definite && d_.resolve(model).thing &&
+            whom.at_end_of_clause()) {  // "a low-poly version of the fox"
+            d_.drop_last();
+            c_.at = ahead.at;
+            const bool read = style_text({d_.resolve(model)});
+            c_.at = whom.at;
+            return read;
+        }
         if (c_.take(Class::of)) {
             const bool more = clause();
             return more || c_.at_end_of_clause();
@@ -369,7 +382,7 @@ bool Reader::is_somehow(const Targets& subjects) {
     c_.take(Class::as_well);
     if (c_.peek(Class::holding) || c_.peek(Class::wearing))
         if (const auto read = has_something(subjects)) return *read;  // "is holding balloons"
-    if (const auto stands = c_.peek(Class::emerging);  // "is parked on the beach"
+    if (const auto stands = c_.peek(Class::emerging);                 // "is parked on the beach"
         stands && c_.peek(Class::relation, stands.length) && !c_.peek(Class::pose))
         c_.at += stands.length;
     if (!c_.peek(Class::like) && c_.peek(Class::relation) && !c_.peek(Class::flipping))
@@ -530,7 +543,10 @@ bool Reader::noun_clause() {
         if (const auto read = statement(phrases, said, adjective_behind)) return *read;
     }
     if (phrase.naming == Naming::Everything && !c_.at_end_of_clause()) {
-        posts(d_.scene_target());
+        const auto whole = d_.resolve(phrase);
+        if (!whole.found()) return false;
+        if (phrase.excepted.empty() || !c_.is(Class::word_in)) posts(whole);
+        else if (++c_.at, !complement({whole})) return false;  // "everything but the dog in gray"
         return c_.at_end_of_clause();
     }
     if (phrase.naming != Naming::Thing) {

@@ -27,6 +27,9 @@ bool names(const SceneThing& thing, const Phrase& phrase) {
     const auto& noun = phrase.noun;
     if (noun == thing.noun || noun == head_of(thing.noun) || phrase.typed == thing.noun) return true;
     if (are_synonyms(thing.noun, noun) || are_synonyms(head_of(thing.noun), noun)) return true;
+    const bool closed = noun.size() > 3 && thing.noun.size() > noun.size() && thing.noun.ends_with(noun);
+    if (closed && (phrase.definite || phrase.possessive) && !thing.is_ground)
+        return true;  // "coat" of a raincoat
     if (thing.is_ground) return has(Class::ground_name, noun);
     if (thing.is_worn) return has(Class::clothes_name, noun) && !phrase.plural;
     const bool being = is_being(thing.noun);
@@ -245,6 +248,8 @@ Target Draft::resolve(const Phrase& phrase) const {
     switch (phrase.naming) {
         case Naming::Thing: break;
         case Naming::Everything:
+            if (phrase.excepted.size() > 1)
+                return {Target::Kind::Ambiguous, {}, std::nullopt, std::nullopt, ""};
             if (!phrase.excepted.empty()) {
                 auto target = resolve(phrase.excepted.front());
                 target.reference.except = true;
@@ -287,7 +292,10 @@ Target Draft::resolve(const Phrase& phrase) const {
     if (found.size() > 1) return of_several(phrase, found);
     if (has(Class::thing_name, phrase.noun) && phrase.definite) return focus();
     if (is_part(phrase)) {
-        Target owner = phrase.possessive ? pronoun(Naming::It, true) : focus();
+        const bool of_last =
+            last_ && last_->kind == Target::Kind::There && !last_->thing && phrase.definite &&
+            last_->reference.links.size() > 1;  // "paint the table legs red and the top white"
+        Target owner = phrase.possessive || of_last ? pronoun(Naming::It, true) : focus();
         if (!owner.found() && !scene_->things.empty() && owner.kind == Target::Kind::Ambiguous)
             owner = target_of_thing(0);
         if (owner.found()) return part_target(owner, phrase);
