@@ -254,14 +254,22 @@ void Draft::share_place(std::size_t from) {
     const bool placed = last.operation == Operation::Add && last.anchors.size() == 1 &&
                         !last.anchors.front().is_scene() && last.relation != "worn by" &&
                         last.relation != "held by";
-    for (std::size_t i = from; placed && i + 1 < steps_.size(); ++i) {
+    const auto& whose = last.anchors.front().root();
+    const bool at_new =
+        std::any_of(steps_.begin(), steps_.end(), [&](const Step& step) { return step.thing.noun == whose; });
+    for (std::size_t i = from; placed && !at_new && i + 1 < steps_.size(); ++i) {
         auto& step = steps_[i];
         if (step.operation != Operation::Add || step.anchors.size() != 1 || !step.anchors.front().is_scene())
             continue;
-        if (last.anchors.front().root() == step.thing.noun) continue;  // "a table and a cup on it"
         step.relation = last.relation;
         step.anchors = last.anchors;
     }
+}
+
+bool Draft::changes_whole() const {
+    return std::any_of(steps_.begin(), steps_.end(), [](const Step& step) {
+        return step.subject.links.size() == 1 && rank(step.operation) == 1;
+    });
 }
 
 bool Draft::replaces(const Target& target) const {

@@ -69,6 +69,8 @@ public:
     /// Things added from that step on without a place stand where the last one does ("a cup and a plate on
     /// the table").
     void share_place(std::size_t from);
+    /// Tells whether a step changes a thing as a whole, and not a part of it.
+    bool changes_whole() const;
     /// Tells whether a step puts another thing in its place.
     bool replaces(const Target& target) const;
     /// Leaves the thing out of the steps from that one on, which are about all of its kind.

@@ -143,7 +143,8 @@ bool Cursor::take_pronoun(Phrase& phrase) {
                                                      {Class::pronoun_it, Naming::It},
                                                      {Class::pronoun_person, Naming::Person}};
     for (const auto& [kind, naming] : Pronouns) {
-        const auto found = peek(kind);
+        auto found = peek(kind);
+        if (kind == Class::everything && is(Class::word_all) && peek(Class::except, 1)) found.length = 1;
         if (!found) continue;
         // "her hat", "this bear", "the thing on the grass"
         if (naming != Naming::Everything && naming != Naming::EverythingElse) {

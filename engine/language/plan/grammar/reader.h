@@ -134,6 +134,7 @@ private:
     bool percent(const Targets& targets);
     bool compared(const Targets& targets);
     bool alike(const Targets& targets);
+    bool said_of_part(const Target& target) const;
     bool become(const Targets& targets, const Phrase& phrase);
     bool material_of(const Targets& targets);
     bool denied(const Targets& targets);

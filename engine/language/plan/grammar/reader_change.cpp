@@ -298,6 +298,12 @@ bool Reader::style_text(const Targets& targets) {
     return true;
 }
 
+/// Tells whether the sentence says how a part is to be: "its neck should be maple" names no other thing.
+bool Reader::said_of_part(const Target& target) const {
+    return target.reference.links.size() > 1 && !target.thing && frame_ != Frame::Replace &&
+           frame_ != Frame::Turn && frame_ != Frame::Add;
+}
+
 /// Another thing in its place, or what it is made of: "into a panda", "into wood", "a darker red".
 bool Reader::become(const Targets& targets, const Phrase& phrase) {
     if (phrase.naming != Naming::Thing || phrase.none) return false;
@@ -315,7 +321,7 @@ bool Reader::become(const Targets& targets, const Phrase& phrase) {
             apply_all({target}, phrase.attributes);
         } else if (has(Class::style, phrase.noun) || has(Class::style, phrase.typed)) {
             d_.style(target, phrase.typed);
-        } else if (!is_thing(phrase) && !material) {
+        } else if ((!is_thing(phrase) && !material) || (said_of_part(target) && !phrase.has_determiner())) {
             return fail(reason::NotASentence);
         } else if (target.is_scene()) {
             if (!has(Class::place, phrase.noun) && !has(Class::environment, phrase.noun) &&

@@ -231,6 +231,7 @@ bool Reader::stands_by_other(const Phrase& phrase) const {
     const auto focus = d_.focus();
     Cursor ahead = c_;
     Phrase place;
+    while (ahead.take(Class::emerging) || ahead.take(Class::pose)) {}
     const auto relation = ahead.take(Class::relation);
     if (!focus.thing || !relation || !ahead.take_phrase(place) || !place.definite) return false;
     const auto found = d_.resolve(place);
@@ -282,7 +283,8 @@ bool Reader::describe_clinging(const Phrase& phrase) {
     return true;
 }
 
-/// Tells whether the noun is a slip of the pen for what is there, or a part of it: "a blue beer", "piano lid".
+/// Tells whether the noun is a slip of the pen for what is there, or a part of it: "a blue beer", "piano
+/// lid".
 bool Reader::is_slip_of_focus(const Phrase& phrase) const {
     const auto focus = d_.focus();
     const bool of_focus = focus.found() && phrase.noun.starts_with(focus.reference.root() + " ");
@@ -476,7 +478,8 @@ bool Reader::attribute_clause() {
         if (target.kind == Target::Kind::Missing) missing_ = target.word;
         return fail(target.kind == Target::Kind::Missing ? reason::NotInScene : reason::Ambiguous);
     }
-    if (attributes && attribute.quality == Quality::Other && ahead.done() && !described_)
+    const bool ends = ahead.done() || ahead.peek(Class::rather_than);
+    if (attributes && attribute.quality == Quality::Other && ends && !described_)
         return fail(reason::NotASentence);
     if (attributes && complement({target})) {
         frame_ = Frame::Make;

@@ -158,6 +158,7 @@ bool Reader::own(const Target& subject, const Phrase& phrase, std::string_view r
         else d_.already_so();
         return true;
     }
+    if (relation == "held by" && is_ground(phrase) && !is_held(phrase)) return false;  // "eating grass"
     const auto how = relation == "with"
                          ? having_relation(phrase, d_.is_animate(subject) || d_.can_wear(subject),
                                            carries(subject.reference.root()))

@@ -76,6 +76,7 @@ bool Reader::remove_clause() {
     }
     Cursor verb = c_;
     const auto direct = verb.peek(Class::verb_remove);
+    const bool moves = verb.peek(Class::verb_move).length > 0;
     const bool gets = c_.peek(Class::verb_make) && c_.is(Class::word_get);
     if (!direct && !gets && !c_.is(Class::word_take)) return false;
     const bool takes_off = takes && c_.is(Class::word_off, 1);
@@ -96,6 +97,8 @@ bool Reader::remove_clause() {
         return fail(reason::NotInScene);
     }
     if (!objects(targets, &phrases)) return false;
+    if (const auto place = c_.peek(Class::relation).value; moves && (place == "behind" || place == "under"))
+        return false;  // "hide the man behind the bus"
     if (first.naming == Naming::It && d_.is_animate(targets[0]) &&
         (c_.is(Class::word_off) || takes_off)) {  // "take it off"
         take_worn(targets);
@@ -194,7 +197,8 @@ bool Reader::shave_clause() {
 
 /// Nothing is asked of it. A part of what just changed is another matter: no step leaves it out.
 void Reader::leave_as_it_is(const Phrase& phrase) {
-    if (d_.size() > 0 && is_part(phrase) && d_.things_named(phrase).empty()) d_.refuse(reason::NotASentence);
+    if (d_.changes_whole() && is_part(phrase) && d_.things_named(phrase).empty())
+        d_.refuse(reason::NotASentence);
     else d_.nothing_asked();
 }
 

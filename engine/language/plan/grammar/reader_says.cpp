@@ -62,7 +62,8 @@ bool Reader::clause() {
         if (!reason_.empty()) return false;
         c_.at = start;
     }
-    if (c_.peek(Class::times) && d_.focus().found() && measure({d_.focus()})) return true;  // "half the size"
+    const auto sized = d_.size() > 0 && d_.last() && d_.last()->found() ? *d_.last() : d_.focus();
+    if (c_.peek(Class::times) && sized.found() && measure({sized})) return true;  // "half the size"
     return noun_clause() || attribute_clause();
 }
 
@@ -547,7 +548,7 @@ bool Reader::noun_clause() {
         if (!whole.found()) return false;
         if (phrase.excepted.empty() || !c_.is(Class::word_in)) posts(whole);
         else if (++c_.at, !complement({whole})) return false;  // "everything but the dog in gray"
-        return c_.at_end_of_clause();
+        return c_.at_end_of_clause() || c_.peek(Class::except);
     }
     if (phrase.naming != Naming::Thing) {
         c_.at = start;
