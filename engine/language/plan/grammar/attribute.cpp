@@ -201,7 +201,7 @@ bool Cursor::take_plain_attribute(Attribute& attribute, bool in_phrase) {
         (peek(Class::part, found.length) || noun_length(found.length) > 0 ||
          is(Class::word_one, found.length)))
         return made(Quality::Side, found, false);
-    if (const auto found = peek(Class::pose); found && !peek(Class::fire_words))
+    if (const auto found = peek(Class::pose); found && !peek(Class::fire_words) && !peek(Class::except))
         return made(Quality::Pose, found, true);
     if (in_phrase && is(Class::environment) && peek(Class::environment).length == 1 &&
         (is_scene_noun(word(1).text) || is_scene_noun(word(1).singular)) && ends_phrase(2, true) &&
@@ -222,7 +222,7 @@ bool Cursor::take_plain_attribute(Attribute& attribute, bool in_phrase) {
 
 bool Cursor::take_attribute(Attribute& attribute, bool in_phrase) {
     const std::size_t start = at;
-    if (done() || word().mark) return false;
+    if (done() || word().mark || peek(Class::except).length > 1) return false;
     while (const auto degree = peek(Class::degree)) {
         // "light", "little", "pretty" may describe; "too" and "so" may stand alone
         if (peek(Class::size) && !has(Class::shade, word().text) &&

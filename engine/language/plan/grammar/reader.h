@@ -86,6 +86,7 @@ private:
     bool fire_clause();
     void add_another(const Phrase& phrase, const Target& target, const std::string& noun);
     bool one_more(const Phrase& phrase);
+    bool beside_its_like(const Phrase& phrase, const Target& target);
     bool move_target(const Target& target);
     bool ellipsis();
 

@@ -40,6 +40,21 @@ void Reader::add_another(const Phrase& phrase, const Target& target, const std::
     }
 }
 
+/// "small boats around the boat", "a baby bear next to the bear": new ones.
+bool Reader::beside_its_like(const Phrase& phrase, const Target& target) {
+    Cursor around = c_;
+    Phrase where;
+    const auto relation = around.take(Class::relation);
+    if (!relation || !around.take_phrase(where) || !where.definite || where.naming != Naming::Thing ||
+        !around.at_end_of_clause() || !target.thing || !(d_.resolve(where).reference == target.reference))
+        return false;
+    c_.at = around.at;
+    Phrase more = phrase;
+    more.noun = d_.scene().things[*target.thing].noun;
+    d_.mention(d_.add(more, relation.value, {target}));
+    return true;
+}
+
 /// "another bear", "two bears", "one more bear": copies of what is there.
 bool Reader::one_more(const Phrase& phrase) {
     if (!phrase.another && (phrase.count.empty() || phrase.count == "all") && !phrase.plural) return false;
@@ -61,17 +76,7 @@ bool Reader::one_more(const Phrase& phrase) {
         add_another(phrase, target, noun);
         return true;
     }
-    Cursor around = c_;  // "small boats around the boat": new ones
-    Phrase where;
-    if (const auto relation = around.take(Class::relation);
-        relation && around.take_phrase(where) && where.definite &&
-        d_.resolve(where).reference == target.reference && around.at_end_of_clause()) {
-        c_.at = around.at;
-        Phrase more = phrase;
-        more.noun = noun;
-        d_.mention(d_.add(more, relation.value, {target}));
-        return true;
-    }
+    if (beside_its_like(phrase, target)) return true;
     apply_all({target}, phrase.attributes);
     described_ = target;
     d_.duplicate(target, phrase.count.empty() ? "some" : phrase.count);
@@ -229,6 +234,7 @@ bool Reader::add_one() {
         if (!move_target(found)) return false;
         return true;
     }
+    if (found.found() && !found.thing && phrase.owner) return fail(reason::Ambiguous);  // a part moves alone
     if (found.found() && phrase.definite && !is_part(phrase)) return move_target(found);  // "stack the books"
     const std::size_t steps = d_.size();
     if (!place_new(phrase, made)) return false;

@@ -116,6 +116,7 @@ bool Reader::describe(const Phrase& phrase) {
     if (!exact)
         if (const auto read = describe_other_kind(phrase, found)) return *read;
     if (!found.found()) return describe_new(phrase);
+    if (!phrase.definite && !described_ && beside_its_like(phrase, found)) return true;
     const bool on_ground = found.thing && d_.scene().things[*found.thing].is_ground;
     if (on_ground && !phrase.attributes.empty() && has(Class::empty, phrase.attributes.front().typed) &&
         focus.found()) {
@@ -231,10 +232,12 @@ bool Reader::stands_by_other(const Phrase& phrase) const {
     const auto focus = d_.focus();
     Cursor ahead = c_;
     Phrase place;
-    while (ahead.take(Class::emerging) || ahead.take(Class::pose)) {}
+    while (!ahead.peek(Class::relation) && (ahead.take(Class::emerging) || ahead.take(Class::pose))) {}
     const auto relation = ahead.take(Class::relation);
     if (!focus.thing || !relation || !ahead.take_phrase(place) || !place.definite) return false;
     const auto found = d_.resolve(place);
+    if (!found.thing && found.reference.links.size() > 1)  // "a monkey on a branch of the tree"
+        return found.reference.root() != focus.reference.root();
     if (!found.thing || found.thing == focus.thing || d_.scene().things[*found.thing].is_ground) return false;
     if (relation.value == "above") return true;  // "a dragon above the castle"
     return (kinds_of(phrase.noun) & kinds_of(d_.scene().things[*focus.thing].noun) & Concrete) == 0;

@@ -35,7 +35,7 @@ bool Reader::list_goes_on() {
     if (!comma && !joint) return false;
     while (ahead.take(Class::having) || ahead.take(Class::wearing) || ahead.take(Class::as_well)) {}
     const std::size_t distance = ahead.at - c_.at;
-    if (starts_verb(distance)) return false;
+    if (starts_verb(distance) || ahead.peek(Class::holding) || ahead.peek(Class::riding)) return false;
     Phrase next;
     Cursor probe = ahead;
     if (!probe.take_phrase(next) || next.noun.empty() || next.naming != Naming::Thing) return false;
@@ -86,6 +86,7 @@ bool Reader::own_pattern(const Target& subject, const Phrase& phrase) {
 
 /// A part that is said to be otherwise: "with a white belly", "with its arms raised", "with closed eyes".
 bool Reader::own_part(const Target& subject, const Phrase& phrase) {
+    if (phrase.indefinite && c_.peek(Class::relation) && c_.peek(Class::pronoun_it, 1)) return false;
     Phrase owned = phrase;
     owned.possessive = false;
     owned.owner.reset();
@@ -152,9 +153,8 @@ bool Reader::own(const Target& subject, const Phrase& phrase, std::string_view r
     if (is_part(phrase) && !is_worn(phrase) && relation == "with" &&
         ((kinds_of(phrase.noun) & Body) != 0 ||
          (has(Class::body_place, phrase.noun) && !phrase.count.empty()))) {
-        if (phrase.another || !phrase.count.empty())
-            d_.step(Operation::Alter, subject,
-                    (phrase.count.empty() ? "another" : phrase.count) + " " + phrase.typed);
+        const std::string count = phrase.another ? "another" : phrase.single ? "1" : phrase.count;
+        if (!count.empty()) d_.step(Operation::Alter, subject, count + " " + phrase.typed);
         else d_.already_so();
         return true;
     }

@@ -232,7 +232,12 @@ bool Reader::there_is_clause() {
 bool Reader::no_thing_clause() {
     Cursor ahead = c_;
     Phrase phrase;
-    if (!ahead.take_phrase(phrase) || !phrase.none || phrase.noun.empty()) return false;
+    if (!ahead.take_phrase(phrase) || !phrase.none) return false;
+    if (phrase.noun.empty()) {  // "a silver crown, not a golden one"
+        if (d_.size() == 0 || phrase.attributes.empty() || !ahead.at_end_of_clause()) return false;
+        c_.at = ahead.at;
+        return true;
+    }
     c_.at = ahead.at;
     phrase.none = false;
     if (c_.peek(Class::relation)) {  // "no hat on the bear"
@@ -510,6 +515,7 @@ std::optional<bool> Reader::statement(const std::vector<Phrase>& phrases, bool s
 bool Reader::noun_clause() {
     const std::size_t start = c_.at;
     Phrase phrase;
+    if (c_.peek(Class::holding) && described_ && c_.word().text.ends_with("ing")) return false;
     if (!c_.take_phrase(phrase)) return false;
     if (phrase.naming == Naming::Something) return false;
     // "chair blue", "the bears ears white", "bear: green"

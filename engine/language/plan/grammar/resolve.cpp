@@ -290,7 +290,8 @@ Target Draft::resolve(const Phrase& phrase) const {
         return of_several(phrase, found);
     }
     if (found.size() > 1) return of_several(phrase, found);
-    if (has(Class::thing_name, phrase.noun) && phrase.definite) return focus();
+    if (has(Class::thing_name, phrase.noun) && phrase.definite)  // "every item on the desk" is not one thing
+        return phrase.count == "all" ? pronoun(Naming::They) : focus();
     if (is_part(phrase)) {
         const bool of_last =
             last_ && last_->kind == Target::Kind::There && !last_->thing && phrase.definite &&
