@@ -297,7 +297,10 @@ void Cursor::take_nouns(Phrase& phrase, bool split, std::size_t length) {
         if (owner &&
             (split || peek(Class::part) || peek(Class::colour_word) || is_scene_noun(word().singular)))
             break;
-        if (owner && describes_to_the_end()) break;  // "make the bear violet", "make the grass gravel"
+        const bool part =
+            has(Class::part, words_[at - 1].singular) && peek(Class::colour);  // "its beak orange"
+        if ((owner || part) && describes_to_the_end())
+            break;  // "make the bear violet", "make the grass gravel"
         Attribute ignored;
         Cursor ahead = *this;
         const std::size_t more = noun_length();

@@ -62,6 +62,7 @@ bool Reader::move_to(const Target& target, const Match& relation) {
     if (!c_.take_phrase(where)) { return fail(reason::Incomplete); }
     auto place = where.naming == Naming::It ? d_.focus() : d_.resolve(where);
     Target body = d_.focus();
+    if (where.possessive && !d_.is_animate(body)) body = d_.pronoun(Naming::Person);  // "in his hands"
     if (!place.found() && on_bearer(where, body)) place = body;
     if (!place.found()) {
         if (is_ground(where) && name == "on") {  // "put it on snow", "on the beach"

@@ -225,7 +225,9 @@ bool Reader::keep_clause() {
             Cursor more = object;
             more.take_mark(',');
             more.take(Class::conjunction);
-            if (more.at == object.at || starts_verb(more.at - c_.at) || !more.take_phrase(phrase)) break;
+            if (more.at == object.at || more.peek(Class::only) || starts_verb(more.at - c_.at) ||
+                !more.take_phrase(phrase))
+                break;  // "do not move the ship, just paint it"
             object.at = more.at;
         }
         // "leave the bear green": nothing to do either way; "leave out the hat" is a removal

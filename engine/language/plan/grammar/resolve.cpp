@@ -28,7 +28,7 @@ bool names(const SceneThing& thing, const Phrase& phrase) {
     if (noun == thing.noun || noun == head_of(thing.noun) || phrase.typed == thing.noun) return true;
     if (are_synonyms(thing.noun, noun) || are_synonyms(head_of(thing.noun), noun)) return true;
     const bool closed = noun.size() > 3 && thing.noun.size() > noun.size() && thing.noun.ends_with(noun);
-    if (closed && (phrase.definite || phrase.possessive) && !thing.is_ground)
+    if (closed && !phrase.indefinite && !phrase.another && phrase.count.empty() && !thing.is_ground)
         return true;  // "coat" of a raincoat
     if (thing.is_ground) return has(Class::ground_name, noun);
     if (thing.is_worn) return has(Class::clothes_name, noun) && !phrase.plural;
