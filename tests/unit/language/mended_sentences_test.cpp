@@ -159,6 +159,14 @@ const Case Mended[] = {
      "material(throne, wooden) ; add(cushion{purple}, on, throne)"},
     {"gray elephant; savanna; tree", "elephant", "baby elephant next to the elephant",
      "add(elephant{baby}, beside, elephant)"},
+    {"blue bird; birdcage; table", "bird", "open the cage door", "pose(door of birdcage, open)"},
+    {"blue bird; birdcage; table", "bird", "make the birds wings green and its beak orange",
+     "recolour(wings of bird, green) ; recolour(beak of bird, orange)"},
+    {"blue bird; birdcage; table", "bird", "remove cage", "remove(birdcage)"},
+    {"blue bird; birdcage; table", "bird", "golden cage, wooden table",
+     "material(birdcage, golden) ; material(table, wooden)"},
+    {"ship; sea; lighthouse", "ship", "don't move the ship, just paint it dark green",
+     "recolour(ship, dark green)"},
 };
 
 const char* const CarAndHouse = "red car; house; road";

@@ -14,6 +14,17 @@ std::string text_of(std::span<const Word> words) {
     return text;
 }
 
+/// Change that takes away of a size: "too long" asks for a shorter one.
+std::string less_of(const std::string& change) {
+    constexpr std::pair<std::string_view, std::string_view> Less[] = {
+        {"bigger", "smaller"}, {"smaller", "bigger"},  {"taller", "shorter"},
+        {"longer", "shorter"}, {"shorter", "longer"},  {"wider", "narrower"},
+        {"narrower", "wider"}, {"thicker", "thinner"}, {"thinner", "thicker"}};
+    for (const auto& [more, less] : Less)
+        if (more == change) return std::string(less);
+    return change;
+}
+
 /// "riper", "floppier": no word of the lists, made of an adjective.
 bool is_comparative(const std::string& word) {
     if (word.size() < 5 || !word.ends_with("er")) return false;
@@ -223,6 +234,7 @@ bool Cursor::take_plain_attribute(Attribute& attribute, bool in_phrase) {
 bool Cursor::take_attribute(Attribute& attribute, bool in_phrase) {
     const std::size_t start = at;
     if (done() || word().mark || peek(Class::except).length > 1) return false;
+    const bool too = is(Class::word_too);
     while (const auto degree = peek(Class::degree)) {
         // "light", "little", "pretty" may describe; "too" and "so" may stand alone
         if (peek(Class::size) && !has(Class::shade, word().text) &&
@@ -233,8 +245,10 @@ bool Cursor::take_attribute(Attribute& attribute, bool in_phrase) {
     }
     if (is(Class::word_half) && peek(Class::colour, 1)) ++at;
     if (take_graded(attribute) || take_colour(attribute, in_phrase) ||
-        take_plain_attribute(attribute, in_phrase))
+        take_plain_attribute(attribute, in_phrase)) {
+        if (too && attribute.quality == Quality::Size) attribute.value = less_of(attribute.value);
         return true;
+    }
     at = start;
     return take_plain_attribute(attribute, in_phrase);
 }

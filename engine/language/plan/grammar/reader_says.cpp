@@ -515,7 +515,9 @@ std::optional<bool> Reader::statement(const std::vector<Phrase>& phrases, bool s
 bool Reader::noun_clause() {
     const std::size_t start = c_.at;
     Phrase phrase;
-    if (c_.peek(Class::holding) && described_ && c_.word().text.ends_with("ing")) return false;
+    const bool holds = c_.peek(Class::holding) && c_.word().text.ends_with("ing");
+    if (holds && described_) return false;
+    if (holds && d_.size() > 0) return fail(reason::NotASentence);  // who holds it was not said
     if (!c_.take_phrase(phrase)) return false;
     if (phrase.naming == Naming::Something) return false;
     // "chair blue", "the bears ears white", "bear: green"

@@ -160,6 +160,14 @@ bool Draft::can_wear(const Target& target) const {
 }
 
 Target Draft::part_target(const Target& owner, const Phrase& phrase) const {
+    if (const auto blank = phrase.noun.rfind(' '); blank != std::string::npos) {  // "the cage door"
+        Phrase whole, last = phrase;
+        whole.noun = whole.typed = phrase.noun.substr(0, blank);
+        last.noun = phrase.noun.substr(blank + 1);
+        last.typed = phrase.typed.substr(phrase.typed.rfind(' ') + 1);
+        const auto named = things_named(whole);
+        if (named.size() == 1) return part_target(target_of_thing(named.front()), last);
+    }
     Target part = owner;
     part.thing.reset();
     Thing link{phrase.typed.empty() ? phrase.noun : phrase.typed, "", {}};

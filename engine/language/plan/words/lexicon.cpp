@@ -275,7 +275,8 @@ constexpr std::string_view ClassNames[] = {"spelling",
                                            "word_with",
                                            "word_x",
                                            "furniture",
-                                           "word_version"};
+                                           "word_version",
+                                           "word_too"};
 static_assert(std::size(ClassNames) == ClassCount);
 
 struct Entry {
