@@ -14,6 +14,31 @@ std::string text_of(std::span<const Word> words) {
     return text;
 }
 
+/// Change that takes away of a size: "too long" asks for a shorter one.
+std::string less_of(const std::string& change) {
+    constexpr std::pair<std::string_view, std::string_view> Less[] = {
+        {"bigger", "smaller"}, {"smaller", "bigger"},  {"taller", "shorter"},
+        {"longer", "shorter"}, {"shorter", "longer"},  {"wider", "narrower"},
+        {"narrower", "wider"}, {"thicker", "thinner"}, {"thinner", "thicker"}};
+    for (const auto& [more, less] : Less)
+        if (more == change) return std::string(less);
+    return change;
+}
+
+/// "riper", "floppier": no word of the lists, made of an adjective.
+bool is_comparative(const std::string& word) {
+    if (word.size() < 5 || !word.ends_with("er")) return false;
+    const auto stem = word.substr(0, word.size() - 2);
+    const auto describes = [](const std::string& text) {
+        return (kinds_of(text) & Kind::Adjective) != 0 || has(Class::state, text) || has(Class::pose, text) ||
+               has(Class::material_surface, text);
+    };
+    const bool doubled = stem[stem.size() - 1] == stem[stem.size() - 2];
+    return describes(stem) || describes(stem + "e") ||
+           (stem.ends_with('i') && describes(stem.substr(0, stem.size() - 1) + "y")) ||
+           (doubled && describes(stem.substr(0, stem.size() - 1)));
+}
+
 /// Length and name of the colour that the words begin with, shades before it ("dark blue"); 0 for none.
 std::size_t colour_length(std::span<const Word> words, std::string& name) {
     std::size_t at = 0;
@@ -41,7 +66,8 @@ std::size_t colour_length(std::span<const Word> words, std::string& name) {
         return 1;
     }
     // "gold colored"
-    const bool named = words.size() > 1 && words[1].text == "colored" && !words[0].mark;
+    const bool named = words.size() > 1 && words[1].text == "colored" && !words[0].mark &&
+                       match(Class::pattern_plain, words).length < 2;  // "rainbow colored"
     if (named) {
         const auto metal = meaning(Class::material, word);
         name = metal && is_colour(word) ? word : metal ? std::string(*metal) : word;
@@ -129,7 +155,8 @@ bool Cursor::take_graded(Attribute& attribute) {
 /// Adjectives that are in no class: "grumpy", "thatched".
 bool Cursor::take_other_attribute(Attribute& attribute, bool in_phrase) {
     if (peek(Class::thing_name) || peek(Class::number)) return false;
-    const bool participle = word().text.ends_with("ed") && word().base != word().text && noun_length() == 0;
+    const bool participle = (word().text.ends_with("ed") || word().text.ends_with("ing")) &&
+                            word().base != word().text && noun_length() == 0;
     if (participle && in_phrase && noun_length(1) > 0 && !ends_phrase(1, true)) {  // "a thatched roof"
         attribute = {Quality::Other, word().text, word().text, ""};
         ++at;
@@ -137,7 +164,8 @@ bool Cursor::take_other_attribute(Attribute& attribute, bool in_phrase) {
     }
     const auto kinds = kinds_of(word().text);
     const bool only_adjective =
-        (kinds & Kind::Adjective) != 0 && (kinds & (Concrete | Perhaps)) == 0 && noun_length() <= 1;
+        ((kinds & Kind::Adjective) != 0 && (kinds & (Concrete | Perhaps)) == 0 && noun_length() <= 1) ||
+        (kinds == 0 && is_comparative(word().text));
     const bool noun_follows = in_phrase && noun_length(1) > 0 && !ends_phrase(1, true);
     const bool ends = ends_phrase(1, true) && (kinds & Other) == 0;
     if (only_adjective && !peek(Class::colour_word) && !peek(Class::part) && !peek(Class::worn) &&
@@ -184,8 +212,12 @@ bool Cursor::take_plain_attribute(Attribute& attribute, bool in_phrase) {
         (peek(Class::part, found.length) || noun_length(found.length) > 0 ||
          is(Class::word_one, found.length)))
         return made(Quality::Side, found, false);
-    if (const auto found = peek(Class::pose); found && !peek(Class::fire_words))
+    if (const auto found = peek(Class::pose); found && !peek(Class::fire_words) && !peek(Class::except))
         return made(Quality::Pose, found, true);
+    if (in_phrase && is(Class::environment) && peek(Class::environment).length == 1 &&
+        (is_scene_noun(word(1).text) || is_scene_noun(word(1).singular)) && ends_phrase(2, true) &&
+        !peek(Class::compound))  // "autumn trees"
+        return made(Quality::State, peek(Class::environment), true);
     if (in_phrase)
         if (const auto found = peek(Class::pattern_animal);
             found && noun_length(found.length) > 0 && !ends_phrase(found.length, true))
@@ -201,7 +233,8 @@ bool Cursor::take_plain_attribute(Attribute& attribute, bool in_phrase) {
 
 bool Cursor::take_attribute(Attribute& attribute, bool in_phrase) {
     const std::size_t start = at;
-    if (done() || word().mark) return false;
+    if (done() || word().mark || peek(Class::except).length > 1) return false;
+    const bool too = is(Class::word_too);
     while (const auto degree = peek(Class::degree)) {
         // "light", "little", "pretty" may describe; "too" and "so" may stand alone
         if (peek(Class::size) && !has(Class::shade, word().text) &&
@@ -212,8 +245,10 @@ bool Cursor::take_attribute(Attribute& attribute, bool in_phrase) {
     }
     if (is(Class::word_half) && peek(Class::colour, 1)) ++at;
     if (take_graded(attribute) || take_colour(attribute, in_phrase) ||
-        take_plain_attribute(attribute, in_phrase))
+        take_plain_attribute(attribute, in_phrase)) {
+        if (too && attribute.quality == Quality::Size) attribute.value = less_of(attribute.value);
         return true;
+    }
     at = start;
     return take_plain_attribute(attribute, in_phrase);
 }
@@ -252,7 +287,10 @@ std::string brace_text(const Attribute& attribute) {
 Thing thing_of(const Phrase& phrase) {
     Thing thing{phrase.noun, phrase.count == "all" ? "some" : phrase.count, {}};
     if (thing.count == "2" && has(Class::pair_noun, phrase.noun)) thing.count.clear();  // "a pair of glasses"
-    if (phrase.plural && thing.count.empty() && !has(Class::pair_noun, phrase.noun)) thing.count = "some";
+    const auto last = phrase.noun.substr(phrase.noun.rfind(' ') + 1);                   // "stick arms"
+    if (phrase.plural && thing.count.empty() && !has(Class::pair_noun, phrase.noun) &&
+        !has(Class::pair_noun, last))
+        thing.count = "some";
     for (const auto& attribute : phrase.attributes) {
         if (attribute.quality == Quality::Worn || attribute.quality == Quality::Unworn) continue;
         if (attribute.quality == Quality::Colour && attribute.value.find(" and ") != std::string::npos) {

@@ -214,7 +214,7 @@ void Draft::set_anchor(const Target& made, std::string_view relation, const Targ
     set_anchors(made, relation, {anchor});
 }
 
-void Draft::ground(const Phrase& phrase) {
+void Draft::ground(const Phrase& phrase, bool another) {
     const auto old = scene_->ground();
     Step made;
     made.operation = Operation::Ground;
@@ -222,7 +222,7 @@ void Draft::ground(const Phrase& phrase) {
     made.thing = thing_of(phrase);
     made.thing.count.clear();
     if (!phrase.typed.empty() && phrase.plural) made.thing.noun = phrase.typed;
-    if (old && (made.thing.noun == made.text2 || are_synonyms(made.text2, made.thing.noun))) {
+    if (old && (made.thing.noun == made.text2 || (!another && are_synonyms(made.text2, made.thing.noun)))) {
         same_ = true;
         for (const auto& attribute : phrase.attributes) apply(target_of_thing(*old), attribute);
         return;
@@ -246,6 +246,65 @@ void Draft::refuse(std::string_view reason, std::string_view word) {
     made.text = reason;
     made.text2 = word;
     push(made);
+}
+
+void Draft::share_place(std::size_t from) {
+    if (from + 1 >= steps_.size()) return;
+    const auto& last = steps_.back();
+    const bool placed = last.operation == Operation::Add && last.anchors.size() == 1 &&
+                        !last.anchors.front().is_scene() && last.relation != "worn by" &&
+                        last.relation != "held by";
+    const auto& whose = last.anchors.front().root();
+    const bool at_new =
+        std::any_of(steps_.begin(), steps_.end(), [&](const Step& step) { return step.thing.noun == whose; });
+    for (std::size_t i = from; placed && !at_new && i + 1 < steps_.size(); ++i) {
+        auto& step = steps_[i];
+        if (step.operation != Operation::Add || step.anchors.size() != 1 || !step.anchors.front().is_scene())
+            continue;
+        step.relation = last.relation;
+        step.anchors = last.anchors;
+    }
+}
+
+bool Draft::changes_whole() const {
+    return std::any_of(steps_.begin(), steps_.end(), [](const Step& step) {
+        return step.subject.links.size() == 1 && rank(step.operation) == 1;
+    });
+}
+
+bool Draft::replaces(const Target& target) const {
+    return std::any_of(steps_.begin(), steps_.end(), [&](const Step& step) {
+        return step.operation == Operation::Replace && step.subject == target.reference;
+    });
+}
+
+void Draft::leave_out(const Target& target, std::size_t from) {
+    const auto& noun = target.reference.links.front().noun;
+    std::vector<Step> left(steps_.begin(), steps_.begin() + static_cast<std::ptrdiff_t>(from));
+    for (std::size_t at = from; at < steps_.size(); ++at) {
+        auto step = steps_[at];
+        const bool changes = step.operation != Operation::Add && step.operation != Operation::Environment;
+        if (!changes || step.subject == target.reference) {
+            if (!changes) left.push_back(step);
+            continue;
+        }
+        if (step.subject.is_scene()) {
+            step.subject = target.reference;
+            step.subject.except = true;
+        }
+        const bool of_all = !step.subject.links.empty() && step.subject.links.front().count == "all" &&
+                            step.subject.links.front().noun == noun && target.thing;
+        if (!of_all) {
+            left.push_back(step);
+            continue;
+        }
+        for (std::size_t i = 0; i < scene_->things.size(); ++i) {
+            if (scene_->things[i].noun != noun || i == *target.thing) continue;
+            step.subject = target_of_thing(i).reference;
+            left.push_back(step);
+        }
+    }
+    steps_ = std::move(left);
 }
 
 void Draft::drop_last() {

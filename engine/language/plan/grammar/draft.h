@@ -60,11 +60,21 @@ public:
     Target add(const Phrase& phrase, std::string_view relation, const std::vector<Target>& anchors);
     void set_anchors(const Target& made, std::string_view relation, const std::vector<Target>& anchors);
     void set_anchor(const Target& made, std::string_view relation, const Target& anchor);
-    void ground(const Phrase& phrase);
+    /// `another`: what is called by a name of the old ground is another ground too ("tiles" for a floor).
+    void ground(const Phrase& phrase, bool another = false);
     void remove(const Target& target);
     void duplicate(const Target& target, std::string count);
     void environment(std::string text);
     void style(const Target& target, std::string text);
+    /// Things added from that step on without a place stand where the last one does ("a cup and a plate on
+    /// the table").
+    void share_place(std::size_t from);
+    /// Tells whether a step changes a thing as a whole, and not a part of it.
+    bool changes_whole() const;
+    /// Tells whether a step puts another thing in its place.
+    bool replaces(const Target& target) const;
+    /// Leaves the thing out of the steps from that one on, which are about all of its kind.
+    void leave_out(const Target& target, std::size_t from);
     void refuse(std::string_view reason, std::string_view word = {});
     void already_so() { same_ = true; }
     void nothing_asked() { asked_nothing_ = true; }

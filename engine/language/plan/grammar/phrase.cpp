@@ -123,8 +123,10 @@ std::size_t Cursor::noun_length(std::size_t ahead) const {
 
 bool Cursor::ends_phrase(std::size_t ahead, bool after_noun) const {
     if (word(ahead).text.empty() || word(ahead).mark) return true;
+    const bool describes = peek(Class::relation, ahead).length == 1 && peek(Class::state, ahead) &&
+                           noun_length(ahead + 1) > 0 && !after_noun;  // "round window"
     for (const auto kind : EndingClasses)
-        if (peek(kind, ahead)) return true;
+        if (peek(kind, ahead) && !describes) return true;
     if (!after_noun) return peek(Class::copula, ahead).length > 0 && noun_length(ahead) == 0;
     const bool thing = (kinds_of(word(ahead).text) & Concrete) != 0;
     const bool owner = at + ahead > 0 && is_scene_noun(words_[at + ahead - 1].singular);  // "the bear fly"
@@ -141,7 +143,8 @@ bool Cursor::take_pronoun(Phrase& phrase) {
                                                      {Class::pronoun_it, Naming::It},
                                                      {Class::pronoun_person, Naming::Person}};
     for (const auto& [kind, naming] : Pronouns) {
-        const auto found = peek(kind);
+        auto found = peek(kind);
+        if (kind == Class::everything && is(Class::word_all) && peek(Class::except, 1)) found.length = 1;
         if (!found) continue;
         // "her hat", "this bear", "the thing on the grass"
         if (naming != Naming::Everything && naming != Naming::EverythingElse) {
@@ -175,6 +178,13 @@ bool Cursor::take_pronoun(Phrase& phrase) {
             if (ahead.take_phrase(excepted)) {
                 phrase.excepted.push_back(excepted);
                 at = ahead.at;
+                while (ahead.take_mark(','), ahead.take(Class::conjunction), ahead.at > at) {
+                    if (!ahead.take_phrase(excepted) || excepted.noun.empty() || !excepted.definite ||
+                        !ahead.at_end_of_clause())
+                        break;
+                    phrase.excepted.push_back(excepted);
+                    at = ahead.at;
+                }
                 phrase.end = at;
             }
         }
@@ -287,7 +297,10 @@ void Cursor::take_nouns(Phrase& phrase, bool split, std::size_t length) {
         if (owner &&
             (split || peek(Class::part) || peek(Class::colour_word) || is_scene_noun(word().singular)))
             break;
-        if (owner && describes_to_the_end()) break;  // "make the bear violet", "make the grass gravel"
+        const bool part =
+            has(Class::part, words_[at - 1].singular) && peek(Class::colour);  // "its beak orange"
+        if ((owner || part) && describes_to_the_end())
+            break;  // "make the bear violet", "make the grass gravel"
         Attribute ignored;
         Cursor ahead = *this;
         const std::size_t more = noun_length();

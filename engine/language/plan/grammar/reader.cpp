@@ -155,8 +155,24 @@ void Reader::skip_lead_in() {
     }
 }
 
+/// "except the bear": it is left out of the steps that the clause made, which are those from `steps` on.
+bool Reader::leaves_out(std::size_t steps) {
+    Cursor ahead = c_;
+    ahead.take_mark(',');
+    Phrase other;
+    if (!ahead.take(Class::except) || d_.size() <= steps || !ahead.take_phrase(other) ||
+        !(ahead.at_end_of_clause() || ahead.peek(Class::courtesy)))
+        return false;
+    const auto found = d_.resolve(other);
+    if (!found.found() || found.is_scene() || (is_part(other) && !found.thing)) return false;
+    c_.at = ahead.at;
+    d_.leave_out(found, steps);
+    return true;
+}
+
 /// Behind a clause: "instead of red", "rather than the grass", "except the bear".
-void Reader::skip_rest() {
+void Reader::skip_rest(std::size_t steps) {
+    if (leaves_out(steps)) return;
     Cursor ahead = c_;
     Phrase other;
     Attribute attribute;
@@ -181,6 +197,8 @@ void Reader::skip_rest() {
         d_.refuse(reason::NotASentence);
         return;
     }
+    const bool except = c_.peek(Class::except) && !c_.peek(Class::rather_than);
+    if (except) return;
     if (thing.take_phrase(other) && d_.resolve(other).found()) c_.at = thing.at;
     else if (ahead.take_attribute(attribute, false)) c_.at = ahead.at;
 }
@@ -255,8 +273,9 @@ Plan Reader::read() {
         skip_lead_in();
         if (c_.done()) break;
         const std::size_t start = c_.at;
+        const std::size_t steps = d_.size();
         const bool read = clause();
-        if (read) skip_rest();
+        if (read) skip_rest(std::min(steps, d_.size()));
         if (read && ends_well()) continue;
         if (!missing_.empty() && !read && reason_ == reason::NotInScene && d_.size() == 0) return failure();
         c_.at = start;

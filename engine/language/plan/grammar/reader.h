@@ -33,7 +33,8 @@ private:
     bool skip_separators();
     bool clause();
     bool ends_well() const;
-    void skip_rest();
+    void skip_rest(std::size_t steps);
+    bool leaves_out(std::size_t steps);
     bool skip_narrative(std::size_t start);
     bool fail(std::string_view reason);
     Plan failure() const;
@@ -85,6 +86,7 @@ private:
     bool fire_clause();
     void add_another(const Phrase& phrase, const Target& target, const std::string& noun);
     bool one_more(const Phrase& phrase);
+    bool beside_its_like(const Phrase& phrase, const Target& target);
     bool move_target(const Target& target);
     bool ellipsis();
 
@@ -112,6 +114,10 @@ private:
     bool describe_pattern(const Phrase& phrase);
     std::optional<bool> describe_on_top(const Phrase& phrase);
     bool describe_new(const Phrase& phrase);
+    bool describe_clinging(const Phrase& phrase);
+    bool is_slip_of_focus(const Phrase& phrase) const;
+    std::optional<bool> describe_other_kind(const Phrase& phrase, const Target& found);
+    bool describe_in_style(const Phrase& phrase, std::size_t thing);
     bool describe_other(const Phrase& phrase);
     bool skip_instead();
     bool describe_more();
@@ -126,8 +132,10 @@ private:
     bool as_much_as(const Targets& targets);
     bool looks_somewhere(const Targets& targets);
     bool measure(const Targets& targets);
+    bool percent(const Targets& targets);
     bool compared(const Targets& targets);
     bool alike(const Targets& targets);
+    bool said_of_part(const Target& target) const;
     bool become(const Targets& targets, const Phrase& phrase);
     bool material_of(const Targets& targets);
     bool denied(const Targets& targets);
@@ -162,6 +170,7 @@ private:
     bool objects(Targets& targets, std::vector<Phrase>* phrases = nullptr, bool split = false);
     bool contradicts_colour(const Phrase& phrase, const Target& found) const;
     Targets things_on(const Target& target) const;
+    bool all_but(const std::vector<Phrase>& excepted, Targets& targets);
     bool object(Targets& targets, Phrase& phrase, bool split = false);
     Target expect(const Phrase& phrase);
     bool on_bearer(const Phrase& phrase, Target& bearer) const;

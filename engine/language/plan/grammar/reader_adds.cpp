@@ -40,6 +40,21 @@ void Reader::add_another(const Phrase& phrase, const Target& target, const std::
     }
 }
 
+/// "small boats around the boat", "a baby bear next to the bear": new ones.
+bool Reader::beside_its_like(const Phrase& phrase, const Target& target) {
+    Cursor around = c_;
+    Phrase where;
+    const auto relation = around.take(Class::relation);
+    if (!relation || !around.take_phrase(where) || !where.definite || where.naming != Naming::Thing ||
+        !around.at_end_of_clause() || !target.thing || !(d_.resolve(where).reference == target.reference))
+        return false;
+    c_.at = around.at;
+    Phrase more = phrase;
+    more.noun = d_.scene().things[*target.thing].noun;
+    d_.mention(d_.add(more, relation.value, {target}));
+    return true;
+}
+
 /// "another bear", "two bears", "one more bear": copies of what is there.
 bool Reader::one_more(const Phrase& phrase) {
     if (!phrase.another && (phrase.count.empty() || phrase.count == "all") && !phrase.plural) return false;
@@ -50,6 +65,7 @@ bool Reader::one_more(const Phrase& phrase) {
     const auto same = std::count_if(d_.scene().things.begin(), d_.scene().things.end(),
                                     [&](const SceneThing& thing) { return thing.noun == noun; });
     if (same > 1) return false;
+    if (phrase.typed == noun && !phrase.another && phrase.count.empty()) return false;  // "autumn trees"
     if (has(Class::pair_noun, noun)) return false;
     if (!phrase.another && phrase.noun != noun && noun.find(phrase.noun) == std::string::npos &&
         !are_synonyms(noun, phrase.noun))
@@ -60,6 +76,7 @@ bool Reader::one_more(const Phrase& phrase) {
         add_another(phrase, target, noun);
         return true;
     }
+    if (beside_its_like(phrase, target)) return true;
     apply_all({target}, phrase.attributes);
     described_ = target;
     d_.duplicate(target, phrase.count.empty() ? "some" : phrase.count);
@@ -140,8 +157,9 @@ bool Reader::place_new(const Phrase& phrase, Targets& made) {
     while (true) {
         const std::size_t start = c_.at;
         while (c_.take(Class::emerging) || c_.take(Class::pose)) {}
-        if (const auto side = c_.peek(Class::direction);
-            side && !c_.peek(Class::relation) && (side.value == "left" || side.value == "right")) {
+        if (const auto side = c_.peek(Class::direction); side.length > c_.peek(Class::relation).length &&
+                                                         !c_.peek(Class::of, side.length) &&
+                                                         (side.value == "left" || side.value == "right")) {
             c_.at += side.length;
             if (focus.found()) d_.set_anchor(thing, side.value == "left" ? "left of" : "right of", focus);
             continue;
@@ -216,7 +234,18 @@ bool Reader::add_one() {
         if (!move_target(found)) return false;
         return true;
     }
+    if (found.found() && !found.thing && phrase.owner) return fail(reason::Ambiguous);  // a part moves alone
+    if (found.found() && phrase.definite && !is_part(phrase)) return move_target(found);  // "stack the books"
+    const std::size_t steps = d_.size();
     if (!place_new(phrase, made)) return false;
+    Cursor other = c_;
+    Phrase old;
+    if (other.take(Class::rather_than) && other.take_phrase(old) && d_.resolve(old).found() &&
+        d_.size() == steps + 1) {  // "add wheels instead of legs"
+        c_.at = other.at;
+        d_.drop_last();
+        return become({d_.resolve(old)}, phrase);
+    }
     Cursor more = c_;
     more.take_mark(',');
     if (more.take(Class::contrast)) {  // "but not a red one"
@@ -242,15 +271,18 @@ bool Reader::add_clause() {
     Phrase phrase;
     Attribute pattern;
     Cursor dots = c_;  // "put white polka dots on the bear"
+    dots.take(Class::article);
     if (dots.take_attribute(pattern, false) && pattern.quality == Quality::Pattern &&
         (dots.take(Class::relation) || dots.take(Class::to)) && dots.take_phrase(phrase) &&
         d_.resolve(phrase).found()) {
         c_.at = dots.at;
         return apply_all({d_.resolve(phrase)}, {pattern});
     }
+    const std::size_t first = d_.size();
     do {
         if (!add_one()) return false;
     } while (list_goes_on());
+    d_.share_place(first);
     return true;
 }
 

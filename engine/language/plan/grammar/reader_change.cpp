@@ -88,6 +88,23 @@ bool Reader::material_of(const Targets& targets) {
     return apply_all(targets, found);
 }
 
+/// "50 % bigger".
+bool Reader::percent(const Targets& targets) {
+    Cursor ahead = c_;
+    const bool digits =
+        !ahead.word().text.empty() && std::isdigit(static_cast<unsigned char>(ahead.word().text[0])) != 0;
+    if (!digits || ahead.peek(Class::unit, 1).value != "%") return false;
+    Cursor size = ahead;
+    size.at += 1 + ahead.peek(Class::unit, 1).length;
+    const auto change = size.take(Class::size);
+    if (!change) return false;
+    std::string text(change.value);
+    if (text == "bigger" || text == "smaller") text = "scale " + take_factor(false, text == "smaller");
+    c_.at = size.at;
+    for (const auto& target : targets) d_.step(Operation::Transform, target, text);
+    return true;
+}
+
 /// "twice as big", "half as wide", "two times taller", "half its size".
 bool Reader::measure(const Targets& targets) {
     Cursor ahead = c_;
@@ -98,7 +115,7 @@ bool Reader::measure(const Targets& targets) {
              (ahead.is(Class::word_times, 1) || ahead.is(Class::word_x, 1))) {
         factor = ahead.word().text;
         ahead.at += 2;
-    } else return false;
+    } else return percent(targets);
     ahead.take(Class::like);
     ahead.take(Class::possessive);
     ahead.take(Class::definite);
@@ -138,9 +155,14 @@ bool Reader::compared(const Targets& targets) {
     if (const auto size = ahead.peek(Class::size); size && !same) {
         ahead.at += size.length;
         if (!ahead.take(Class::like) && !ahead.take(Class::than)) return false;
+        const bool equal = ahead.word().text.empty() ? false : c_.is(Class::word_as);
         if (!ahead.take_phrase(other)) return false;
         c_.at = ahead.at;
-        for (const auto& target : targets) d_.step(Operation::Transform, target, std::string(size.value));
+        const auto model = d_.resolve(other);
+        const bool whole = size.value == "bigger" || size.value == "smaller";
+        for (const auto& target : targets)
+            if (equal && whole && model.thing) d_.move(target, "same size as", model);
+            else d_.step(Operation::Transform, target, std::string(size.value));
         return true;
     }
     const bool colour = ahead.peek(Class::colour_word).length > 0,
@@ -262,9 +284,24 @@ bool Reader::style_text(const Targets& targets) {
     if (!ahead.at_end_of_clause() && !ahead.peek(Class::of) && ahead.noun_length() > 0 &&
         !ahead.ends_phrase(0, true))
         return false;
+    const bool of_things =
+        std::none_of(targets.begin(), targets.end(), [](const Target& each) { return each.is_scene(); });
+    Attribute colours;  // "everything but the horse black and white"
+    if (of_things && !targets.empty() && c_.at < ahead.at && targets.front().reference.except) {
+        Cursor plain = c_;
+        if (plain.take_attribute(colours, false) && colours.quality == Quality::Colour &&
+            plain.at == ahead.at)
+            return false;
+    }
     c_.at = ahead.at;
     for (const auto& target : targets) d_.style(target, text);
     return true;
+}
+
+/// Tells whether the sentence says how a part is to be: "its neck should be maple" names no other thing.
+bool Reader::said_of_part(const Target& target) const {
+    return target.reference.links.size() > 1 && !target.thing && frame_ != Frame::Replace &&
+           frame_ != Frame::Turn && frame_ != Frame::Add;
 }
 
 /// Another thing in its place, or what it is made of: "into a panda", "into wood", "a darker red".
@@ -278,13 +315,13 @@ bool Reader::become(const Targets& targets, const Phrase& phrase) {
         const auto material = meaning(Class::material, phrase.noun);
         if (on_ground &&
             (is_ground(phrase) || has(Class::material, phrase.noun) || has(Class::place, phrase.noun))) {
-            d_.ground(phrase);
+            d_.ground(phrase, frame_ == Frame::Replace);
         } else if (material && !phrase.indefinite && phrase.count.empty()) {
             apply_all({target}, {material_attribute(*material)});
             apply_all({target}, phrase.attributes);
         } else if (has(Class::style, phrase.noun) || has(Class::style, phrase.typed)) {
             d_.style(target, phrase.typed);
-        } else if (!is_thing(phrase) && !material) {
+        } else if ((!is_thing(phrase) && !material) || (said_of_part(target) && !phrase.has_determiner())) {
             return fail(reason::NotASentence);
         } else if (target.is_scene()) {
             if (!has(Class::place, phrase.noun) && !has(Class::environment, phrase.noun) &&
@@ -406,8 +443,9 @@ bool Reader::looks_somewhere(const Targets& targets) {
 bool Reader::complement_once(const Targets& targets) {
     const std::size_t start = c_.at;
     if (looks_somewhere(targets)) return true;
-    while (c_.take(Class::look_word) || c_.take(Class::copula) || c_.take(Class::to) ||
-           c_.take(Class::modal) || c_.take(Class::verb_become)) {}
+    while (c_.take(Class::look_word) || c_.take(Class::copula) ||
+           (c_.is(Class::word_to) && c_.take(Class::to)) || c_.take(Class::modal) ||
+           c_.take(Class::verb_become)) {}
     c_.take(Class::as_well);
     if (c_.at_end_of_clause() && !c_.done() && c_.at == start) return false;
     if (const auto gone = c_.peek(Class::gone)) {

@@ -10,7 +10,9 @@ namespace {
 bool is_one_slip(const std::string& noun, const std::string& other) {
     const std::vector<std::string> needed{other};
     const auto near = slips_of(noun, needed, 100);
-    return std::find(near.begin(), near.end(), other) != near.end();
+    const auto blank = other.rfind(' ');  // "bear" of a teddy bear
+    return std::find(near.begin(), near.end(), other) != near.end() ||
+           (blank != std::string::npos && is_one_slip(noun, other.substr(blank + 1)));
 }
 
 }  // namespace
@@ -41,8 +43,9 @@ bool Reader::describe_part(const Phrase& phrase, const Target& found) {
     std::vector<Attribute> attributes;
     for (const auto& attribute : phrase.attributes)
         if (attribute.quality != Quality::Side) attributes.push_back(attribute);
-    if (attributes.empty() && phrase.indefinite && !phrase.owner)
-        return describe_new(phrase);  // "a chimney on the house"
+    const bool placed = phrase.plural && !phrase.has_determiner() && c_.peek(Class::relation);
+    if (attributes.empty() && (phrase.indefinite || placed) && !phrase.owner)
+        return describe_new(phrase);  // "a chimney on the house", "leaves on the pavement"
     const bool own_worn = is_worn(phrase) && !phrase.owner && (kinds_of(phrase.noun) & Body) == 0;
     if (own_worn) {
         d_.add(phrase, "worn by", {d_.focus()});
@@ -51,10 +54,39 @@ bool Reader::describe_part(const Phrase& phrase, const Target& found) {
     if (!apply_all({found}, attributes) && !complement({found})) return fail(reason::Incomplete);
     Cursor whose = c_;  // "blue ears for the bear"
     Phrase owner;
-    if (whose.is(Class::word_for) && ++whose.at && whose.take_phrase(owner) &&
+    const bool of_whom = whose.is(Class::word_for) || whose.is(Class::word_on) || whose.is(Class::word_of);
+    if (of_whom && ++whose.at && whose.take_phrase(owner) && d_.resolve(owner).found() &&
         d_.resolve(owner).reference.root() == found.reference.root())
         c_.at = whose.at;
     return describe_more();
+}
+
+/// "carpet instead of the floor", "an armchair instead": of what is there by another name.
+std::optional<bool> Reader::describe_other_kind(const Phrase& phrase, const Target& found) {
+    Cursor in_place = c_;
+    Phrase old;
+    if (found.thing && !phrase.definite && in_place.take(Class::rather_than) && in_place.take_phrase(old) &&
+        d_.resolve(old).reference == found.reference) {
+        c_.at = in_place.at;  // "carpet instead of the floor"
+        frame_ = Frame::Replace;
+        return become({found}, phrase);
+    }
+    if (found.thing && phrase.indefinite && c_.peek(Class::instead)) {  // "an armchair instead"
+        c_.take(Class::instead);
+        return c_.at_end_of_clause() && become({found}, phrase);
+    }
+    return std::nullopt;
+}
+
+/// "anime girl" of a girl.
+bool Reader::describe_in_style(const Phrase& phrase, std::size_t thing) {
+    const auto first = phrase.noun.substr(0, phrase.noun.rfind(' '));
+    if (!has(Class::style, first)) return false;
+    described_ = d_.target_of_thing(thing);
+    d_.style(*described_, first);
+    apply_all({*described_}, phrase.attributes);
+    posts(*described_);
+    return true;
 }
 
 /// The first thing of a description: it is there, or stands in the place of what is.
@@ -73,6 +105,7 @@ bool Reader::describe(const Phrase& phrase) {
                                    [&](std::size_t i) { return d_.scene().things[i].noun == phrase.noun; });
     if (const auto kin = d_.kin_of(phrase);
         kin && !phrase.owner && (named.empty() || (phrase.indefinite && !exact))) {
+        if (describe_in_style(phrase, *kin)) return describe_more();
         const auto made = d_.replace(d_.target_of_thing(*kin), phrase);
         described_ = made;
         posts(made);
@@ -80,7 +113,10 @@ bool Reader::describe(const Phrase& phrase) {
     }
     const auto found = d_.resolve(phrase);
     if (found.kind == Target::Kind::Ambiguous) return fail(reason::Ambiguous);
+    if (!exact)
+        if (const auto read = describe_other_kind(phrase, found)) return *read;
     if (!found.found()) return describe_new(phrase);
+    if (!phrase.definite && !described_ && beside_its_like(phrase, found)) return true;
     const bool on_ground = found.thing && d_.scene().things[*found.thing].is_ground;
     if (on_ground && !phrase.attributes.empty() && has(Class::empty, phrase.attributes.front().typed) &&
         focus.found()) {
@@ -196,10 +232,14 @@ bool Reader::stands_by_other(const Phrase& phrase) const {
     const auto focus = d_.focus();
     Cursor ahead = c_;
     Phrase place;
-    if (!focus.thing || !ahead.take(Class::relation) || !ahead.take_phrase(place) || !place.definite)
-        return false;
+    while (!ahead.peek(Class::relation) && (ahead.take(Class::emerging) || ahead.take(Class::pose))) {}
+    const auto relation = ahead.take(Class::relation);
+    if (!focus.thing || !relation || !ahead.take_phrase(place) || !place.definite) return false;
     const auto found = d_.resolve(place);
+    if (!found.thing && found.reference.links.size() > 1)  // "a monkey on a branch of the tree"
+        return found.reference.root() != focus.reference.root();
     if (!found.thing || found.thing == focus.thing || d_.scene().things[*found.thing].is_ground) return false;
+    if (relation.value == "above") return true;  // "a dragon above the castle"
     return (kinds_of(phrase.noun) & kinds_of(d_.scene().things[*focus.thing].noun) & Concrete) == 0;
 }
 
@@ -232,6 +272,33 @@ std::optional<bool> Reader::describe_on_top(const Phrase& phrase) {
                                         : relation.value,
                       {focus}));
     return true;
+}
+
+/// "pink frosting": on the thing that the sentence is about, never in its place.
+bool Reader::describe_clinging(const Phrase& phrase) {
+    const auto focus = d_.focus();
+    const bool clings = has(Class::floating, phrase.noun) && (kinds_of(phrase.noun) & (Animal | Plant)) == 0;
+    if (!clings || !focus.found()) return false;
+    const auto made = d_.add(phrase, "on", {focus});
+    d_.mention(made);
+    nested(made, focus);
+    posts(made);
+    return true;
+}
+
+/// Tells whether the noun is a slip of the pen for what is there, or a part of it: "a blue beer", "piano
+/// lid".
+bool Reader::is_slip_of_focus(const Phrase& phrase) const {
+    const auto focus = d_.focus();
+    const bool of_focus = focus.found() && phrase.noun.starts_with(focus.reference.root() + " ");
+    if (of_focus && !phrase.has_determiner() && !has(Class::compound, phrase.noun) && !is_worn(phrase))
+        return true;
+    // "a blue beer": food is no likely slip of a pen, but of the bear's name
+    const bool being = (kinds_of(phrase.noun) & (Animal | Person | Artifact | Vehicle)) != 0;
+    const bool lives = (kinds_of(phrase.noun) & (Animal | Person)) != 0 || has(Class::person, phrase.noun) ||
+                       has(Class::animal, phrase.noun) || has(Class::thing, phrase.noun);
+    const bool acts = c_.peek(Class::wearing) || c_.peek(Class::holding);  // "a bar wearing a scarf"
+    return focus.found() && (!being || (acts && !lives)) && is_one_slip(phrase.noun, focus.reference.root());
 }
 
 /// A thing that the scene does not show.
@@ -268,6 +335,8 @@ bool Reader::describe_new(const Phrase& phrase) {
     }
     if (later || (wears && focus.found() && d_.can_wear(focus) && is_worn(phrase)))
         return describe_beside(phrase);
+    if (is_slip_of_focus(phrase)) return fail(reason::NotASentence);
+    if (describe_clinging(phrase)) return describe_more();
     const bool many = phrase.count == "some" || (phrase.plural && phrase.count.empty());
     if (many && !has(Class::pair_noun, phrase.noun)) {  // "lots of flowers in the grass"
         const auto made = d_.add(phrase, "in", {d_.scene_target()});
@@ -275,10 +344,6 @@ bool Reader::describe_new(const Phrase& phrase) {
         posts(made);
         return describe_more();
     }
-    // "a blue beer": food is no likely slip of a pen, but of the bear's name
-    const bool being = (kinds_of(phrase.noun) & (Animal | Person | Artifact | Vehicle)) != 0;
-    if (focus.found() && !being && is_one_slip(phrase.noun, focus.reference.root()))
-        return fail(reason::NotASentence);
     if (focus.found()) {
         const auto made = d_.replace(focus, phrase);
         described_ = made;
@@ -318,7 +383,7 @@ bool Reader::skip_instead() {
     Phrase old;
     Cursor probe = ahead;
     Attribute attribute;
-    if (probe.take_phrase(old) && !old.noun.empty()) {
+    if (probe.take_phrase(old) && (!old.noun.empty() || old.definite)) {
         c_.at = probe.at;
         return true;
     }
@@ -416,7 +481,8 @@ bool Reader::attribute_clause() {
         if (target.kind == Target::Kind::Missing) missing_ = target.word;
         return fail(target.kind == Target::Kind::Missing ? reason::NotInScene : reason::Ambiguous);
     }
-    if (attributes && attribute.quality == Quality::Other && ahead.done() && !described_)
+    const bool ends = ahead.done() || ahead.peek(Class::rather_than);
+    if (attributes && attribute.quality == Quality::Other && ends && !described_)
         return fail(reason::NotASentence);
     if (attributes && complement({target})) {
         frame_ = Frame::Make;

@@ -62,6 +62,7 @@ bool Reader::move_to(const Target& target, const Match& relation) {
     if (!c_.take_phrase(where)) { return fail(reason::Incomplete); }
     auto place = where.naming == Naming::It ? d_.focus() : d_.resolve(where);
     Target body = d_.focus();
+    if (where.possessive && !d_.is_animate(body)) body = d_.pronoun(Naming::Person);  // "in his hands"
     if (!place.found() && on_bearer(where, body)) place = body;
     if (!place.found()) {
         if (is_ground(where) && name == "on") {  // "put it on snow", "on the beach"
@@ -180,7 +181,8 @@ bool Reader::move_clause() {
     if (lift && way.is(Class::word_up)) {
         ++way.at;
         c_.at = way.at;
-        for (const auto& target : targets) d_.step(Operation::Transform, target, "move up");
+        const auto amount = take_amount();
+        for (const auto& target : targets) d_.step(Operation::Transform, target, "move up" + amount);
         return true;
     }
     if (!goes || stands) return c_.at_end_of_clause() ? fail(reason::Incomplete) : false;
@@ -248,12 +250,13 @@ bool Reader::size_clause() {
     else if (c_.is(Class::word_horizontally) || c_.is(Class::word_sideways)) ++c_.at, change = "wider";
     if (c_.is(Class::word_by) || c_.is(Class::word_to)) {
         ++c_.at;
-        if (c_.is(Class::word_a)) ++c_.at;
+        if (c_.is(Class::word_a) && !c_.peek(Class::times)) ++c_.at;
         while (c_.take(Class::degree)) {}
         if (c_.is(Class::word_factor) && c_.is(Class::word_of, 1)) c_.at += 2;
         const auto number = take_factor(scale.length > 0, change == "smaller");
         if (number.empty()) return fail(reason::Incomplete);
         c_.take(Class::dimension);
+        if (c_.is(Class::word_of) && c_.peek(Class::possessive, 1) && c_.peek(Class::dimension, 2)) ++c_.at;
         if (c_.peek(Class::possessive) && c_.peek(Class::dimension, 1)) c_.at += 2;
         change = "scale " + number;
     } else if (scale && change.empty()) {

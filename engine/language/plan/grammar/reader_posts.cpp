@@ -12,14 +12,17 @@ std::string last_word(std::string_view phrase) {
     return std::string(blank == std::string_view::npos ? phrase : phrase.substr(blank + 1));
 }
 
+/// Tells whether things stand on what has that name: furniture, grounds.
+bool carries(const std::string& noun) { return has(Class::furniture, noun) || has(Class::ground, noun); }
+
 /// Relation of a thing that someone has "with" them.
-std::string_view having_relation(const Phrase& phrase, bool animate) {
+std::string_view having_relation(const Phrase& phrase, bool animate, bool furniture) {
     if (is_worn(phrase)) return "worn by";
     if (has(Class::floating, phrase.noun) || has(Class::floating, phrase.typed))
         return animate && is_held(phrase) ? "held by" : "on";
     if (is_held(phrase) && animate) return "held by";
-    if (is_part(phrase)) return "worn by";
-    return "beside";
+    if (is_part(phrase)) return animate ? "worn by" : "on";
+    return furniture ? "on" : "beside";
 }
 
 }  // namespace
@@ -32,7 +35,7 @@ bool Reader::list_goes_on() {
     if (!comma && !joint) return false;
     while (ahead.take(Class::having) || ahead.take(Class::wearing) || ahead.take(Class::as_well)) {}
     const std::size_t distance = ahead.at - c_.at;
-    if (starts_verb(distance)) return false;
+    if (starts_verb(distance) || ahead.peek(Class::holding) || ahead.peek(Class::riding)) return false;
     Phrase next;
     Cursor probe = ahead;
     if (!probe.take_phrase(next) || next.noun.empty() || next.naming != Naming::Thing) return false;
@@ -83,6 +86,7 @@ bool Reader::own_pattern(const Target& subject, const Phrase& phrase) {
 
 /// A part that is said to be otherwise: "with a white belly", "with its arms raised", "with closed eyes".
 bool Reader::own_part(const Target& subject, const Phrase& phrase) {
+    if (phrase.indefinite && c_.peek(Class::relation) && c_.peek(Class::pronoun_it, 1)) return false;
     Phrase owned = phrase;
     owned.possessive = false;
     owned.owner.reset();
@@ -136,6 +140,7 @@ bool Reader::own(const Target& subject, const Phrase& phrase, std::string_view r
     if (there && !d_.scene().things[found.front()].is_ground) {
         const auto target = d_.target_of_thing(found.front());
         if (target.reference == subject.reference) return false;
+        if (relation == "ridden by" && subject.step) d_.set_anchor(subject, "on", target);
         d_.already_so();
         apply_all({target}, phrase.attributes);
         nested(target, subject);
@@ -145,17 +150,18 @@ bool Reader::own(const Target& subject, const Phrase& phrase, std::string_view r
         !has(Class::floating, phrase.noun) && !has(Class::thing, phrase.noun))
         return relate(subject, "on", phrase);
     if (is_part(phrase) && relation != "worn by" && own_part(subject, phrase)) return true;
-    if (is_part(phrase) && !is_worn(phrase) && (kinds_of(phrase.noun) & Body) != 0 && relation == "with") {
-        if (phrase.another || phrase.count.empty() == false) {
-            d_.step(Operation::Alter, subject,
-                    (phrase.count.empty() ? "another" : phrase.count) + " " + phrase.typed);
-            return true;
-        }
-        d_.already_so();
+    if (is_part(phrase) && !is_worn(phrase) && relation == "with" &&
+        ((kinds_of(phrase.noun) & Body) != 0 ||
+         (has(Class::body_place, phrase.noun) && !phrase.count.empty()))) {
+        const std::string count = phrase.another ? "another" : phrase.single ? "1" : phrase.count;
+        if (!count.empty()) d_.step(Operation::Alter, subject, count + " " + phrase.typed);
+        else d_.already_so();
         return true;
     }
+    if (relation == "held by" && is_ground(phrase) && !is_held(phrase)) return false;  // "eating grass"
     const auto how = relation == "with"
-                         ? having_relation(phrase, d_.is_animate(subject) || d_.can_wear(subject))
+                         ? having_relation(phrase, d_.is_animate(subject) || d_.can_wear(subject),
+                                           carries(subject.reference.root()))
                          : relation;
     if (how == "worn by" && is_ground(phrase)) return false;
     Cursor instead = c_;
@@ -178,8 +184,11 @@ bool Reader::has_list(const Target& subject, std::string_view relation) {
     Phrase phrase;
     do {
         const std::size_t start = c_.at;
-        if (c_.peek(Class::without)) {
-            c_.take(Class::without);
+        Cursor lacking = c_;
+        lacking.take(Class::article);  // "with a missing arm"
+        if (lacking.peek(Class::without) && (lacking.at == c_.at || lacking.peek(Class::gone))) {
+            lacking.take(Class::without);
+            c_.at = lacking.at;
             return lack_list(subject);
         }
         if (c_.is(Class::word_nothing) && (c_.peek(Class::contrast, 1) || c_.peek(Class::except, 1)))

@@ -181,7 +181,8 @@ bool Reader::related(const Target& subject) {
 /// The other thing is there: the subject is beside it, or goes there.
 bool Reader::relate_there(const Target& subject, std::string_view relation, const Phrase& phrase,
                           const Target& found) {
-    Target bearer = subject;
+    const bool of_focus = subject.step && !phrase.possessive && d_.focus().found();
+    Target bearer = of_focus ? d_.focus() : subject;  // "flags on the towers"
     if (on_bearer(phrase, bearer) && subject.step) {
         d_.set_anchor(subject, relation, bearer);
         return true;

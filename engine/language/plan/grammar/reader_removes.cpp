@@ -76,6 +76,7 @@ bool Reader::remove_clause() {
     }
     Cursor verb = c_;
     const auto direct = verb.peek(Class::verb_remove);
+    const bool moves = verb.peek(Class::verb_move).length > 0;
     const bool gets = c_.peek(Class::verb_make) && c_.is(Class::word_get);
     if (!direct && !gets && !c_.is(Class::word_take)) return false;
     const bool takes_off = takes && c_.is(Class::word_off, 1);
@@ -96,6 +97,8 @@ bool Reader::remove_clause() {
         return fail(reason::NotInScene);
     }
     if (!objects(targets, &phrases)) return false;
+    if (const auto place = c_.peek(Class::relation).value; moves && (place == "behind" || place == "under"))
+        return false;  // "hide the man behind the bus"
     if (first.naming == Naming::It && d_.is_animate(targets[0]) &&
         (c_.is(Class::word_off) || takes_off)) {  // "take it off"
         take_worn(targets);
@@ -103,6 +106,10 @@ bool Reader::remove_clause() {
     if (targets.size() == 1 && targets[0].is_scene() &&
         (c_.peek(Class::contrast) || c_.is(Class::word_except)))
         return false;
+    if (first.excepted.size() > 1)
+        std::erase_if(targets, [&](const Target& each) {
+            return each.thing && d_.scene().things[*each.thing].is_ground;
+        });
     skip_from(targets);
     frame_ = Frame::Remove;
     remove_all(targets);
@@ -131,8 +138,7 @@ Reader::Targets Reader::things_on(const Target& target) const {
     const auto& noun = things[*target.thing].noun;
     const bool container = has(Class::container, noun) || has(Class::held, noun);
     for (std::size_t i = 0; i < things.size(); ++i) {
-        const bool stays =
-            things[i].is_ground || things[i].is_worn || has(Class::furniture_name, things[i].noun);
+        const bool stays = things[i].is_ground || things[i].is_worn || has(Class::furniture, things[i].noun);
         if (i != *target.thing && !stays && (!container || i > *target.thing))
             on.push_back(d_.target_of_thing(i));
     }
@@ -191,7 +197,8 @@ bool Reader::shave_clause() {
 
 /// Nothing is asked of it. A part of what just changed is another matter: no step leaves it out.
 void Reader::leave_as_it_is(const Phrase& phrase) {
-    if (d_.size() > 0 && is_part(phrase) && d_.things_named(phrase).empty()) d_.refuse(reason::NotASentence);
+    if (d_.changes_whole() && is_part(phrase) && d_.things_named(phrase).empty())
+        d_.refuse(reason::NotASentence);
     else d_.nothing_asked();
 }
 
@@ -218,7 +225,9 @@ bool Reader::keep_clause() {
             Cursor more = object;
             more.take_mark(',');
             more.take(Class::conjunction);
-            if (more.at == object.at || starts_verb(more.at - c_.at) || !more.take_phrase(phrase)) break;
+            if (more.at == object.at || more.peek(Class::only) || starts_verb(more.at - c_.at) ||
+                !more.take_phrase(phrase))
+                break;  // "do not move the ship, just paint it"
             object.at = more.at;
         }
         // "leave the bear green": nothing to do either way; "leave out the hat" is a removal

@@ -17,6 +17,16 @@ bool Reader::only_clause() {
     if (stays) ahead.at = said.at + 1;
     stays = stays || keeps;
     if (!ahead.at_end_of_clause()) return false;
+    if (const auto told = d_.resolve(phrase); ahead.is_mark(",:") && told.found() && !stays) {
+        Cursor order = ahead;  // "only the tail, make it black"
+        ++order.at;
+        if (starts_verb(order.at - c_.at) &&
+            (order.peek(Class::pronoun_it, 1) || order.peek(Class::pronoun_all, 1))) {
+            d_.mention(told);
+            c_.at = order.at;
+            return clause();
+        }
+    }
     if (d_.size() > 0 || !phrase.attributes.empty() || phrase.naming != Naming::Thing) return false;
     const auto found = d_.resolve(phrase);
     const auto focus = d_.focus();
@@ -52,7 +62,8 @@ bool Reader::clause() {
         if (!reason_.empty()) return false;
         c_.at = start;
     }
-    if (c_.peek(Class::times) && d_.focus().found() && measure({d_.focus()})) return true;  // "half the size"
+    const auto sized = d_.size() > 0 && d_.last() && d_.last()->found() ? *d_.last() : d_.focus();
+    if (c_.peek(Class::times) && sized.found() && measure({sized})) return true;  // "half the size"
     return noun_clause() || attribute_clause();
 }
 
@@ -150,6 +161,18 @@ bool Reader::style_clause() {
     if (ahead.is(Class::word_in) || ahead.is(Class::word_as)) ++ahead.at;
     c_.at = ahead.at;
     if (style_text({d_.scene_target()})) {
+        Cursor whom = c_, last = c_;
+        --last.at;
+        Phrase model;
+        if (last.is(Class::word_version) && whom.take(Class::of) && whom.take_phrase(model) &&
+            model.definite && d_.resolve(model).thing &&
+            whom.at_end_of_clause()) {  // "a low-poly version of the fox"
+            d_.drop_last();
+            c_.at = ahead.at;
+            const bool read = style_text({d_.resolve(model)});
+            c_.at = whom.at;
+            return read;
+        }
         if (c_.take(Class::of)) {
             const bool more = clause();
             return more || c_.at_end_of_clause();
@@ -209,7 +232,12 @@ bool Reader::there_is_clause() {
 bool Reader::no_thing_clause() {
     Cursor ahead = c_;
     Phrase phrase;
-    if (!ahead.take_phrase(phrase) || !phrase.none || phrase.noun.empty()) return false;
+    if (!ahead.take_phrase(phrase) || !phrase.none) return false;
+    if (phrase.noun.empty()) {  // "a silver crown, not a golden one"
+        if (d_.size() == 0 || phrase.attributes.empty() || !ahead.at_end_of_clause()) return false;
+        c_.at = ahead.at;
+        return true;
+    }
     c_.at = ahead.at;
     phrase.none = false;
     if (c_.peek(Class::relation)) {  // "no hat on the bear"
@@ -226,6 +254,7 @@ bool Reader::no_thing_clause() {
         c_.at = but.at;  // "not a bear but a lion"
         return become({d_.resolve(phrase)}, other);
     }
+    if (const auto found = d_.resolve(phrase); found.found() && d_.replaces(found)) return true;
     return lack(d_.focus(), phrase);
 }
 
@@ -268,6 +297,15 @@ bool Reader::negative_clause() {
     if (ahead.is(Class::word_neither)) {
         ++ahead.at;
         Phrase phrase;
+        Cursor said = ahead;  // "neither the car nor the house should change"
+        while (said.take_phrase(phrase) && said.is(Class::word_nor)) ++said.at;
+        if (said.take(Class::modal)) {
+            said.take(Class::copula);
+            if (!said.take(Class::verb_become) && !said.take(Class::verb_turn)) return false;
+            c_.at = said.at;
+            d_.nothing_asked();
+            return true;
+        }
         c_.at = ahead.at;
         do {
             if (!c_.take_phrase(phrase) || !lack(d_.focus(), phrase)) return false;
@@ -350,6 +388,9 @@ bool Reader::is_somehow(const Targets& subjects) {
     c_.take(Class::as_well);
     if (c_.peek(Class::holding) || c_.peek(Class::wearing))
         if (const auto read = has_something(subjects)) return *read;  // "is holding balloons"
+    if (const auto stands = c_.peek(Class::emerging);                 // "is parked on the beach"
+        stands && c_.peek(Class::relation, stands.length) && !c_.peek(Class::pose))
+        c_.at += stands.length;
     if (!c_.peek(Class::like) && c_.peek(Class::relation) && !c_.peek(Class::flipping))
         return related(subjects.front());
     // "is replaced by a cat", "is painted blue", "is removed"
@@ -474,6 +515,9 @@ std::optional<bool> Reader::statement(const std::vector<Phrase>& phrases, bool s
 bool Reader::noun_clause() {
     const std::size_t start = c_.at;
     Phrase phrase;
+    const bool holds = c_.peek(Class::holding) && c_.word().text.ends_with("ing");
+    if (holds && described_) return false;
+    if (holds && d_.size() > 0) return fail(reason::NotASentence);  // who holds it was not said
     if (!c_.take_phrase(phrase)) return false;
     if (phrase.naming == Naming::Something) return false;
     // "chair blue", "the bears ears white", "bear: green"
@@ -508,8 +552,11 @@ bool Reader::noun_clause() {
         if (const auto read = statement(phrases, said, adjective_behind)) return *read;
     }
     if (phrase.naming == Naming::Everything && !c_.at_end_of_clause()) {
-        posts(d_.scene_target());
-        return c_.at_end_of_clause();
+        const auto whole = d_.resolve(phrase);
+        if (!whole.found()) return false;
+        if (phrase.excepted.empty() || !c_.is(Class::word_in)) posts(whole);
+        else if (++c_.at, !complement({whole})) return false;  // "everything but the dog in gray"
+        return c_.at_end_of_clause() || c_.peek(Class::except);
     }
     if (phrase.naming != Naming::Thing) {
         c_.at = start;

@@ -42,6 +42,12 @@ bool Reader::starts_verb(std::size_t ahead) const {
     const auto& word = here.word();
     const bool form = word.text == word.base || word.text.ends_with("ing");
     if (!form) return false;
+    Cursor next = here;  // "dirty truck" describes
+    ++next.at;
+    const bool bare =
+        length == 1 && next.is_scene_noun(next.word().singular) &&
+        (here.peek(Class::material_surface) || here.peek(Class::state) || here.peek(Class::material));
+    if (bare) return false;
     if (starts_object(ahead + length)) return true;
     if (length > 1) return true;
     const auto kinds = kinds_of(word.text);
@@ -81,6 +87,25 @@ bool Reader::contradicts_colour(const Phrase& phrase, const Target& found) const
            });
 }
 
+/// "everything but the house and the grass": each other thing; what is worn goes with who wears it.
+bool Reader::all_but(const std::vector<Phrase>& excepted, Targets& targets) {
+    Targets kept;
+    for (const auto& each : excepted) {
+        kept.push_back(expect(each));
+        if (!kept.back().found()) return false;
+    }
+    const auto& things = d_.scene().things;
+    for (std::size_t i = 0; i < things.size(); ++i) {
+        const auto target = d_.target_of_thing(i);
+        const bool stays =
+            things[i].is_worn || std::any_of(kept.begin(), kept.end(), [&](const Target& each) {
+                return each.reference == target.reference;
+            });
+        if (!stays) targets.push_back(target);
+    }
+    return !targets.empty() || fail(reason::Incomplete);
+}
+
 bool Reader::object(Targets& targets, Phrase& phrase, bool split) {
     Cursor whatever = c_;  // "what stands on the table"
     Phrase carrier;
@@ -93,6 +118,7 @@ bool Reader::object(Targets& targets, Phrase& phrase, bool split) {
         return true;
     }
     if (!c_.take_phrase(phrase, split)) return false;
+    if (phrase.excepted.size() > 1) return all_but(phrase.excepted, targets);
     if (phrase.owner && has(Class::colour_word, phrase.noun))
         phrase = Phrase(*phrase.owner);  // "the colors of the bear"
     Target found;
@@ -262,7 +288,6 @@ bool Reader::paint_clause() {
     if (!carve && gold.take_attribute(metal, false) && metal.quality == Quality::Material) {
         c_.at = gold.at;
         for (const auto& target : targets) d_.step(Operation::Recolour, target, metal.value);
-        skip_rest();
         return true;
     }
     return complement(targets);
@@ -529,7 +554,7 @@ bool Reader::cover_clause() {
     ahead.take(Class::article);
     const bool things =
         ahead.word().text != ahead.word().singular && ahead.noun_length() > 0;  // "with flowers"
-    while (!things && ahead.take_attribute(next, true)) found.push_back(next);
+    while (!things && !fills && ahead.take_attribute(next, true)) found.push_back(next);
     const auto covering = ahead.peek(Class::covering);
     if (covering && !around && !fills) {
         ahead.at += covering.length;

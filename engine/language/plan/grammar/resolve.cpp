@@ -27,6 +27,9 @@ bool names(const SceneThing& thing, const Phrase& phrase) {
     const auto& noun = phrase.noun;
     if (noun == thing.noun || noun == head_of(thing.noun) || phrase.typed == thing.noun) return true;
     if (are_synonyms(thing.noun, noun) || are_synonyms(head_of(thing.noun), noun)) return true;
+    const bool closed = noun.size() > 3 && thing.noun.size() > noun.size() && thing.noun.ends_with(noun);
+    if (closed && !phrase.indefinite && !phrase.another && phrase.count.empty() && !thing.is_ground)
+        return true;  // "coat" of a raincoat
     if (thing.is_ground) return has(Class::ground_name, noun);
     if (thing.is_worn) return has(Class::clothes_name, noun) && !phrase.plural;
     const bool being = is_being(thing.noun);
@@ -36,7 +39,7 @@ bool names(const SceneThing& thing, const Phrase& phrase) {
     if (has(Class::person_name, noun)) return is_kind(thing.noun, Person) || has(Class::person, thing.noun);
     if (has(Class::vehicle_name, noun)) return is_kind(thing.noun, Vehicle) && noun == "vehicle";
     if (has(Class::plant_name, noun)) return is_kind(thing.noun, Plant);
-    if (has(Class::furniture_name, noun)) return has(Class::furniture_name, thing.noun);
+    if (has(Class::furniture_name, noun)) return has(Class::furniture, thing.noun);
     return false;
 }
 
@@ -157,6 +160,14 @@ bool Draft::can_wear(const Target& target) const {
 }
 
 Target Draft::part_target(const Target& owner, const Phrase& phrase) const {
+    if (const auto blank = phrase.noun.rfind(' '); blank != std::string::npos) {  // "the cage door"
+        Phrase whole, last = phrase;
+        whole.noun = whole.typed = phrase.noun.substr(0, blank);
+        last.noun = phrase.noun.substr(blank + 1);
+        last.typed = phrase.typed.substr(phrase.typed.rfind(' ') + 1);
+        const auto named = things_named(whole);
+        if (named.size() == 1) return part_target(target_of_thing(named.front()), last);
+    }
     Target part = owner;
     part.thing.reset();
     Thing link{phrase.typed.empty() ? phrase.noun : phrase.typed, "", {}};
@@ -245,6 +256,8 @@ Target Draft::resolve(const Phrase& phrase) const {
     switch (phrase.naming) {
         case Naming::Thing: break;
         case Naming::Everything:
+            if (phrase.excepted.size() > 1)
+                return {Target::Kind::Ambiguous, {}, std::nullopt, std::nullopt, ""};
             if (!phrase.excepted.empty()) {
                 auto target = resolve(phrase.excepted.front());
                 target.reference.except = true;
@@ -285,9 +298,13 @@ Target Draft::resolve(const Phrase& phrase) const {
         return of_several(phrase, found);
     }
     if (found.size() > 1) return of_several(phrase, found);
-    if (has(Class::thing_name, phrase.noun) && phrase.definite) return focus();
+    if (has(Class::thing_name, phrase.noun) && phrase.definite)  // "every item on the desk" is not one thing
+        return phrase.count == "all" ? pronoun(Naming::They) : focus();
     if (is_part(phrase)) {
-        Target owner = phrase.possessive ? pronoun(Naming::It, true) : focus();
+        const bool of_last =
+            last_ && last_->kind == Target::Kind::There && !last_->thing && phrase.definite &&
+            last_->reference.links.size() > 1;  // "paint the table legs red and the top white"
+        Target owner = phrase.possessive || of_last ? pronoun(Naming::It, true) : focus();
         if (!owner.found() && !scene_->things.empty() && owner.kind == Target::Kind::Ambiguous)
             owner = target_of_thing(0);
         if (owner.found()) return part_target(owner, phrase);

@@ -99,8 +99,8 @@ const std::regex& code_pattern() {
 }
 
 /// Marks that a prompt has for programs that draw, and their plain form.
-const std::array<Rule, 17>& noise_rules() {
-    static const std::array<Rule, 17> Rules = {{
+const std::array<Rule, 19>& noise_rules() {
+    static const std::array<Rule, 19> Rules = {{
         {std::regex(R"(<(lora|lyco|hypernet|embedding|ti)[^>]*>)"), " "},
         {std::regex(R"(\bembedding:\S+)"), " "},
         {std::regex(R"(\bf/[0-9.]+|\b[0-9]+ ?mm\b|\biso ?[0-9]+\b)"), " "},
@@ -115,6 +115,8 @@ const std::array<Rule, 17>& noise_rules() {
         {std::regex("\xe2\x80\x94|(^|\\s)-{1,3}(?=\\s)"), " , "},
         {std::regex(R"(\.{2,}|\xe2\x80\xa6)"), " . "},
         {std::regex(R"(\s\+\s|&)"), " and "},
+        {std::regex(R"(\bw/o\b)"), " without "},
+        {std::regex(R"(\bw/)"), " with "},
         {std::regex(R"(_)"), " "},
         {std::regex(R"(\n+)"), " , "},
         {std::regex(R"([*#~]|\xe2\x98\x86)"), " "},

@@ -273,7 +273,10 @@ constexpr std::string_view ClassNames[] = {"spelling",
                                            "word_wide",
                                            "word_wipe",
                                            "word_with",
-                                           "word_x"};
+                                           "word_x",
+                                           "furniture",
+                                           "word_version",
+                                           "word_too"};
 static_assert(std::size(ClassNames) == ClassCount);
 
 struct Entry {
@@ -544,6 +547,7 @@ bool is_word(std::string_view word) {
     const auto singular = singular_of(word), base = base_of(word);
     if (singular != word && takes_ending(singular, false)) return true;
     if (base != word && takes_ending(base, true)) return true;
+    if (word.ends_with("ier") && in_tables(cut(word, 3, "y"))) return true;
     if (word.ends_with("er") && (in_tables(cut(word, 1)) || in_tables(cut(word, 2)))) return true;
     if (word.ends_with("est") && (in_tables(cut(word, 2)) || in_tables(cut(word, 3)))) return true;
     if (word.ends_with("ly") && in_tables(cut(word, 2))) return true;

@@ -41,7 +41,7 @@ enum class Class : std::uint16_t {
     word_rainbow, word_remain, word_remains, word_same, word_sideways, word_sky, word_stars, word_stay,
     word_stays, word_substitute, word_sun, word_take, word_there, word_throw, word_times, word_to, word_try,
     word_unchanged, word_untouched, word_up, word_use, word_vertically, word_want, word_wide, word_wipe,
-    word_with, word_x,
+    word_with, word_x, furniture, word_version, word_too,
     Count
     // clang-format on
 };

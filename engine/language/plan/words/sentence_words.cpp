@@ -138,7 +138,8 @@ std::vector<std::string> slips_of(std::string_view typed, std::span<const std::s
         const bool is_needed = std::find(needed.begin(), needed.end(), word) != needed.end();
         if (!is_needed && typed.size() < 3 && !has(Class::worn, word)) return;
         if (!is_needed && !is_spellable(word)) {
-            if (typed.size() < 5 || !is_word(word)) return;
+            const bool other_start = word.front() != typed.front() && cost > 2;  // "kermit" is no hermit
+            if (typed.size() < 5 || other_start || !is_word(word)) return;
             cost += 10;
         }
         if (is_needed) cost -= 2;
