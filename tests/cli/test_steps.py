@@ -92,6 +92,13 @@ class Steps(ProgramTest):
         self.assertEqual(process.returncode, 0, process.stderr)
         self.assertFalse(self.report()["judgement"]["passed"])
 
+    def test_one_more_of_the_same_leaves_a_project(self):
+        process = self.edit("another bear, a green one, next to it", "--quality", "draft")
+        self.assertIn(process.returncode, [0, 3], process.stderr)   # drawn well or not
+        listing = run("project", self.out / "edit.gsep", "--json")
+        self.assertEqual(listing.returncode, 0, listing.stderr)
+        self.assertEqual(len(json.loads(listing.stdout)["edits"]), 1)
+
     def test_a_step_that_failed_is_kept_out_and_the_next_goes_on_without_it(self):
         process = self.edit("a blue bear wearing a yellow hat on the grass", *self.FAILING)
         self.assertEqual(process.returncode, 3, process.stderr)

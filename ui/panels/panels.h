@@ -28,12 +28,12 @@ void draw_progress_panel(Context& context);
 void draw_log_panel(Context& context);
 
 /// Functions by PanelId, in the order of PanelTable (layout.h).
-inline constexpr std::array<void (*)(Context&), PanelCount> DrawPanel{
-    draw_prompt_panel,    draw_labels_panel,  draw_scene_panel,    draw_models_panel,
-    draw_history_panel,   draw_views_panel,   draw_export_panel,   draw_settings_panel,
-    draw_attention_panel, draw_targets_panel, draw_progress_panel, draw_log_panel};
+inline constexpr std::array DrawPanel{draw_prompt_panel,  draw_labels_panel,   draw_scene_panel,
+                                      draw_models_panel,  draw_history_panel,  draw_views_panel,
+                                      draw_export_panel,  draw_settings_panel, draw_attention_panel,
+                                      draw_targets_panel, draw_progress_panel, draw_log_panel};
 
-static_assert(DrawPanel.back() != nullptr, "every panel is drawn");
+static_assert(DrawPanel.size() == PanelCount, "every panel is drawn");
 
 /// "Apply" and "Discard" of a finished edit, if it asks for them. Nothing when no result waits.
 void draw_result_notice(Context& context, const char* prefix);

@@ -45,9 +45,8 @@ NamedLabel searched_label(const EditJob& job) {
     label.attention_threshold = request.attention_threshold;
     label.excluded_views = request.excluded_views;
     label.looked_from = job.recipe().job.looked_from;
-    if (looked)
-        label.weight =
-            std::make_shared<const std::vector<float>>(weights_of(source, request.label_threshold));
+    label.weight = std::make_shared<const std::vector<float>>(
+        looked ? weights_of(source, request.label_threshold) : std::vector<float>(rows, 0.0f));
     if (looked && located.found.field.views_used > 0)
         label.found = std::make_shared<const FoundField>(located.found);
     return label;
