@@ -66,8 +66,10 @@ void EditController::read_steps() {
     };
     auto done = [this, run, scene, typed, ticket = models_.ticket()](const Error* error) {
         models_.take_back(ticket, run->model, run->loaded, error);
-        if (error != nullptr) return end(error);
-        begin_steps(*scene);
+        if (error == nullptr) begin_steps(*scene);
+        if (workspace_.jobs->works()) return;
+        workspace_.results.come_back();
+        if (error != nullptr) end(error);
     };
     workspace_.jobs->start_work(JobKind::Edit, {"Read the scene", work, done, true});
 }

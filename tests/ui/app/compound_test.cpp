@@ -84,6 +84,12 @@ DOCTEST_TEST_CASE("two changes of one sentence wait as one result, and are two e
     DOCTEST_CHECK(app.document().state().stack.empty());
     const auto shown = session.preview.last.set;
     DOCTEST_CHECK(shown.size() > base.size());  // with the hat
+    app.run(command::AnotherResult{});
+    DOCTEST_REQUIRE(app.model().job.running);
+    app.run(command::Cancel{});  // while the scene is read
+    DOCTEST_REQUIRE(session.settled());
+    DOCTEST_CHECK(app.model().result_waiting);
+    DOCTEST_CHECK(session.preview.last.set.shares_all_with(shown));
 
     app.run(command::ApplyResult{});
     app.update(session.preview);

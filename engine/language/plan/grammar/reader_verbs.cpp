@@ -287,7 +287,9 @@ bool Reader::paint_clause() {
     Attribute metal;
     if (!carve && gold.take_attribute(metal, false) && metal.quality == Quality::Material) {
         c_.at = gold.at;
+        const std::size_t steps = d_.size();
         for (const auto& target : targets) d_.step(Operation::Recolour, target, metal.value);
+        skip_rest(steps);
         return true;
     }
     return complement(targets);
