@@ -196,6 +196,11 @@ SentenceFacts facts_of(const edit::EditRequest& request, const SentenceGround& g
     return facts;
 }
 
+void forget_scope(edit::EditRequest& request) {
+    request.part_of.clear();
+    request.whole_scene = false;
+}
+
 edit::EditRequest as_change(edit::EditRequest request, const std::string& thing) {
     std::string said;
     for (const auto& phrase : language::Sentence(request.prompt).noun_phrases()) {
@@ -209,6 +214,7 @@ edit::EditRequest as_change(edit::EditRequest request, const std::string& thing)
     request.target = said;
     request.instruction.clear();
     request.mode = "auto";
+    forget_scope(request);
     return request;
 }
 

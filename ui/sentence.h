@@ -52,6 +52,9 @@ SentenceFacts facts_of(const edit::EditRequest& request, const SentenceGround& g
 /// The target grown to the word number `index` of the sentence: all words between them.
 std::string target_to(const std::string& sentence, const std::string& target, std::size_t index);
 
+/// The request is about a thing of its own again, and no part of one or the whole scene.
+void forget_scope(edit::EditRequest& request);
+
 /// The sentence with its word number `index` replaced.
 std::string with_word(const std::string& sentence, std::size_t index, const std::string& word);
 

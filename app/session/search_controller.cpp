@@ -45,6 +45,7 @@ edit::EditRequest without_words(edit::EditRequest request) {
     request.instruction.clear();
     request.excluded_views.clear();
     request.mode = edit::EditRequest{}.mode;
+    ui::forget_scope(request);
     return request;
 }
 

@@ -249,6 +249,14 @@ void ask_second(Context& context, const std::string& thing) {
     question.pending = true;
 }
 
+/// Steps that are not made: left out by the artist, or beyond the model.
+std::vector<std::string> steps_not_made(const Context& context) {
+    std::vector<std::string> out;
+    for (const auto& step : context.state.prompt.steps)
+        if (!step.problem.empty() || is_left_out(context, step)) out.push_back(step.notation);
+    return out;
+}
+
 /// Asks whether the other steps are made where some cannot be. False = there is nothing to ask.
 bool ask_partly(Context& context) {
     const auto& prompt = context.state.prompt;
@@ -260,12 +268,13 @@ bool ask_partly(Context& context) {
     auto& question = context.state.question;
     question.title = "Some changes cannot be made";
     question.text = undone;
-    question.answers = {{"Make the others", false,
-                         [&commands = context.commands, state = &context.state, out = prompt.left_out] {
-                             commands.push(command::Edit{out});
-                             show_panel(*state, PanelId::Progress);
-                         }},
-                        {"Cancel", false, {}}};
+    question.answers = {
+        {"Make the others", false,
+         [&commands = context.commands, state = &context.state, out = steps_not_made(context)] {
+             commands.push(command::Edit{out});
+             show_panel(*state, PanelId::Progress);
+         }},
+        {"Cancel", false, {}}};
     question.pending = true;
     return true;
 }
@@ -279,7 +288,7 @@ void run_edit(Context& context) {
     send_request(context);
     if (context.state.prompt.steps.size() < 2 && !present.empty()) return ask_second(context, present);
     if (ask_partly(context)) return;
-    context.emit(command::Edit{context.state.prompt.left_out});
+    context.emit(command::Edit{steps_not_made(context)});
     show_panel(context.state, PanelId::Progress);
 }
 

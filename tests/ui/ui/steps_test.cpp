@@ -70,7 +70,20 @@ DOCTEST_TEST_CASE("where a change cannot be made, the window asks once whether t
     DOCTEST_CHECK_FALSE(harness.application.asked("edit"));
     DOCTEST_CHECK(question(harness).text.find(prompt.steps[1].problem) != std::string::npos);
     harness.frame(2);
-    DOCTEST_CHECK(harness.asks("question.0", "edit"));
+    // Not run either: it would end the edit when its turn comes.
+    DOCTEST_CHECK(harness.asks("question.0", "edit without " + prompt.steps[1].notation));
+}
+
+DOCTEST_TEST_CASE("another sentence is about no part of the edit that was taken up again") {
+    Harness harness(Large);
+    auto& request = harness.application.model().request;
+    request.source = "head", request.part_of = "bear", request.prompt = "a bear with a blue head";
+    request.whole_scene = true;
+    harness.frame(2);
+    harness.click("prompt.sentence");
+    harness.type(" and a hat");
+    DOCTEST_CHECK(request.part_of.empty());
+    DOCTEST_CHECK_FALSE(request.whole_scene);
 }
 
 DOCTEST_TEST_CASE("a sentence of which nothing can be done says why, and so does one in German") {

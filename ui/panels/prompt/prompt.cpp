@@ -91,9 +91,11 @@ void draw_sentence(Context& context) {
                    "for example: a bear wearing a red hat")) {
         context.request_changed = true;
         prompt.typed_at = ImGui::GetTime();
-        // What was clicked belongs to the sentence it was clicked in.
-        if (language::words_of(before) != language::words_of(context.request.prompt))
+        // What was clicked, or taken from an edit, belongs to its sentence.
+        if (language::words_of(before) != language::words_of(context.request.prompt)) {
             context.request.target.clear();
+            forget_scope(context.request);
+        }
     }
 }
 
