@@ -35,13 +35,16 @@ double ShSampling::value(std::size_t direction, const float* coefficients, std::
     return sum;
 }
 
+double ShSampling::coefficient(const std::array<double, ShDirections>& values, std::size_t index) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < ShDirections; ++i) sum += weights_[i] * basis_[i][index] * values[i];
+    return sum;
+}
+
 void ShSampling::project(const std::array<double, ShDirections>& values, float* coefficients,
                          std::size_t stride) const {
-    for (std::size_t k = 0; k < coefficients_; ++k) {
-        double sum = 0;
-        for (std::size_t i = 0; i < ShDirections; ++i) sum += weights_[i] * basis_[i][k] * values[i];
-        coefficients[k * stride] = static_cast<float>(sum);
-    }
+    for (std::size_t k = 0; k < coefficients_; ++k)
+        coefficients[k * stride] = static_cast<float>(coefficient(values, k));
 }
 
 ShRotation sh_rotation(const Mat3& rotation, int degree) {
@@ -54,10 +57,8 @@ ShRotation sh_rotation(const Mat3& rotation, int degree) {
             sh_basis(rotation.transposed() * sampling.direction(i), degree, basis.data());
             values[i] = basis[from];
         }
-        std::array<float, MaxShCoefficients> column{};
-        sampling.project(values, column.data(), 1);
         for (std::size_t to = 0; to < sampling.coefficients(); ++to)
-            matrix[to][from] = static_cast<double>(column[to]);
+            matrix[to][from] = sampling.coefficient(values, to);
     }
     return matrix;
 }

@@ -23,6 +23,8 @@ public:
     const Vec3& direction(std::size_t index) const { return directions_[index]; }
     /// Value of the function with these coefficients (every `stride`-th number) in a direction.
     double value(std::size_t direction, const float* coefficients, std::size_t stride) const;
+    /// One coefficient of the function with these values in the directions.
+    double coefficient(const std::array<double, ShDirections>& values, std::size_t index) const;
     /// Coefficients of the function with these values in the directions.
     void project(const std::array<double, ShDirections>& values, float* coefficients,
                  std::size_t stride) const;
@@ -34,7 +36,8 @@ private:
     std::array<std::array<double, MaxShCoefficients>, ShDirections> basis_{};
 };
 
-/// Coefficients of turned functions as a matrix [to][from]: f(R^T d) for every f of the basis.
+/// Coefficients of turned functions as a matrix [to][from]: f(R^T d) for every f of the basis. R may be a
+/// mirror image, too.
 using ShRotation = std::array<std::array<double, MaxShCoefficients>, MaxShCoefficients>;
 ShRotation sh_rotation(const Mat3& rotation, int degree);
 
