@@ -1,13 +1,11 @@
-// Similarities of splats, and sets one behind the other.
+// Places as maps, and sets one behind the other.
 #include "engine/io/bytes/placed_sets.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
+#include <utility>
 
 #include "engine/base/memory.h"
-#include "engine/io/bytes/encoding.h"
-#include "engine/math/sh_projection.h"
+#include "engine/scene/transform/transformed.h"
 
 namespace gse::io {
 namespace {
@@ -36,23 +34,6 @@ GaussianSet concatenate(const std::vector<GaussianSet>& parts) {
     return GaussianSet(std::move(all));
 }
 
-void turn_colours(GaussianData& data, const Mat3& rotation) {
-    if (data.sh_degree == 0) return;
-    const ShRotation matrix = sh_rotation(rotation, data.sh_degree);
-    const auto count = static_cast<std::size_t>(sh_coefficient_count(data.sh_degree));
-    std::array<double, MaxShCoefficients> turned{};
-    for (std::size_t row = 0; row < data.size(); ++row)
-        for (std::size_t channel = 0; channel < 3; ++channel) {
-            float* sh = data.sh.data() + row * data.sh_stride() + channel;
-            for (std::size_t to = 1; to < count; ++to) {
-                turned[to] = 0;
-                for (std::size_t from = 1; from < count; ++from)
-                    turned[to] += matrix[to][from] * static_cast<double>(sh[from * 3]);
-            }
-            for (std::size_t to = 1; to < count; ++to) sh[to * 3] = static_cast<float>(turned[to]);
-        }
-}
-
 }  // namespace
 
 bool Placement::identity() const {
@@ -63,23 +44,9 @@ bool Placement::identity() const {
 
 void place(GaussianData& data, const Placement& placement) {
     if (placement.identity()) return;
-    const Mat3 rotation = rotation_matrix(placement.rotation);
-    for (std::size_t row = 0; row < data.size(); ++row) {
-        float *position = data.position.data() + row * 3, *wxyz = data.rotation.data() + row * 4;
-        const Vec3 moved =
-            rotation * (Vec3{position[0], position[1], position[2]} * placement.scale) + placement.position;
-        const auto own = unit_quaternion(wxyz);
-        const Quat turned = placement.rotation * Quat(own[0], own[1], own[2], own[3]);
-        for (int axis = 0; axis < 3; ++axis) {
-            position[axis] = static_cast<float>(moved[axis]);
-            data.log_scale[row * 3 + static_cast<std::size_t>(axis)] +=
-                static_cast<float>(std::log(placement.scale[axis]));
-        }
-        const std::array<double, 4> parts{turned.w, turned.x, turned.y, turned.z};
-        std::transform(parts.begin(), parts.end(), wxyz,
-                       [](double part) { return static_cast<float>(part); });
-    }
-    turn_colours(data, rotation);
+    Affine affine{rotation_matrix(placement.rotation), placement.position};
+    for (int axis = 0; axis < 3; ++axis) affine.linear.columns[axis] *= placement.scale[axis];
+    data = transformed(std::move(data), affine);
 }
 
 void JoinedScene::add(Scene part) {

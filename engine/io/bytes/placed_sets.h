@@ -11,15 +11,14 @@ namespace gse::io {
 /// Place of a part in the world: turned, scaled along its own axes before that, and moved.
 struct Placement {
     Quat rotation{1, 0, 0, 0};
-    Vec3 scale{1, 1, 1};  // all above 0
+    Vec3 scale{1, 1, 1};  // all above 0; their product has an inverse
     Vec3 position{0, 0, 0};
 
     /// True for a place that changes nothing but the last digits.
     bool identity() const;
 };
 
-/// Puts the splats in their place: positions, sizes, rotations and every SH band. Unequal scales stretch the
-/// axes of each splat, which is exact for splats that are not turned.
+/// Puts the splats in their place: positions, shapes and every SH band (scene/transform/transformed.h).
 void place(GaussianData& data, const Placement& placement);
 
 /// Joins scenes as they are read. The facts are those of the first; each warning comes once.

@@ -22,8 +22,8 @@ constexpr const char* Document = "document.json";
 constexpr std::uint64_t LargestDocument = std::uint64_t{64} << 20;  // bytes; poses and keys of a film
 constexpr std::uint64_t AnyPart = ~std::uint64_t{0};
 constexpr const char* DamagedHint = "the file is cut off or damaged; save the project again";
-constexpr double Rounding = 1e-6;  // of single precision
-const Quat HalfTurn(0, 0, 0, 1);   // about z, as every part is shown there
+constexpr double SmallestScale = 1e-9;  // smaller or larger by more is damage, and no place has an inverse
+const Quat HalfTurn(0, 0, 0, 1);        // about z, as every part is shown there
 
 std::string part_name(std::size_t index) { return fmt::format("splat_{}.ply", index); }
 
@@ -50,8 +50,9 @@ Placement placement_of(const Json& part) {
     const auto rotation = numbers_of<4>(part, "rotation", {0, 0, 1, 0});
     const auto scale = numbers_of<3>(part, "scale", {1, 1, 1});
     const Quat turned(rotation[3], rotation[0], rotation[1], rotation[2]);
-    if (!(glm::length(turned) > 0) ||
-        std::any_of(scale.begin(), scale.end(), [](double s) { return !(s > 0); }))
+    if (!(glm::length(turned) > 0) || std::any_of(scale.begin(), scale.end(), [](double s) {
+            return !(s >= SmallestScale && s <= 1 / SmallestScale);
+        }))
         throw Error(ErrorCode::Malformed, "the SuperSplat project gives a part no rotation or no size",
                     DamagedHint);
     const Quat back = glm::conjugate(HalfTurn);
@@ -113,7 +114,7 @@ Scene read_supersplat_project(const PartFiles& files, const Wrapping& wrapping) 
     const bool all_hidden = std::all_of(parts.begin(), parts.end(), is_hidden);
     JoinedScene joined;
     std::size_t hidden = 0;
-    bool graded = false, stretched = false;
+    bool graded = false;
     for (std::size_t i = 0; i < parts.size(); ++i) {
         if (!all_hidden && is_hidden(parts[i])) {
             ++hidden;
@@ -125,8 +126,6 @@ Scene read_supersplat_project(const PartFiles& files, const Wrapping& wrapping) 
             GaussianData data = part.gaussians.to_data();
             place(data, placement);
             part.gaussians = GaussianSet(std::move(data));
-            const Vec3& scale = placement.scale;
-            stretched = stretched || length(scale - Vec3{scale.x, scale.x, scale.x}) > Rounding * scale.x;
         }
         graded = graded || is_graded(parts[i]);
         joined.add(std::move(part));
@@ -139,10 +138,6 @@ Scene read_supersplat_project(const PartFiles& files, const Wrapping& wrapping) 
         joined.warn(
             "the colour settings of the SuperSplat project are not applied: colours are those "
             "of its files");
-    if (stretched)
-        joined.warn(
-            "a part of the SuperSplat project is scaled unequally: its splats are stretched along their "
-            "own axes");
     return joined.take();
 }
 

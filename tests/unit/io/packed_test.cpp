@@ -376,6 +376,7 @@ DOCTEST_TEST_CASE("a SuperSplat project gives its parts in their places") {
     DOCTEST_CHECK(largest_difference(turned.gaussians.sh(), expected.sh) < Rounding);
     for (const nlohmann::json& broken :
          {nlohmann::json{{"rotation", {0, 0, 0, 0}}}, nlohmann::json{{"scale", {1, -1, 1}}},
+          nlohmann::json{{"scale", {1, 1e-300, 1}}}, nlohmann::json{{"scale", {1e200, 1e200, 1}}},
           nlohmann::json{{"position", "here"}}, nlohmann::json(3)})
         DOCTEST_CHECK(error_of([&] { project(usual, broken); }));
 }
