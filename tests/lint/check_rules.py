@@ -55,7 +55,7 @@ SUB_ROOMS = {
         "request": {"words"},
         "interfaces": {"request"},
         "masks": {"request", "interfaces"},
-        "placement": {"request", "interfaces"},
+        "placement": {"words", "request", "interfaces"},
         "target_views": {"words", "request", "interfaces", "masks", "placement"},
         "target_views/strategies": {"words", "request", "interfaces", "masks", "placement", "target_views"},
         "search": {"words", "request", "interfaces", "masks", "placement", "target_views/strategies"},
