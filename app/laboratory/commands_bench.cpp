@@ -18,6 +18,7 @@
 #include "engine/laboratory/bench/all_bench.h"
 #include "engine/laboratory/bench/clip_bench.h"
 #include "engine/laboratory/bench/edit_bench.h"
+#include "engine/laboratory/bench/heal_bench.h"
 #include "engine/laboratory/bench/locate_bench.h"
 #ifdef GSE_WINDOW
 #include "engine/laboratory/bench/raster/preview_bench.h"
@@ -234,6 +235,22 @@ void add_edit_bench(CLI::App& bench, CommandContext& context) {
     });
 }
 
+void add_heal_bench(CLI::App& bench, CommandContext& context) {
+    struct Options {
+        HealBenchParameters parameters;
+        heal::HealSettings settings;
+        SweepOutput output;
+    };
+    auto options = std::make_shared<Options>();
+    auto* command = bench.add_subcommand(
+        "heal", "Things removed from generated scenes, against deletion and the true scenes without them");
+    command->add_option("--out", options->output.folder, "Folder for the figures and the picture");
+    bind_fields(*command, options->parameters, "Cases");
+    command->callback([options, &context] {
+        options->output.leave(bench_heal(options->parameters, options->settings, context.job()));
+    });
+}
+
 /// A subject that asks the model: its fields and the model's options.
 template <class Parameters>
 void add_model_subject(CLI::App& bench, CommandContext& context, const char* name, const char* help,
@@ -326,6 +343,7 @@ void add_bench_command(CLI::App& app, CommandContext& context) {
         *bench, context, "locate", "Error of searches against passes and seconds, a point per setting",
         bench_locate);
     add_edit_bench(*bench, context);
+    add_heal_bench(*bench, context);
     add_model_subject<ScaleBenchParameters>(*bench, context, "scale",
                                             "How time and memory grow with splats, pixels, views and labels",
                                             bench_scale);

@@ -1,0 +1,259 @@
+// Steps of healing: what goes, the surfaces around, their holes and shadows, the texture, the Gaussians.
+#include "engine/heal/heal.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/error.h"
+#include "engine/heal/held_parts.h"
+#include "engine/heal/hole.h"
+#include "engine/heal/lay.h"
+#include "engine/heal/patch_fill.h"
+#include "engine/heal/shadow.h"
+#include "engine/heal/smooth_fill.h"
+#include "engine/heal/supports.h"
+#include "engine/scene/scene.h"
+
+namespace gse::heal {
+namespace {
+
+constexpr double Margin = 1.0;      // of the thing's size, that is looked at around it
+constexpr double Band = 0.6;        // of the thing's size, in which surfaces are looked for
+constexpr double Tolerance = 0.02;  // of the thing's size, of rows from their plane
+constexpr std::size_t MostSurfaces = 5;
+constexpr double ShadowReach = 0.45;     // of the thing's size
+constexpr double StandsOn = 0.08;        // of the thing's size: a surface no farther has its shadow
+constexpr double LargestCleared = 2.0;   // cells, standard deviation of a row that is taken out of a hole
+constexpr double LeastGain = 1.02;       // of a row that is lit again
+constexpr double LeastOpenShare = 0.02;  // of the thing's size squared: open area worth a sentence
+
+class Healer {
+public:
+    Healer(const HealInput& input, const HealSettings& settings)
+        : input_(input), settings_(settings), up_(normalized(input.up)) {
+        if (input.thing.size() != input.scene.size())
+            throw Error(ErrorCode::InvalidArgument, "the label does not have a value for every splat",
+                        "make the label on this scene");
+        if (length(up_) == 0) throw Error(ErrorCode::InvalidArgument, "the up direction is zero");
+        check_fields(settings);
+        usable_ = usable_rows(input.scene);
+        healed_.removed.assign(input.scene.size(), 0);
+        healed_.added.sh_degree = input.scene.sh_degree();
+    }
+
+    Healed remove() {
+        for (std::size_t row = 0; row < input_.thing.size(); ++row)
+            if (input_.thing[row] != 0) healed_.removed[row] = 1, any_ = true;
+        if (!any_) throw Error(ErrorCode::InvalidArgument, "no splat is labelled", "select the thing first");
+        const auto thing = surface_rows(
+            input_.scene, usable_, [&](std::size_t row, const Vec3&) { return healed_.removed[row] != 0; });
+        body_ = body_of(thing);
+        if (body_.empty()) return std::move(healed_);
+        look_around();
+        if (settings_.held_parts) take_held(thing);
+        reach_ = settings_.reach * body_.size;
+        heal(settings_.shadow);
+        return std::move(healed_);
+    }
+
+    Healed fill(const Vec3& centre, double radius) {
+        if (!(radius > 0) || !std::isfinite(radius))
+            throw Error(ErrorCode::InvalidArgument, "the radius of the brush is not positive");
+        for (std::size_t row = 0; row < input_.thing.size(); ++row)
+            if (input_.thing[row] != 0) healed_.removed[row] = 1;
+        body_ = ball_body(centre, radius);
+        look_around();
+        reach_ = 0;
+        heal(false);
+        return std::move(healed_);
+    }
+
+private:
+    void step(const char* stage, int at, int total) {
+        if (input_.control.stop_requested()) throw Error(ErrorCode::Cancelled, "healing was stopped");
+        input_.control.report(stage, at, total);
+    }
+
+    /// Rows near the body that stay.
+    void look_around() {
+        rows_ = surface_rows(input_.scene, usable_, [&](std::size_t row, const Vec3& at) {
+            return healed_.removed[row] == 0 && body_.near(at, Margin * body_.size);
+        });
+    }
+
+    void take_held(std::span<const SurfaceRow> thing) {
+        step("held parts", 0, 1);
+        const auto held = held_parts(thing, rows_, body_, Margin * body_.size, up_);
+        std::vector<SurfaceRow> rest;
+        for (std::size_t i = 0; i < rows_.size(); ++i) {
+            if (held[i] == 0) {
+                rest.push_back(rows_[i]);
+                continue;
+            }
+            healed_.removed[rows_[i].row] = 1;
+            ++healed_.carried;
+        }
+        rows_.swap(rest);
+    }
+
+    /// Charts of the surfaces around, the one with most evidence first.
+    void find_surfaces() {
+        Random random = Random::stream(settings_.seed, 1);
+        std::vector<std::uint8_t> taken(rows_.size(), 0);
+        auto samples = plane_samples(rows_, body_, Band * body_.size);
+        double total = 0;
+        for (const auto& sample : samples) total += sample.weight;
+        for (std::size_t tries = 0; tries < 2 * MostSurfaces && charts_.size() < MostSurfaces; ++tries) {
+            step("surfaces", static_cast<int>(tries), 2 * static_cast<int>(MostSurfaces));
+            const double tolerance = Tolerance * body_.size;
+            const auto plane = find_plane(samples, total, tolerance, body_, random);
+            if (!plane) break;
+            auto chart = make_chart(rows_, taken, *plane, tolerance, body_, up_);
+            if (chart)
+                for (const auto i : chart->own) taken[i] = 1;
+            std::erase_if(samples, [&](const PlaneSample& sample) {
+                return taken[sample.index] != 0 || std::abs(plane->height(sample.at)) < tolerance;
+            });
+            if (chart) charts_.push_back(std::move(*chart));
+        }
+    }
+
+    void heal(bool shadows) {
+        gain_.assign(rows_.size(), Vec3(1));
+        find_surfaces();
+        std::vector<Grid<double>> to_body;
+        std::vector<BitGrid> near;
+        for (const auto& chart : charts_) {
+            to_body.push_back(distance_to_body(chart, body_));
+            near.push_back(near_cells(chart, to_body.back()));
+        }
+        for (std::size_t k = 0; k < charts_.size(); ++k) {
+            step("holes", static_cast<int>(k), static_cast<int>(charts_.size()));
+            Hole hole = find_hole(charts_[k], near[k], borders(charts_, near, k));
+            drop_behind(charts_[k], rows_, body_, hole.cells);
+            heal_surface(charts_[k], std::move(hole), to_body[k], shadows);
+        }
+        say_what_is_open();
+    }
+
+    /// Cells that the thing may have hidden: little farther from it than the surface is at all.
+    BitGrid near_cells(const Chart& chart, const Grid<double>& to_body) const {
+        const double least = *std::min_element(to_body.cells.begin(), to_body.cells.end());
+        const double limit = least + reach_ / chart.cell + 1;
+        BitGrid near(chart.height.width, chart.height.height, 0);
+        for (std::size_t i = 0; i < near.cells.size(); ++i) near.cells[i] = to_body.cells[i] <= limit ? 1 : 0;
+        return near;
+    }
+
+    void heal_surface(Chart& chart, Hole hole, const Grid<double>& to_body, bool shadows) {
+        const std::size_t before = healed_.added.size();
+        const double least = *std::min_element(to_body.cells.begin(), to_body.cells.end());
+        if (shadows && least * chart.cell < StandsOn * body_.size) light_again(chart, hole.cells, to_body);
+        HealedSurface surface{chart.origin, chart.normal, chart.cell};
+        std::size_t cells = 0;
+        for (const auto bit : hole.cells.cells) cells += bit;
+        if (cells > 0) {
+            clear_hole(chart, hole.cells);
+            fill_heights(chart, hole.cells);
+            BitGrid known = chart.known;
+            for (std::size_t i = 0; i < known.cells.size(); ++i)
+                if (hole.cells.cells[i] != 0) known.cells[i] = 0;
+            step("texture", 0, 1);
+            const auto texture = fill_by_patches(chart.colour, known, hole.cells, settings_.seed);
+            surface.copied = texture.found;
+            lay_rows(input_.scene, rows_, chart, hole.cells, texture,
+                     rim_correction(chart, hole.cells, texture), gain_, healed_.added);
+        }
+        const double area = chart.cell * chart.cell;
+        surface.healed_area = area * static_cast<double>(cells);
+        surface.open_area = area * static_cast<double>(hole.open);
+        surface.rows = healed_.added.size() - before;
+        healed_.surfaces.push_back(surface);
+    }
+
+    /// Removes the few rows of the surface inside its hole, half hidden before, so that nothing is doubled.
+    void clear_hole(Chart& chart, const BitGrid& hole) {
+        const std::size_t before = chart.own.size();
+        std::erase_if(chart.own, [&](std::uint32_t i) {
+            const Vec3 at = chart.local(rows_[i].at);
+            const int x = static_cast<int>(std::floor(at.x)), y = static_cast<int>(std::floor(at.y));
+            if (!hole.inside(x, y) || hole.at(x, y) == 0 || gain_[i] != Vec3(1)) return false;
+            if (rows_[i].longest() > LargestCleared * chart.cell) return false;
+            healed_.removed[rows_[i].row] = 1;
+            ++healed_.cleared;
+            return true;
+        });
+        if (chart.own.size() < before) draw_chart(chart, rows_);
+    }
+
+    /// Replaces the rows in the shadow by lit copies. Garbage goes, and its cells become part of the hole.
+    void light_again(Chart& chart, BitGrid& hole, const Grid<double>& to_body) {
+        const auto shade = find_shade(chart, rows_, hole, to_body, ShadowReach * body_.size / chart.cell);
+        std::vector<std::uint32_t> kept;
+        for (std::size_t k = 0; k < chart.own.size(); ++k) {
+            const std::uint32_t i = chart.own[k];
+            const Vec3 at = chart.local(rows_[i].at);
+            const int x = std::clamp(static_cast<int>(std::floor(at.x)), 0, hole.width - 1);
+            const int y = std::clamp(static_cast<int>(std::floor(at.y)), 0, hole.height - 1);
+            const Vec3& gain = shade.gain[k];
+            const bool garbage = shade.garbage.at(x, y) != 0;
+            const bool lit = !garbage && std::max({gain.x, gain.y, gain.z}) > LeastGain;
+            if (!garbage) kept.push_back(i);
+            if (!garbage && !lit) continue;
+            healed_.removed[rows_[i].row] = 1;
+            ++healed_.shadow;
+            if (!lit) continue;
+            gain_[i] = gain;
+            append_copy(input_.scene, rows_[i].row, rows_[i].at, {1, 0, 0, 0}, gain, {}, healed_.added);
+        }
+        for (std::size_t i = 0; i < hole.cells.size(); ++i)
+            if (shade.garbage.cells[i] != 0) hole.cells[i] = 1;
+        if (kept.size() == chart.own.size()) return;
+        chart.own.swap(kept);
+        draw_chart(chart, rows_);
+    }
+
+    void say_what_is_open() {
+        if (charts_.empty()) {
+            healed_.open = "No surface was found around it, so nothing was filled.";
+            return;
+        }
+        double open = 0;
+        for (const auto& surface : healed_.surfaces) open += surface.open_area;
+        if (open > LeastOpenShare * body_.size * body_.size)
+            healed_.open =
+                "A part of what it hid stays open, because too little around it shows how it goes on.";
+    }
+
+    const HealInput& input_;
+    const HealSettings& settings_;
+    Vec3 up_;
+    bool any_ = false;
+    std::vector<std::uint8_t> usable_;
+    Body body_;
+    double reach_ = 0;  // world units
+    std::vector<SurfaceRow> rows_;
+    std::vector<Vec3> gain_;  // of the rows' colours, that lights them again
+    std::vector<Chart> charts_;
+    Healed healed_;
+};
+
+}  // namespace
+
+Healed remove_and_heal(const HealInput& input, const HealSettings& settings) {
+    return Healer(input, settings).remove();
+}
+
+Healed heal_region(const HealInput& input, const Vec3& centre, double radius, const HealSettings& settings) {
+    return Healer(input, settings).fill(centre, radius);
+}
+
+GaussianSet healed_set(const GaussianSet& scene, const Healed& healed) {
+    std::vector<std::uint8_t> keep(healed.removed.size());
+    for (std::size_t i = 0; i < keep.size(); ++i) keep[i] = healed.removed[i] == 0 ? 1 : 0;
+    GaussianData data = scene.filtered(keep).to_data();
+    for (std::size_t row = 0; row < healed.added.size(); ++row) data.append_row(healed.added, row);
+    return GaussianSet(std::move(data));
+}
+
+}  // namespace gse::heal

@@ -1,0 +1,159 @@
+// Copies cell by cell, then what is still thin.
+#include "engine/heal/lay.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/heal/smooth_fill.h"
+#include "engine/math/sh.h"
+
+namespace gse::heal {
+namespace {
+
+constexpr double LargestCopy = 3.5;      // cells, standard deviation of a row that is copied
+constexpr double MostCorrection = 0.15;  // of a colour channel
+constexpr int RimSmoothings = 3;
+constexpr double ThinShare = 0.96;   // of the usual cover, below which a cell gets a row of its own
+constexpr double FreshDepth = 0.25;  // cells, that such a row lies below the surface
+constexpr double FreshAlong = 0.62, FreshThrough = 0.08;  // standard deviations of such a row, cells
+constexpr double FreshOpacity = 0.95;
+
+/// Shortest turn from one unit vector to another.
+Quat turn_between(const Vec3& from, const Vec3& to) {
+    const double along = dot(from, to);
+    if (along < -0.99) return {1, 0, 0, 0};
+    const Vec3 axis = cross(from, to);
+    return glm::normalize(Quat(1 + along, axis.x, axis.y, axis.z));
+}
+
+SurfaceRow fresh_row(const Chart& chart, double x, double y, const Vec3& colour) {
+    SurfaceRow row;
+    row.normal = chart.normal_at(x, y);
+    row.at = chart.world(x, y, chart.height_at(x, y) - FreshDepth * chart.cell);
+    row.colour = colour;
+    const Vec3 along = normalized(chart.u - row.normal * dot(chart.u, row.normal));
+    row.axis = {along, cross(row.normal, along), row.normal};
+    row.scale = {FreshAlong * chart.cell, FreshAlong * chart.cell, FreshThrough * chart.cell};
+    row.opacity = FreshOpacity;
+    return row;
+}
+
+void append_fresh(const SurfaceRow& row, GaussianData& added) {
+    const std::size_t at = added.size();
+    added.resize(at + 1);
+    const Quat q = quaternion(Mat3::from_columns(row.axis[0], row.axis[1], row.axis[2]));
+    const double turn[4] = {q.w, q.x, q.y, q.z};
+    for (std::size_t k = 0; k < 4; ++k) added.rotation[at * 4 + k] = static_cast<float>(turn[k]);
+    for (std::size_t k = 0; k < 3; ++k) {
+        const int axis = static_cast<int>(k);
+        added.position[at * 3 + k] = static_cast<float>(row.at[axis]);
+        added.log_scale[at * 3 + k] = static_cast<float>(std::log(row.scale[k]));
+        added.sh[at * added.sh_stride() + k] = static_cast<float>(sh_from_colour(row.colour[axis]));
+    }
+    added.opacity_logit[at] = static_cast<float>(std::log(row.opacity / (1 - row.opacity)));
+}
+
+Vec3 limited(const Vec3& v, double most) {
+    return {std::clamp(v.x, -most, most), std::clamp(v.y, -most, most), std::clamp(v.z, -most, most)};
+}
+
+/// Means over the cells of `bits` around each of them.
+void smooth_over(Grid<Vec3>& values, const BitGrid& bits) {
+    const auto before = values;
+    each_cell(bits, [&](int x, int y) {
+        if (bits.at(x, y) == 0) return;
+        Vec3 sum = before.at(x, y);
+        double count = 1;
+        each_neighbour(bits, x, y, 2, [&](int nx, int ny) {
+            if (bits.at(nx, ny) != 0) sum += before.at(nx, ny), count += 1;
+        });
+        values.at(x, y) = sum / count;
+    });
+}
+
+}  // namespace
+
+void append_copy(const GaussianSet& scene, std::size_t row, const Vec3& at, const Quat& turn,
+                 const Vec3& gain, const Vec3& more, GaussianData& added) {
+    const std::size_t to = added.size(), stride = added.sh_stride();
+    added.resize(to + 1);
+    const float* q = &scene.rotation()[row * 4];
+    const Quat turned = turn * Quat(q[0], q[1], q[2], q[3]);
+    const double rotation[4] = {turned.w, turned.x, turned.y, turned.z};
+    for (std::size_t k = 0; k < 4; ++k) added.rotation[to * 4 + k] = static_cast<float>(rotation[k]);
+    for (std::size_t k = 0; k < 3; ++k) {
+        added.position[to * 3 + k] = static_cast<float>(at[static_cast<int>(k)]);
+        added.log_scale[to * 3 + k] = scene.log_scale()[row * 3 + k];
+    }
+    added.opacity_logit[to] = scene.opacity_logit()[row];
+    for (std::size_t k = 0; k < stride; ++k) {
+        const int channel = static_cast<int>(k % 3);
+        const double value = scene.sh()[row * stride + k];
+        added.sh[to * stride + k] =
+            static_cast<float>(k < 3 ? sh_from_colour(colour_from_sh(value) * gain[channel] + more[channel])
+                                     : value * gain[channel]);
+    }
+}
+
+Grid<Vec3> rim_correction(const Chart& chart, const BitGrid& hole, const PatchFill& fill) {
+    Grid<Vec3> correction(hole.width, hole.height);
+    if (!fill.found) return correction;
+    BitGrid rim(hole.width, hole.height, 0);
+    each_cell(hole, [&](int x, int y) {
+        if (hole.at(x, y) != 0 || chart.known.at(x, y) == 0) return;
+        Vec3 sum;
+        double count = 0;
+        each_neighbour(hole, x, y, 1, [&](int nx, int ny) {
+            if (hole.at(nx, ny) == 0) return;
+            const Shift shift = fill.shift.at(nx, ny);
+            const int sx = x + shift.x, sy = y + shift.y;
+            if (!hole.inside(sx, sy) || chart.known.at(sx, sy) == 0 || hole.at(sx, sy) != 0) return;
+            sum += chart.colour.at(x, y) - chart.colour.at(sx, sy);
+            count += 1;
+        });
+        if (count > 0) rim.at(x, y) = 1, correction.at(x, y) = limited(sum / count, MostCorrection);
+    });
+    for (int pass = 0; pass < RimSmoothings; ++pass) smooth_over(correction, rim);
+    fill_membrane(correction, hole, rim);
+    return correction;
+}
+
+void lay_rows(const GaussianSet& scene, std::span<const SurfaceRow> rows, const Chart& chart,
+              const BitGrid& hole, const PatchFill& fill, const Grid<Vec3>& correction,
+              std::span<const Vec3> gain, GaussianData& added) {
+    auto through = chart.through;
+    const auto cover = [&](const SurfaceRow& row) {
+        each_covered(chart, row,
+                     [&](std::size_t cell, double opacity) { through.cells[cell] *= 1 - opacity; });
+    };
+    const auto copy_cell = [&](int x, int y, Shift shift) {
+        for (const auto i : chart.rows_in(x + shift.x, y + shift.y)) {
+            SurfaceRow row = rows[i];
+            if (row.longest() > LargestCopy * chart.cell) continue;
+            const Vec3 from = chart.local(row.at);
+            const double px = from.x - shift.x, py = from.y - shift.y;
+            const double rise = from.z - chart.height_at(from.x, from.y);
+            const Quat turn = turn_between(chart.normal_at(from.x, from.y), chart.normal_at(px, py));
+            row.at = chart.world(px, py, chart.height_at(px, py) + rise);
+            append_copy(scene, row.row, row.at, turn, gain[i], between_cells(correction, px, py), added);
+            cover(row);
+        }
+    };
+    if (fill.found)
+        each_cell(hole, [&](int x, int y) {
+            if (hole.at(x, y) != 0) copy_cell(x, y, fill.shift.at(x, y));
+        });
+    each_cell(hole, [&](int x, int y) {
+        bool rim = false;
+        each_neighbour(hole, x, y, 1, [&](int nx, int ny) { rim = rim || hole.at(nx, ny) != 0; });
+        const bool inside = hole.at(x, y) != 0;
+        if (!inside && !(rim && chart.known.at(x, y) != 0)) return;
+        if (1 - through.at(x, y) >= ThinShare * chart.usual_cover) return;
+        const Vec3 colour = inside ? fill.colour.at(x, y) + correction.at(x, y) : chart.colour.at(x, y);
+        const SurfaceRow row = fresh_row(chart, x + 0.5, y + 0.5, colour);
+        append_fresh(row, added);
+        cover(row);
+    });
+}
+
+}  // namespace gse::heal

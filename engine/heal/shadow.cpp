@@ -1,0 +1,308 @@
+// Blurred brightness against a plane of brightness fitted to the surface farther away.
+#include "engine/heal/shadow.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "engine/heal/distance.h"
+
+namespace gse::heal {
+namespace {
+
+constexpr double ContactCells = 1.5;  // distance from the thing at which it stands on a cell
+constexpr std::array AlongCells{2.5, 4.0,
+                                6.0};     // standard deviations of the mean along the rim, tried in turn
+constexpr double AcrossCells = 0.8;       // standard deviation of the mean towards the thing and away from it
+constexpr double TwoTones = 0.2;          // of the variance of brightness, that two tones leave at most
+constexpr double LeastContrast = 0.15;    // standard deviation of such a surface, in logarithms
+constexpr double ToneSlack = 0.1;         // in logarithms, by which a cell may be brighter than its tone
+constexpr double CalmSpread = 0.05;       // of the surface's own brightness, in logarithms, after the mean
+constexpr std::size_t MostBeyond = 1500;  // cells of it that are looked at
+constexpr double BeyondShare = 0.3;       // of the surface's cells that lie beyond at least
+constexpr double TintLimit = 1.15;        // of a channel's gain over that of the brightness
+constexpr double Darkest = 0.02;          // channel value that logarithms start from
+constexpr double ClearlyDarker = 0.13, SlightlyDarker = 0.04;  // in logarithms of brightness
+constexpr double ClearSpread = 2.0, SlightSpread = 1.0;        // spreads of the surface beyond
+constexpr double HueLimit = 0.10;        // difference of a channel's share of the brightness
+constexpr std::size_t LeastBeyond = 60;  // cells beyond the shadow to compare with
+constexpr double MostGain = 3.5;
+constexpr double GarbageDistance = 0.22;  // of a colour from all colours around
+constexpr double FitScale = 0.15;         // in logarithms, beyond which a cell counts little
+constexpr int GainRounds = 4;             // of the gain, each on what the one before left
+
+struct Trend {
+    double base = 0, along_x = 0, along_y = 0;
+    double at(double x, double y) const { return base + along_x * x + along_y * y; }
+};
+
+using Values = std::vector<std::array<double, 4>>;  // red, green, blue, brightness, in logarithms
+
+/// Plane through one of the values of the cells, by reweighted least squares in coordinates of about one.
+Trend fit_trend(const Values& values, std::size_t channel, const std::vector<std::size_t>& cells,
+                const BitGrid& grid) {
+    const double unit = 0.5 * std::max(grid.width, grid.height);
+    const auto width = static_cast<std::size_t>(grid.width);
+    Trend trend;
+    for (int round = 0; round < 6; ++round) {
+        std::array<std::array<double, 4>, 3> m{};
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            const double x = static_cast<double>(cells[i] % width) / unit - 1;
+            const double y = static_cast<double>(cells[i] / width) / unit - 1;
+            const double value = values[i][channel];
+            const double off = round == 0 ? 0 : (trend.at(x, y) - value) / FitScale;
+            const double w = 1 / (1 + off * off);
+            const double terms[4] = {1, x, y, value};
+            for (std::size_t r = 0; r < 3; ++r)
+                for (std::size_t c = 0; c < 4; ++c) m[r][c] += w * terms[r] * terms[c];
+        }
+        const double slack = 0.02 * m[0][0] + 1e-9;  // a slope must be worth it
+        m[1][1] += slack, m[2][2] += slack;
+        for (std::size_t k = 0; k < 3; ++k)
+            for (std::size_t r = k + 1; r < 3; ++r) {
+                const double factor = m[r][k] / m[k][k];
+                for (std::size_t c = k; c < 4; ++c) m[r][c] -= factor * m[k][c];
+            }
+        trend.along_y = m[2][3] / m[2][2];
+        trend.along_x = (m[1][3] - m[1][2] * trend.along_y) / m[1][1];
+        trend.base = (m[0][3] - m[0][1] * trend.along_x - m[0][2] * trend.along_y) / m[0][0];
+    }
+    return trend;
+}
+
+double brightness(const Vec3& c) { return 0.3 * c.x + 0.59 * c.y + 0.11 * c.z; }
+
+std::array<double, 4> logarithms(const Vec3& colour) {
+    std::array<double, 4> values{};
+    for (int c = 0; c < 3; ++c) values[static_cast<std::size_t>(c)] = std::log(std::max(colour[c], Darkest));
+    values[3] = std::log(std::max(brightness(colour), Darkest));
+    return values;
+}
+
+/// One or two usual colours of a surface, in logarithms, the darker first. Checks and stripes have two.
+class Tones {
+public:
+    explicit Tones(std::vector<std::array<double, 4>> cells) {
+        std::sort(cells.begin(), cells.end(), [](const auto& a, const auto& b) { return a[3] < b[3]; });
+        const double count = static_cast<double>(cells.size());
+        double sum = 0, squares = 0, low = 0, best = 0;
+        for (const auto& cell : cells) sum += cell[3], squares += cell[3] * cell[3];
+        const double total = squares / count - sum * sum / (count * count);
+        std::size_t split = 0;
+        for (std::size_t i = 0; i + 1 < cells.size(); ++i) {  // the split of Otsu (1979)
+            low += cells[i][3];
+            const double n = static_cast<double>(i + 1), other = count - n;
+            const double step = (sum - low) / other - low / n;
+            const double between = n * other / (count * count) * step * step;
+            if (between > best) best = between, split = i + 1;
+        }
+        const bool two = total > LeastContrast * LeastContrast && total - best < TwoTones * total;
+        if (two) add(cells, 0, split);
+        add(cells, two ? split : 0, cells.size());
+    }
+    /// Difference of a cell's colour from the darkest tone that is not darker.
+    std::array<double, 4> off(const Vec3& colour) const {
+        auto values = logarithms(colour);
+        const auto& tone = values[3] <= tones_.front()[3] + ToneSlack ? tones_.front() : tones_.back();
+        for (std::size_t c = 0; c < 4; ++c) values[c] -= tone[c];
+        return values;
+    }
+
+private:
+    void add(const std::vector<std::array<double, 4>>& cells, std::size_t first, std::size_t last) {
+        std::array<double, 4> mean{};
+        for (std::size_t i = first; i < last; ++i)
+            for (std::size_t c = 0; c < 4; ++c) mean[c] += cells[i][c] / static_cast<double>(last - first);
+        tones_.push_back(mean);
+    }
+    std::vector<std::array<double, 4>> tones_;
+};
+
+class Finder {
+public:
+    Finder(Chart& chart, std::span<SurfaceRow> rows, const BitGrid& hole, const Grid<double>& to_body,
+           double reach)
+        : chart_(chart), rows_(rows), hole_(hole), to_body_(to_body) {
+        BitGrid foot = hole;
+        for (std::size_t i = 0; i < foot.cells.size(); ++i)
+            if (to_body.cells[i] <= ContactCells) foot.cells[i] = 1;
+        away_ = distance_to(foot);
+        surface_ = chart.known;
+        std::vector<double> distances;
+        for (std::size_t i = 0; i < foot.cells.size(); ++i) {
+            if (hole.cells[i] != 0) surface_.cells[i] = 0;
+            if (surface_.cells[i] != 0) distances.push_back(away_.cells[i]);
+        }
+        if (distances.empty()) return;
+        const auto far = distances.begin() + static_cast<std::ptrdiff_t>(
+                                                 (1 - BeyondShare) * static_cast<double>(distances.size()));
+        std::nth_element(distances.begin(), far, distances.end());
+        reach = std::min(reach, *far);
+        std::vector<std::size_t> beyond;
+        place_ = Grid<std::int32_t>(hole.width, hole.height, -1);
+        for (std::size_t i = 0; i < foot.cells.size(); ++i) {
+            if (surface_.cells[i] == 0) continue;
+            if (away_.cells[i] > reach) beyond.push_back(i);
+            else place_.cells[i] = static_cast<std::int32_t>(within_.size()), within_.push_back(i);
+        }
+        const std::size_t count = std::min(beyond.size(), MostBeyond);
+        for (std::size_t k = 0; k < count; ++k) beyond_.push_back(beyond[k * beyond.size() / count]);
+    }
+
+    Shade find() {
+        Shade shade{std::vector<Vec3>(chart_.own.size(), Vec3(1)), BitGrid(hole_.width, hole_.height, 0)};
+        if (beyond_.size() < LeastBeyond) return shade;
+        Values colours;
+        for (const auto cell : beyond_) colours.push_back(logarithms(chart_.colour.cells[cell]));
+        const Tones tones(std::move(colours));
+        double along = 0;
+        for (const double cells : AlongCells) {
+            measure(tones, along = cells);
+            if (spread_ < CalmSpread) break;
+        }
+        const BitGrid shaded = connected();
+        for (int round = 0; round < GainRounds; ++round) {
+            if (round > 0) measure(tones, along);
+            lighten(shaded, shade.gain);
+        }
+        find_garbage(shade);
+        return shade;
+    }
+
+private:
+    /// Means over the cells around that are as far from the thing. Textures average out, a shadow's slope
+    /// does not.
+    std::array<double, 4> mean_at(std::size_t cell, double along) const {
+        const auto width = static_cast<std::size_t>(hole_.width);
+        const int cx = static_cast<int>(cell % width), cy = static_cast<int>(cell / width);
+        const int reach = static_cast<int>(std::ceil(2 * along));
+        std::array<double, 4> sum{};
+        double weight = 0;
+        for (int y = std::max(0, cy - reach); y <= std::min(hole_.height - 1, cy + reach); ++y)
+            for (int x = std::max(0, cx - reach); x <= std::min(hole_.width - 1, cx + reach); ++x) {
+                const std::size_t other = surface_.index(x, y);
+                const double step = (away_.cells[other] - away_.cells[cell]) / AcrossCells;
+                if (surface_.cells[other] == 0 || step * step > 9) continue;
+                const double d2 = (x - cx) * (x - cx) + (y - cy) * (y - cy);
+                const double w = std::exp(-0.5 * (step * step + d2 / (along * along)));
+                for (std::size_t c = 0; c < 4; ++c) sum[c] += w * off_.cells[other][c];
+                weight += w;
+            }
+        for (auto& value : sum) value /= weight;
+        return sum;
+    }
+
+    /// Means of all cells less the trend of the surface beyond.
+    void measure(const Tones& tones, double along) {
+        off_ = Grid<std::array<double, 4>>(hole_.width, hole_.height);
+        for (std::size_t i = 0; i < off_.cells.size(); ++i)
+            if (surface_.cells[i] != 0) off_.cells[i] = tones.off(chart_.colour.cells[i]);
+        Values beyond;
+        for (const auto cell : beyond_) beyond.push_back(mean_at(cell, along));
+        dark_.clear();
+        for (const auto cell : within_) dark_.push_back(mean_at(cell, along));
+        const double unit = 0.5 * std::max(hole_.width, hole_.height);
+        const auto width = static_cast<std::size_t>(hole_.width);
+        double sum = 0;
+        for (std::size_t c = 0; c < 4; ++c) {
+            const Trend trend = fit_trend(beyond, c, beyond_, surface_);
+            const auto expected = [&](std::size_t cell) {
+                return trend.at(static_cast<double>(cell % width) / unit - 1,
+                                static_cast<double>(cell / width) / unit - 1);
+            };
+            for (std::size_t k = 0; k < within_.size(); ++k) dark_[k][c] -= expected(within_[k]);
+            if (c < 3) continue;
+            for (std::size_t k = 0; k < beyond_.size(); ++k) {
+                const double off = beyond[k][c] - expected(beyond_[k]);
+                sum += std::min(off * off, 1.0);
+            }
+        }
+        spread_ = std::sqrt(sum / static_cast<double>(beyond_.size()));
+    }
+
+    /// True for a cell that is darker by the limit, and no darker in one channel than in another.
+    bool darker(std::size_t cell, double limit) const {
+        if (place_.cells[cell] < 0) return false;
+        const auto& dark = dark_[static_cast<std::size_t>(place_.cells[cell])];
+        if (dark[3] > -limit) return false;
+        for (std::size_t c = 0; c < 3; ++c)
+            if (std::abs(dark[c] - dark[3]) > HueLimit + 0.35 * std::abs(dark[3])) return false;
+        return true;
+    }
+
+    /// Clearly darker cells at the foot, and those joined to them that are slightly darker.
+    BitGrid connected() const {
+        const double clear = std::max(ClearlyDarker, ClearSpread * spread_);
+        const double slight = std::max(SlightlyDarker, SlightSpread * spread_);
+        BitGrid shaded(hole_.width, hole_.height, 0);
+        std::vector<std::size_t> open;
+        for (const auto cell : within_)
+            if (away_.cells[cell] <= 2.5 && darker(cell, clear)) shaded.cells[cell] = 1, open.push_back(cell);
+        const auto width = static_cast<std::size_t>(shaded.width);
+        while (!open.empty()) {
+            const std::size_t cell = open.back();
+            open.pop_back();
+            each_neighbour(shaded, static_cast<int>(cell % width), static_cast<int>(cell / width), 1,
+                           [&](int x, int y) {
+                               const std::size_t next = shaded.index(x, y);
+                               if (shaded.cells[next] != 0 || !darker(next, slight)) return;
+                               shaded.cells[next] = 1;
+                               open.push_back(next);
+                           });
+        }
+        return shaded;
+    }
+
+    /// Multiplies the rows' gains by what their cells still lack, and draws the surface with them.
+    void lighten(const BitGrid& shaded, std::vector<Vec3>& gain) {
+        Grid<Vec3> more(hole_.width, hole_.height, Vec3(0));
+        for (std::size_t k = 0; k < within_.size(); ++k)
+            if (shaded.cells[within_[k]] != 0)
+                more.cells[within_[k]] = {-dark_[k][0], -dark_[k][1], -dark_[k][2]};
+        for (std::size_t k = 0; k < chart_.own.size(); ++k) {
+            SurfaceRow& row = rows_[chart_.own[k]];
+            const Vec3 at = chart_.local(row.at), lack = between_cells(more, at.x, at.y);
+            if (lack == Vec3(0)) continue;
+            const Vec3 before = gain[k];
+            for (int c = 0; c < 3; ++c) gain[k][c] = std::clamp(before[c] * std::exp(lack[c]), 1.0, MostGain);
+            const double all = brightness(gain[k]);
+            for (int c = 0; c < 3; ++c)
+                gain[k][c] = std::max(1.0, std::clamp(gain[k][c], all / TintLimit, all * TintLimit));
+            row.colour *= gain[k] / before;
+        }
+        draw_chart(chart_, rows_);
+    }
+
+    void find_garbage(Shade& shade) const {
+        for (std::size_t i = 0; i < shade.garbage.cells.size(); ++i) {
+            if (surface_.cells[i] == 0 || to_body_.cells[i] > ContactCells) continue;
+            double least = FarAway;
+            for (const auto cell : beyond_) {
+                const Vec3 d = chart_.colour.cells[i] - chart_.colour.cells[cell];
+                least = std::min(least, dot(d, d));
+            }
+            if (least > GarbageDistance * GarbageDistance) shade.garbage.cells[i] = 1;
+        }
+    }
+
+    Chart& chart_;
+    std::span<SurfaceRow> rows_;
+    const BitGrid& hole_;
+    const Grid<double>& to_body_;
+    BitGrid surface_;
+    Grid<double> away_;                         // from the hole and the foot, cells
+    Grid<std::array<double, 4>> off_;           // of the surface's cells from their tones
+    std::vector<std::size_t> within_, beyond_;  // cells that may be in the shadow; some of the others
+    Grid<std::int32_t> place_;                  // of a cell in `within_`; -1 = not there
+    Values dark_;                               // of the cells of `within_`, less the trend
+    double spread_ = 0;
+};
+
+}  // namespace
+
+Shade find_shade(Chart& chart, std::span<SurfaceRow> rows, const BitGrid& hole, const Grid<double>& to_body,
+                 double reach) {
+    return Finder(chart, rows, hole, to_body, reach).find();
+}
+
+}  // namespace gse::heal

@@ -1,0 +1,41 @@
+// gseditpro-lab bench heal: removed things of generated scenes against the true scenes without them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "engine/base/fields.h"
+#include "engine/base/progress.h"
+#include "engine/heal/heal.h"
+#include "engine/laboratory/bench/charts/subject.h"
+
+namespace gse::bench {
+
+struct HealBenchParameters {
+    std::string kinds = "all";
+    int seeds = 3;
+    std::uint64_t seed = 1;
+    int splats = 12000;
+    int capture_views = 60;
+    int views = 6;
+    int size = 256;
+
+    template <class Self, class F> static void visit_fields(Self& self, F&& f) {
+        f("kinds", self.kinds, "Kinds of scenes, or all.");
+        f("seeds", self.seeds, "Scenes of a kind.", Range{1, 1000});
+        f("seed", self.seed, "Seed of the first scene.");
+        f("splats", self.splats, "Splats of a scene.", Range{1000, 2e6});
+        f("capture_views", self.capture_views,
+          "Views that the scan was made from; what none shows is missing.", Range{4, 1000});
+        f("views", self.views, "Other views that the figures are of.", Range{1, 100});
+        f("size", self.size, "Side of the pictures, pixels.", Range{32, 2048});
+    }
+};
+
+/// Figures of healing, of plain deletion and of one mean colour, over the pixels where deletion differs from
+/// the truth. The picture shows a view per kind: with the thing, deleted, healed, truth. Throws Error for
+/// wrong parameters, and when stopped.
+Subject bench_heal(const HealBenchParameters& parameters, const heal::HealSettings& settings,
+                   const JobControl& job);
+
+}  // namespace gse::bench
