@@ -47,8 +47,12 @@ private:
     std::string prompt_;
 };
 
-/// Kind of an edit: change of colour, material or style; addition beside something; or replacement.
-enum class EditMode { Modify, Add, Replace };
+/// Kind of an edit: change of colour, material or style; addition beside something; replacement; removal;
+/// change of place, size or number.
+enum class EditMode { Modify, Add, Replace, Remove, Transform };
+
+/// True for edits in which a model draws. The others only look for their thing.
+constexpr bool is_drawn(EditMode mode) { return mode != EditMode::Remove && mode != EditMode::Transform; }
 
 /// A sentence as it is read for an edit of `source`, in which `target` is new; both phrases are in lower
 /// case.

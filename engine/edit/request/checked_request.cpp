@@ -1,6 +1,8 @@
 // Completing and checking a request.
 #include "engine/edit/request/checked_request.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -8,6 +10,7 @@
 #include "engine/edit/request/edit_method.h"
 #include "engine/edit/request/excluded_views.h"
 #include "engine/edit/request/sentence_plan.h"
+#include "engine/edit/words/change_words.h"
 #include "engine/language/news.h"
 #include "engine/language/words.h"
 
@@ -29,7 +32,7 @@ std::string phrase_of(const std::string& text, const char* what) {
 void check_names(const EditRequest& request) {
     if (request.mode != OpenMode && !mode_named(request.mode))
         throw Error(ErrorCode::InvalidArgument, "\"" + request.mode + "\" is not an edit mode",
-                    "use auto, modify, replace or add");
+                    "use auto, modify, replace, add, remove or transform");
     if (std::find(Qualities.begin(), Qualities.end(), request.quality) == Qualities.end())
         throw Error(ErrorCode::InvalidArgument, "\"" + request.quality + "\" is not a quality",
                     "use draft, normal or fine");
@@ -47,10 +50,12 @@ std::string guess(const language::Sentence& sentence, const std::string& source,
 CheckedRequest::CheckedRequest(const EditRequest& request, language::Sentence sentence, bool target_open)
     : EditSettings(request), mode(mode_named(request.mode)), prompt_(request.prompt),
       sentence_(std::move(sentence), request.source, request.target), part_of_(request.part_of),
-      whole_scene_(request.whole_scene), target_open_(target_open) {}
+      whole_scene_(request.whole_scene), description_(request.description), anchor_(request.anchor),
+      target_open_(target_open) {}
 
 EditWords CheckedRequest::words() const {
-    return {source(), prompt_, target(), mode ? mode_name(*mode) : OpenMode, part_of_, whole_scene_};
+    return {source(), prompt_,      target(),     mode ? mode_name(*mode) : OpenMode,
+            part_of_, whole_scene_, description_, anchor_};
 }
 
 EditRequest CheckedRequest::plain() const { return {words(), *this}; }
@@ -73,6 +78,16 @@ CheckedRequest CheckedRequest::search_for(std::string thing) const {
     other.prompt_ = sentence_.before();
     other.sentence_ = {language::Sentence(other.prompt_), std::move(thing), source()};
     other.mode = EditMode::Modify;
+    return other;
+}
+
+CheckedRequest CheckedRequest::search_for_anchor() const {
+    CheckedRequest other = *this;
+    const bool told = sentence_.sentence().contains(anchor_);
+    other.prompt_ = told ? sentence_.prompt() : "a " + anchor_;
+    other.sentence_ = {language::Sentence(other.prompt_), anchor_, anchor_};
+    other.mode = EditMode::Modify;
+    other.part_of_.clear();
     return other;
 }
 
@@ -123,8 +138,57 @@ EditRequest with_target(EditRequest request, const News& news) {
     return request;
 }
 
+namespace {
+
+bool is_rearranged(const EditRequest& request) {
+    const auto mode = mode_named(request.mode);
+    return mode && !is_drawn(*mode);
+}
+
+/// Throws Error (InvalidArgument) for a transform that changes nothing, or cannot be read.
+void require_change(const EditRequest& request) {
+    const RearrangeSettings& settings = request;
+    if (settings == RearrangeSettings{})
+        throw Error(ErrorCode::InvalidArgument, "nothing says how the thing is moved, turned or resized",
+                    "give the change in words (\"bigger\"), or a number such as the turn");
+    if (settings.change.empty()) return;
+    const auto change = placement_change(settings.change);
+    if (change.needs_anchor() == request.anchor.empty())
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("the change \"{}\" {}", settings.change,
+                                request.anchor.empty() ? "needs another thing" : "takes no other thing"),
+                    request.anchor.empty() ? "name it with the anchor" : "leave the anchor out");
+}
+
+/// Completes a request in which nothing is drawn, and returns the sentence that describes the scene as it is.
+language::Sentence complete_rearranged(EditRequest& request) {
+    if (request.source.empty())
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("nothing says which thing mode {} is about", request.mode),
+                    "name it with the source");
+    if (request.whole_scene)
+        throw Error(ErrorCode::InvalidArgument, "a whole scene is only changed in its look",
+                    "name one thing, or leave out --whole-scene");
+    request.source = phrase_of(request.source, "source");
+    request.target = request.source;
+    if (!request.part_of.empty()) request.part_of = phrase_of(request.part_of, "thing of the part");
+    if (!request.anchor.empty()) request.anchor = phrase_of(request.anchor, "anchor");
+    if (mode_named(request.mode) == EditMode::Transform) require_change(request);
+    if (request.prompt.empty()) request.prompt = request.mode + " the " + request.source;
+    const language::Sentence described(request.description);
+    const auto& named = request.part_of.empty() ? request.source : request.part_of;
+    return described.contains(named) ? described : language::Sentence("a " + named);
+}
+
+}  // namespace
+
 CheckedRequest check(EditRequest request, const News& news) {
     check_fields(request);
+    if (EditRequest planned = in_plan_words(request, news); is_rearranged(planned)) {
+        check_names(planned);
+        auto described = complete_rearranged(planned);
+        return {planned, std::move(described), false};
+    }
     language::Sentence sentence(request.prompt);
     if (sentence.empty())
         throw Error(ErrorCode::InvalidArgument, "the edit has no prompt",

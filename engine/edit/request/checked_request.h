@@ -32,6 +32,10 @@ public:
     const std::string& part_of() const { return part_of_; }
     /// Everything changes its look; nothing is looked for.
     bool whole_scene() const { return whole_scene_; }
+    /// Other thing that a transform is relative to; empty = none.
+    const std::string& anchor() const { return anchor_; }
+    /// True for an edit that looks for its thing and has no model draw anything.
+    bool is_rearranged() const { return mode && !is_drawn(*mode); }
     /// Nobody has chosen the target: it was guessed, and pictures may know better.
     bool target_open() const { return target_open_; }
 
@@ -47,6 +51,8 @@ public:
     /// Search for another `thing` of the sentence, in a scene that shows nothing of the target yet: by the
     /// sentence before the edit, in mode modify.
     CheckedRequest search_for(std::string thing) const;
+    /// Search for the anchor, in mode modify.
+    CheckedRequest search_for_anchor() const;
     /// Search for the thing that the source is a part of: the sentence without the part ("a bear on the
     /// grass" of "a bear with blue ears on the grass").
     CheckedRequest search_for_whole() const;
@@ -61,6 +67,7 @@ private:
     language::EditSentence sentence_;
     std::string part_of_;
     bool whole_scene_ = false;
+    std::string description_, anchor_;
     bool target_open_ = false;
 };
 

@@ -9,8 +9,11 @@
 namespace gse::edit {
 namespace {
 
-constexpr std::array<std::pair<const char*, EditMode>, 3> Modes{
-    {{"modify", EditMode::Modify}, {"add", EditMode::Add}, {"replace", EditMode::Replace}}};
+constexpr std::array<std::pair<const char*, EditMode>, 5> Modes{{{"modify", EditMode::Modify},
+                                                                 {"add", EditMode::Add},
+                                                                 {"replace", EditMode::Replace},
+                                                                 {"remove", EditMode::Remove},
+                                                                 {"transform", EditMode::Transform}}};
 
 }  // namespace
 

@@ -48,19 +48,29 @@ public:
     /// Tells whether the model draws views: they may show words that it cannot find, and are judged as they
     /// are.
     virtual bool draws_views() const = 0;
-    /// Optimisation steps of an edit.
-    virtual int steps(const LoopSettings& settings, EditMode mode) const = 0;
+    /// Optimisation steps of an edit: one where nothing is drawn.
+    int steps(const LoopSettings& settings, EditMode mode) const {
+        return is_drawn(mode) ? drawn_steps(settings, mode) : 1;
+    }
     /// Changes the settings so that an edit has about that many steps, at least one.
     virtual void set_steps(LoopSettings& settings, EditMode mode, int steps) const = 0;
     /// Explains the number of steps to the artist.
     virtual std::string steps_help(const LoopSettings& settings, EditMode mode) const = 0;
     /// Work from an iteration on. `drawn`: the search has drawn the new thing, which tells its colour.
-    virtual MethodWork work(const EditSettings& settings, const language::EditSentence& sentence,
-                            EditMode mode, int first_iteration, bool drawn) const = 0;
+    /// None where nothing is drawn.
+    MethodWork work(const EditSettings& settings, const language::EditSentence& sentence, EditMode mode,
+                    int first_iteration, bool drawn) const {
+        return is_drawn(mode) ? drawn_work(settings, sentence, mode, first_iteration, drawn) : MethodWork{};
+    }
     virtual void run(MethodRun& run, const CheckedRequest& request) const = 0;
 
     /// Tells whether a setting with these FieldUse bits changes anything.
     bool counts(unsigned field_uses) const { return field_uses == 0 || (field_uses & uses()) != 0; }
+
+private:
+    virtual int drawn_steps(const LoopSettings& settings, EditMode mode) const = 0;
+    virtual MethodWork drawn_work(const EditSettings& settings, const language::EditSentence& sentence,
+                                  EditMode mode, int first_iteration, bool drawn) const = 0;
 };
 
 /// All methods; "auto" means the first.

@@ -27,7 +27,7 @@ public:
     unsigned uses() const override { return GradientField; }
     bool draws_views() const override { return false; }
 
-    int steps(const LoopSettings& settings, EditMode) const override { return settings.iterations; }
+    int drawn_steps(const LoopSettings& settings, EditMode) const override { return settings.iterations; }
     void set_steps(LoopSettings& settings, EditMode, int steps) const override {
         settings.iterations = std::max(1, steps);
     }
@@ -35,8 +35,8 @@ public:
         return "Optimisation steps. More = closer to the sentence, and longer.";
     }
 
-    MethodWork work(const EditSettings& settings, const language::EditSentence&, EditMode mode,
-                    int first_iteration, bool) const override {
+    MethodWork drawn_work(const EditSettings& settings, const language::EditSentence&, EditMode mode,
+                          int first_iteration, bool) const override {
         MethodWork left;
         left.pulls = std::max(0, settings.iterations - first_iteration);
         left.refreshed_masks = refreshed_masks(settings, first_iteration);

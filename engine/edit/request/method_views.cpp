@@ -28,7 +28,7 @@ public:
     unsigned uses() const override { return RedrawnViewField; }
     bool draws_views() const override { return true; }
 
-    int steps(const LoopSettings& settings, EditMode mode) const override {
+    int drawn_steps(const LoopSettings& settings, EditMode mode) const override {
         const auto plan = round_plan(settings, mode);
         return plan.rounds * plan.fit_steps;
     }
@@ -46,8 +46,8 @@ public:
     }
 
     /// A round that was begun is not begun again.
-    MethodWork work(const EditSettings& settings, const language::EditSentence& sentence, EditMode mode,
-                    int first_iteration, bool drawn) const override {
+    MethodWork drawn_work(const EditSettings& settings, const language::EditSentence& sentence, EditMode mode,
+                          int first_iteration, bool drawn) const override {
         const auto plan = round_plan(settings, mode);
         MethodWork left;
         const auto draw = [&](int round, double views) {

@@ -10,6 +10,7 @@
 #include "engine/base/fields.h"
 #include "engine/base/image.h"
 #include "engine/edit/request/field_use.h"
+#include "engine/edit/words/rearrange_settings.h"
 #include "engine/language/sentence.h"
 
 namespace gse::edit {
@@ -22,6 +23,8 @@ struct EditWords {
     std::string mode = "auto";
     std::string part_of;
     bool whole_scene = false;
+    std::string description;
+    std::string anchor;
 
     template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         f("source", self.source,
@@ -32,14 +35,20 @@ struct EditWords {
           "the "
           "model compares pictures with words, else those that the sentence says of the source.");
         f("mode", self.mode,
-          "modify (change what is there), replace (put something else in its place), add (put something new "
-          "beside it) or auto.");
+          "Kind of change: modify, replace, add, remove, transform or auto. Replace puts something else in "
+          "its place. Add puts something new beside it. Remove heals the hole. Transform moves, turns, "
+          "resizes or copies.");
         f("part_of", self.part_of,
           "Thing that the source is a part of (\"bear\" of \"ears\"): the thing is looked for, and the part "
           "within it. Empty = the source is a thing of its own.");
         f("whole_scene", self.whole_scene,
           "Change the look of everything at once (a style, the weather): nothing is looked for. For models "
           "of an open vocabulary.");
+        f("description", self.description,
+          "Sentence that describes the scene as it is (\"a bear wearing a hat\"), for modes remove and "
+          "transform. Empty = the source alone.");
+        f("anchor", self.anchor,
+          "Other thing that a transform is relative to (\"statue\" of \"move behind\").");
     }
 };
 
@@ -161,6 +170,7 @@ const char* method_help();
 struct LoopSettings {
     std::uint64_t seed = 0;
     bool localize = true;
+    bool heal = true;
     std::string method = "auto";
     std::string quality = "normal";
     int iterations = 200;
@@ -249,6 +259,7 @@ private:
         f("seed", self.seed, "Seed of everything random.");
         f("localize", self.localize,
           "Let only the splats that were found change; off = every splat may (an ablation of the paper).");
+        f("heal", self.heal, "Fill the hole that a removed or moved thing leaves with what is around it.");
         f("method", self.method, method_help());
         f("quality", self.quality,
           of_views("How much work redrawing takes: draft (half of the views below, three quarters of their "
@@ -399,11 +410,12 @@ private:
 
 /// Everything of an edit beside its words. Defaults suit the bundled model on two processor cores. All values
 /// of the full-size method can be set. A stage depends on the structs it is given.
-struct EditSettings : SearchSettings, LabelThresholds, LoopSettings {
+struct EditSettings : SearchSettings, LabelThresholds, LoopSettings, RearrangeSettings {
     template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         SearchSettings::visit_fields(self, f);
         LabelThresholds::visit_fields(self, f);
         LoopSettings::visit_fields(self, f);
+        RearrangeSettings::visit_fields(self, f);
     }
 };
 
@@ -432,8 +444,9 @@ struct EditRequest : EditWords, EditSettings {
 void read_request(EditRequest& request, const nlohmann::ordered_json& json);
 
 using language::EditMode;
+using language::is_drawn;
 
-/// "modify", "add" or "replace", as `EditWords::mode` has it.
+/// "modify", "add" and so on, as `EditWords::mode` has it.
 const char* mode_name(EditMode mode);
 /// The mode of that name; nothing for others, "auto" among them.
 std::optional<EditMode> mode_named(const std::string& name);

@@ -86,7 +86,7 @@ bool is_around_source(const EditRequest& request, const language::Sentence& sent
     return carried && !sentence.contains(source);
 }
 
-/// True for operations that no model is asked to draw.
+/// True for operations that no model is asked to draw. One that cannot be described cannot be done either.
 bool is_never_drawn(Operation operation) {
     return operation == Operation::Remove || operation == Operation::Transform ||
            operation == Operation::Duplicate;
@@ -193,6 +193,7 @@ bool is_caption(const EditRequest& request) { return is_description(language::Se
 
 bool says_itself(const EditRequest& request, const plan::StepSentence& words, const News& news) {
     if (!words.part_of.empty() || words.whole_scene || !words.instruction.empty()) return false;
+    if (!is_drawn(words.mode)) return false;
     const auto guessed = with_target(request, news);
     const language::EditSentence sentence(language::Sentence(request.prompt),
                                           language::normalised_prompt(request.source), guessed.target);
@@ -222,6 +223,10 @@ EditRequest request_of(EditRequest request, const plan::StepSentence& words) {
     request.mode = mode_name(words.mode);
     request.part_of = words.part_of;
     request.whole_scene = words.whole_scene;
+    request.description = words.description;
+    request.change = words.change;
+    request.copies = words.copies;
+    request.anchor = words.anchor;
     request.instruction = words.instruction;
     return request;
 }

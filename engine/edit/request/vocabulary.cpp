@@ -26,6 +26,15 @@ std::string words_to_make(const std::string& word, const std::vector<std::string
     return language::words_to_use(word, shown) + (dyes.empty() ? "" : ", or a colour or pattern by its name");
 }
 
+void require_anchor(const CheckedRequest& request, const std::vector<std::string>& known) {
+    if (request.anchor().empty()) return;
+    if (const auto unknown = language::unknown_word(known, request.anchor()); !unknown.empty())
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("the model does not know the word \"{}\" and cannot find it", unknown),
+                    fmt::format("move the thing by numbers instead, or use {}",
+                                language::words_to_use(unknown, known)));
+}
+
 /// Checks where the request is looked for.
 void require_findable(const CheckedRequest& request, const std::vector<std::string>& known,
                       const std::vector<std::string>& say) {
@@ -56,6 +65,8 @@ void require_known_words(const CheckedRequest& request, const std::vector<std::s
                     "the look of a whole scene is drawn by models of an open vocabulary alone",
                     "choose a model such as Stable Diffusion or InstructPix2Pix");
     if (!labelled_by_hand && !request.whole_scene()) require_findable(request, known, say);
+    require_anchor(request, known);
+    if (request.is_rearranged()) return;
     const auto target = language::unknown_word(say, request.target());
     if (!target.empty())
         throw Error(ErrorCode::InvalidArgument,

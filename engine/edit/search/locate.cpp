@@ -31,6 +31,16 @@ namespace {
 
 constexpr std::uint64_t Drawing = 8000;
 
+const char* doing(EditMode mode) {
+    switch (mode) {
+        case EditMode::Add: return "adding";
+        case EditMode::Replace: return "replacing";
+        case EditMode::Remove: return "removing";
+        case EditMode::Transform: return "moving, turning or resizing";
+        default: return "changing";
+    }
+}
+
 /// Steps of locate() over all views.
 class Locator {
 public:
@@ -44,10 +54,7 @@ public:
         LocateResult result;
         result.on_ground = input_.ground.has_value();
         std::tie(result.mode, result.reason) = decide_mode(input_.request, found_share());
-        log::info("{} \"{}\": {}",
-                  result.mode == EditMode::Add       ? "adding"
-                  : result.mode == EditMode::Replace ? "replacing"
-                                                     : "changing",
+        log::info("{} \"{}\": {}", doing(result.mode),
                   result.mode == EditMode::Add ? input_.request.target() : input_.request.source(),
                   result.reason);
         if (result.mode == EditMode::Add) add(result);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 
 #include "engine/language/plan/words/lexicon.h"
 #include "engine/language/vocabulary.h"
@@ -17,6 +18,10 @@ constexpr std::array<std::string_view, 14> Comparatives{"darker", "lighter", "br
 /// Relations that a sentence can name a place by (language::relation_named()).
 constexpr std::array<std::string_view, 7> Places{"beside", "left of",     "right of", "behind",
                                                  "above",  "in front of", "under"};
+
+/// Changes of place or size that begin with a verb of their own; the others are told with "make".
+constexpr std::array<std::string_view, 7> Movements{"move",   "rotate", "scale", "flip",
+                                                    "mirror", "face",   "swap"};
 
 constexpr std::array<std::string_view, 4> Burning{"on fire", "burning", "in flames", "aflame"};
 
@@ -66,6 +71,9 @@ public:
             case Operation::Alter: return fire();
             case Operation::Style: return style();
             case Operation::Environment: return environment();
+            case Operation::Remove: return removal();
+            case Operation::Transform: return transform();
+            case Operation::Duplicate: return copies();
             default: return none_for_operation();
         }
     }
@@ -78,16 +86,10 @@ private:
     }
 
     std::optional<StepSentence> none_for_operation() {
-        constexpr const char* ByHand = "label the thing with Locate, and delete its splats by hand";
         constexpr const char* ByModel =
             "a model with an open vocabulary may draw it when it is the only change";
         constexpr const char* OpenModel = "choose a model such as Stable Diffusion or InstructPix2Pix";
         switch (step_.operation) {
-            case Operation::Remove: return no("things are not removed by a sentence yet", ByHand);
-            case Operation::Transform:
-                return no("things are not moved, turned or resized by a sentence yet", "leave that part out");
-            case Operation::Duplicate:
-                return no("things are not copied by a sentence yet", "leave that part out");
             case Operation::Pose: return no("poses and expressions are not drawn from a plan", ByModel);
             case Operation::Alter: return no("this look is no colour, material or pattern", ByModel);
             case Operation::Style:
@@ -262,6 +264,63 @@ private:
                             step_.thing.noun, EditMode::Add};
     }
 
+    /// The scene around a thing as it is, in words: "a bear wearing a hat on the grass".
+    std::string description_around(const std::string& noun) const {
+        const auto* thing = thing_named(scene_, noun);
+        const SceneThing* wearer = nullptr;
+        if (thing != nullptr && thing->is_worn)
+            for (const auto& other : scene_.things)
+                if (!other.is_worn && !other.is_ground) wearer = wearer != nullptr ? wearer : &other;
+        if (wearer == nullptr) return phrase_of(described_thing(noun)) + standing_on(scene_, noun);
+        return phrase_of(described_thing(wearer->noun)) + " wearing " + phrase_of(described_thing(noun)) +
+               standing_on(scene_, noun);
+    }
+
+    /// An order about the subject, in an edit that draws nothing. Nothing where the subject is not one thing.
+    std::optional<StepSentence> order(EditMode mode, const std::string& verb, const std::string& rest) {
+        const Thing* thing = subject();
+        if (thing == nullptr) return std::nullopt;
+        const auto& links = step_.subject.links;
+        const std::string whole = links.size() > 1 ? links.back().noun : std::string();
+        if (links.size() > 2 || (!whole.empty() && !finds(thing->noun)))
+            return no("the model has no word for the part \"" + thing->noun + "\" and cannot find it",
+                      "label the part by hand, or choose a model of an open vocabulary");
+        StepSentence sentence{thing->noun,
+                              verb + " the " + thing->noun + (whole.empty() ? "" : " of the " + whole) + rest,
+                              thing->noun, mode, whole};
+        sentence.description = description_around(whole.empty() ? thing->noun : whole);
+        return sentence;
+    }
+
+    std::optional<StepSentence> removal() { return order(EditMode::Remove, "remove", ""); }
+
+    std::optional<StepSentence> transform() {
+        const auto words = words_of(step_.text);
+        const bool verb = !words.empty() && is_in(Movements, words.front());
+        std::string rest = verb ? step_.text.substr(words.front().size()) : " " + step_.text;
+        std::string anchor;
+        if (step_.anchors.size() > 1) return no("a place between two things is not found", "name one thing");
+        if (!step_.anchors.empty()) {
+            const auto& links = step_.anchors.front().links;
+            if (links.size() != 1 || step_.anchors.front().except || !links.front().attributes.empty())
+                return no("the search cannot tell which thing is meant", "name one thing by its noun");
+            anchor = links.front().noun;
+            rest += " the " + anchor;
+        }
+        auto sentence = order(EditMode::Transform, verb ? words.front() : "make", rest);
+        if (!sentence) return sentence;
+        sentence->change = step_.text;
+        sentence->anchor = anchor;
+        return sentence;
+    }
+
+    std::optional<StepSentence> copies() {
+        auto sentence = order(EditMode::Transform, "duplicate", ": " + step_.text + " in all");
+        constexpr int Some = 3;
+        if (sentence) sentence->copies = step_.text == "some" ? Some : std::atoi(step_.text.c_str());
+        return sentence;
+    }
+
     struct Place {
         std::string noun;    // that the new thing belongs to
         std::string joint;   // "wearing"
@@ -340,7 +399,10 @@ SceneWords after(const Step& step, SceneWords scene) {
     } else if (step.operation == Operation::Ground) {
         if (ground) scene.things[*ground].noun = step.thing.noun, scene.things[*ground].attributes = {};
     } else if (step.operation == Operation::Remove) {
-        if (found != scene.things.end()) scene.things.erase(found);
+        if (found == scene.things.end()) return scene;
+        const bool wears = !found->is_worn && !found->is_ground;
+        auto behind = scene.things.erase(found);
+        while (wears && behind != scene.things.end() && behind->is_worn) behind = scene.things.erase(behind);
     } else if (step.operation == Operation::Add) {
         scene.things.push_back({step.thing.noun, step.thing.attributes, false,
                                 step.relation == "worn by" || step.relation == "held by"});

@@ -11,7 +11,8 @@
 
 namespace gse::language::plan {
 
-/// A step as an edit: `prompt` describes the scene after it and contains `target`.
+/// A step as an edit: `prompt` describes the scene after it and contains `target`. In modes remove and
+/// transform it is an order, and `description` tells the scene as it is.
 struct StepSentence {
     std::string source;  // the thing that the edit is about
     std::string prompt;
@@ -19,6 +20,10 @@ struct StepSentence {
     EditMode mode = EditMode::Modify;
     std::string part_of = {};      // thing that the source is a part of; empty = a thing of its own
     bool whole_scene = false;      // everything changes its look; nothing is looked for
+    std::string description = {};  // of the scene as it is; modes remove and transform
+    std::string change = {};       // mode transform: "bigger", "move left 2 m"
+    int copies = 1;                // mode transform: how many there are afterwards
+    std::string anchor = {};       // mode transform: other thing that the change is relative to
     std::string instruction = {};  // order for models that edit by instructions; empty = from the prompt
 };
 

@@ -91,7 +91,8 @@ DOCTEST_TEST_CASE(
 DOCTEST_TEST_CASE("every field of a request belongs to one part of it") {
     const auto all = names<edit::EditRequest>();
     const std::size_t parts = names<edit::EditWords>().size() + names<edit::SearchSettings>().size() +
-                              names<edit::LabelThresholds>().size() + names<edit::LoopSettings>().size();
+                              names<edit::LabelThresholds>().size() + names<edit::LoopSettings>().size() +
+                              names<edit::RearrangeSettings>().size();
     DOCTEST_CHECK(parts == all.size());
 }
 

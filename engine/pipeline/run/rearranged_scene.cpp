@@ -1,0 +1,217 @@
+// Lists of rows that go, stay and come, put together as the result of an edit.
+#include "engine/pipeline/run/rearranged_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "engine/base/check.h"
+#include "engine/base/clock.h"
+#include "engine/base/content_hash.h"
+#include "engine/base/error.h"
+#include "engine/base/log.h"
+#include "engine/heal/heal.h"
+#include "engine/edit/placement/rearrangement.h"
+#include "engine/language/grammar.h"
+#include "engine/localize/clusters.h"
+#include "engine/scene/delta.h"
+#include "engine/scene/transform/transformed.h"
+
+namespace gse::pipeline {
+namespace {
+
+using Bits = std::vector<std::uint8_t>;
+
+constexpr float TouchedShare = 0.02f;  // of a pixel that changed rows make up: less is not seen
+
+/// Rows of a result in the making: those that go, those that come.
+struct RowChange {
+    Bits gone;               // [N]
+    GaussianSet changed;     // [N] the scene, with rows that moved
+    GaussianData copies;     // rows of the thing that come
+    GaussianData healing;    // rows that fill a hole
+    Bits moved;              // [N] rows of the thing that stay its rows
+};
+
+void append(GaussianData& to, const GaussianData& rows) {
+    const auto add = [](auto& a, const auto& b) { a.insert(a.end(), b.begin(), b.end()); };
+    add(to.position, rows.position);
+    add(to.log_scale, rows.log_scale);
+    add(to.rotation, rows.rotation);
+    add(to.opacity_logit, rows.opacity_logit);
+    add(to.sh, rows.sh);
+}
+
+/// Puts the rows together: those that stay in their order, then copies, then healing.
+edit::EditResult result_of(const RowChange& change) {
+    const std::size_t rows = change.gone.size();
+    Bits keep(rows);
+    edit::EditResult result;
+    result.base_to_new.assign(rows, -1);
+    std::int64_t next = 0;
+    for (std::size_t row = 0; row < rows; ++row) {
+        keep[row] = change.gone[row] == 0 ? 1 : 0;
+        if (keep[row] == 0) continue;
+        result.base_to_new[row] = next++;
+        result.label.push_back(change.moved[row]);
+    }
+    GaussianData data = change.changed.filtered(keep).to_data();
+    append(data, change.copies);
+    append(data, change.healing);
+    result.set = GaussianSet(std::move(data));
+    result.generation.assign(result.label.size(), 0);
+    result.label.resize(result.set.size(), 1);
+    result.generation.resize(result.set.size(), 1);
+    result.hidden.assign(result.set.size(), 0);
+    std::fill(result.hidden.end() - static_cast<std::ptrdiff_t>(change.healing.size()), result.hidden.end(),
+              std::uint8_t{1});
+    result.iterations = 1;
+    return result;
+}
+
+std::size_t count_unusable(const GaussianSet& set) {
+    const auto usable = usable_rows(set);
+    return static_cast<std::size_t>(std::count(usable.begin(), usable.end(), std::uint8_t{0}));
+}
+
+/// Rows that stay and are not the thing's, and differ from the scene in any bit.
+std::size_t changed_elsewhere(const GaussianSet& before, const RowChange& change) {
+    const auto old = before.spans(), now = change.changed.spans();
+    std::size_t count = 0;
+    for (std::size_t row = 0; row < before.size(); ++row)
+        if (change.gone[row] == 0 && change.moved[row] == 0 && !same_row(old, row, now, row)) ++count;
+    return count;
+}
+
+/// Pixels of each view in which rows that went, moved or came are seen, grown as masks are.
+std::vector<Mask> touched_masks(const SceneEdit& edit, const RowChange& change,
+                                const edit::EditResult& result) {
+    auto& rasterizer = edit.workplace.painter().rasterizer();
+    const auto& plan = edit.plan;
+    std::vector<float> before(change.gone.begin(), change.gone.end());
+    for (std::size_t row = 0; row < before.size(); ++row)
+        if (change.moved[row] != 0) before[row] = 1;
+    const std::vector<float> after(result.label.begin(), result.label.end());
+    std::vector<Mask> masks;
+    Image seen;
+    for (std::size_t v = 0; v < plan.views.size(); ++v) {
+        const auto& camera = plan.views[v].camera;
+        Mask mask(camera.width, camera.height);
+        const auto mark = [&](const GaussianSet& set, const std::vector<float>& values) {
+            rasterizer.forward_values(set.spans(), camera, plan.settings, values, seen);
+            for (std::size_t p = 0; p < mask.data.size(); ++p)
+                if (seen.data[p] > TouchedShare) mask.data[p] = 1;
+        };
+        mark(edit.scene, before);
+        mark(result.set, after);
+        mask = localize::dilate(mask, edit::mask_growth(edit.recipe.request, plan.mode, mask));
+        for (std::size_t p = 0; p < mask.data.size(); ++p) mask.data[p] |= plan.masks[v].data[p];
+        masks.push_back(std::move(mask));
+    }
+    return masks;
+}
+
+/// What the thing leaves: rows that go with it and rows that fill its hole.
+heal::Healed healed(const SceneEdit& edit) {
+    heal::HealSettings settings;
+    settings.seed = edit.recipe.request.seed;
+    edit.control.report("healing the hole", 0, 0);
+    return heal::remove_and_heal(
+        {edit.scene, edit.plan.label, edit.located.views.orbit.up, edit.control}, settings);
+}
+
+/// A ground that goes leaves nothing around it to go on.
+bool heals(const SceneEdit& edit) {
+    return edit.recipe.request.heal && !language::names_ground(edit.recipe.request.source());
+}
+
+void tell(const heal::Healed& healed) {
+    if (healed.carried > 0)
+        log::info("{} splats that only the thing held go with it", healed.carried);
+    if (!healed.open.empty()) log::warning("{}", healed.open);
+}
+
+RowChange removal(const SceneEdit& edit) {
+    const std::size_t rows = edit.scene.size();
+    RowChange change{edit.plan.label, edit.scene, {}, {}, Bits(rows, 0)};
+    if (!heals(edit)) return change;
+    auto healing = healed(edit);
+    tell(healing);
+    change.gone = std::move(healing.removed);
+    change.healing = std::move(healing.added);
+    return change;
+}
+
+/// Rows of the other thing of the words; empty where there is none. Throws Error (NotFound) where no view
+/// shows it.
+Bits anchor_rows(const SceneEdit& edit) {
+    const auto& request = edit.recipe.request;
+    if (request.anchor().empty()) return {};
+    CheckedRecipe recipe = edit.recipe;
+    recipe.request = request.search_for_anchor();
+    Views views = edit.located.views;
+    if (views.automatic) views = choose_views(edit.workplace.scene(), recipe, {});
+    const Located found = locate(edit.workplace, recipe, views, {}, edit.control);
+    edit::require_found(found.result);
+    Bits rows = *found.result.label.bits;
+    for (std::size_t row = 0; row < rows.size(); ++row)
+        if (edit.plan.label[row] != 0) rows[row] = 0;
+    return rows;
+}
+
+/// Rows of the scene under maps of the thing, its anchor and its copies.
+RowChange transformation(const SceneEdit& edit) {
+    const auto& label = edit.plan.label;
+    const Vec3 up = edit.located.views.orbit.up, front = edit.located.views.front;
+    const auto anchor = anchor_rows(edit);
+    Bits known = label;
+    for (std::size_t row = 0; row < anchor.size(); ++row) known[row] |= anchor[row];
+    const auto thing = edit::thing_frame(edit.scene, label, up, front);
+    const auto other =
+        anchor.empty() ? edit::ThingFrame{} : edit::thing_frame(edit.scene, anchor, up, front);
+    const auto places =
+        edit::rearrangement(edit.recipe.request, thing, anchor.empty() ? nullptr : &other,
+                            edit::other_points(edit.scene, anchor.empty() ? label : known, thing.frame));
+    RowChange change{Bits(label.size(), 0), edit.scene, {}, {}, label};
+    change.copies.sh_degree = change.healing.sh_degree = edit.scene.sh_degree();
+    if (places.leaves_place && heals(edit)) {
+        auto healing = healed(edit);
+        tell(healing);
+        change.healing = std::move(healing.added);
+        for (std::size_t row = 0; row < label.size(); ++row)
+            if (label[row] == 0) change.gone[row] = healing.removed[row];
+    }
+    change.changed = transformed(edit.scene, label, places.thing);
+    if (places.anchor) {
+        change.changed = transformed(change.changed, anchor, *places.anchor);
+        change.moved = std::move(known);
+    }
+    const GaussianData rows = edit.scene.filtered(label).to_data();
+    for (const auto& place : places.copies) append(change.copies, transformed(rows, place));
+    return change;
+}
+
+}  // namespace
+
+Edited rearranged_scene(const SceneEdit& edit) {
+    const auto& label = edit.plan.label;
+    GSE_CHECK_EQ(label.size(), edit.scene.size());
+    if (std::find(label.begin(), label.end(), std::uint8_t{1}) == label.end())
+        throw Error(ErrorCode::InvalidArgument, "nothing is labelled",
+                    "label the thing by hand, or say it in other words");
+    const double start = wall_seconds();
+    const RowChange change = edit.plan.mode == edit::EditMode::Remove ? removal(edit) : transformation(edit);
+    auto result = result_of(change);
+    result.changed_outside_label = changed_elsewhere(edit.scene, change);
+    result.unusable_before = count_unusable(edit.scene);
+    result.unusable = count_unusable(result.set);
+    result.seconds["rearrange"] = wall_seconds() - start;
+    auto touched = touched_masks(edit, change, result);
+    Edited edited = finished(edit, edit.recipe.request, std::move(result));
+    edited.touched = std::move(touched);
+    return edited;
+}
+
+}  // namespace gse::pipeline
