@@ -12,12 +12,22 @@
 namespace gse {
 
 EditNode removal_of(const DocumentState& state, std::span<const std::uint8_t> rows, std::uint64_t id) {
+    GaussianData none;
+    none.sh_degree = state.current.sh_degree();
+    return exchange_of(state, rows, std::move(none), id);
+}
+
+EditNode exchange_of(const DocumentState& state, std::span<const std::uint8_t> rows, GaussianData added,
+                     std::uint64_t id) {
     GSE_CHECK_EQ(rows.size(), state.current.size());
+    GSE_CHECK_EQ(added.sh_degree, state.current.sh_degree());
     SceneDelta delta;
     for (std::size_t row = 0; row < rows.size(); ++row)
         if (rows[row] != 0) delta.removed.push_back((*state.row_ids)[row]);
     std::sort(delta.removed.begin(), delta.removed.end());
-    delta.changed_rows.sh_degree = delta.added_rows.sh_degree = state.current.sh_degree();
+    delta.changed_rows.sh_degree = state.current.sh_degree();
+    for (std::size_t row = 0; row < added.size(); ++row) delta.added.push_back(id << EditIdShift | row);
+    delta.added_rows = std::move(added);
     EditNode node;
     node.id = id;
     node.name = fmt::format("Delete {} splats", delta.removed.size());
@@ -45,14 +55,18 @@ DocumentState with_adjustment(const DocumentState& before, std::span<const std::
     return with_stack(before, std::move(stack));
 }
 
-DocumentState with_edit(const DocumentState& before, EditNode node, const std::string& target, bool beside) {
+DocumentState with_edit(const DocumentState& before, EditNode node, const std::string& target, bool beside,
+                        std::span<const std::uint8_t> apart) {
     const std::uint64_t id = node.id;
     auto stack = before.stack;
     stack.push_back(std::move(node));
     DocumentState state = with_stack(before, std::move(stack));
     std::vector<std::uint8_t> added(state.current.size(), 0);
-    for (std::size_t row = 0; row < added.size(); ++row)
-        added[row] = ((*state.row_ids)[row] >> EditIdShift) == id ? 1 : 0;
+    for (std::size_t row = 0; row < added.size(); ++row) {
+        const RowId identity = (*state.row_ids)[row], index = identity - (id << EditIdShift);
+        const bool fills = index < apart.size() && apart[index] != 0;
+        added[row] = identity >> EditIdShift == id && !fills ? 1 : 0;
+    }
     if (std::find(added.begin(), added.end(), std::uint8_t{1}) == added.end()) return state;
     if (beside || state.active_label < 0) {
         state.labels.push_back(empty_label(free_label_name(state.labels, target), added.size()));
