@@ -86,10 +86,13 @@ void add_optional_parts(nlohmann::ordered_json& report, const std::filesystem::p
 
 /// Before another sentence comes in: what follows from the recipe's own one does not hold for it.
 void forget_sentence(EditRecipe& recipe) {
-    recipe.request.target.clear();
-    recipe.request.mode = "auto";
-    recipe.guidance.before_prompt.clear();
-    for (const char* name : {"request.target", "request.mode", "guidance.before_prompt"})
+    auto& request = recipe.request;
+    for (auto* words : {&request.target, &request.description, &request.anchor, &request.change,
+                        &recipe.guidance.before_prompt})
+        words->clear();
+    request.mode = "auto";
+    for (const char* name : {"request.target", "request.mode", "request.description", "request.anchor",
+                             "request.change", "guidance.before_prompt"})
         recipe.given.erase(name);
 }
 

@@ -22,7 +22,7 @@ ARROWS = {
     "edit": {"base", "language", "math", "scene", "raster", "localize"},
     "neural": {"base", "language", "edit"},
     "evaluate": {"base", "math", "scene"},
-    "pipeline": {"base", "language", "math", "scene", "io", "raster", "localize", "edit", "neural",
+    "pipeline": {"base", "language", "math", "scene", "io", "raster", "localize", "heal", "edit", "neural",
                  "evaluate"},
     "laboratory/synth": {"base", "math", "scene"},
     "laboratory/starter": {"base", "neural"},

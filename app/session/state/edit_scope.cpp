@@ -48,13 +48,29 @@ std::optional<edit::EditRequest> recorded_request(const EditNode& node) {
 
 namespace {
 
-/// Requests of the edits that are switched on and that a version like this one made.
+/// True for an edit that brought a thing of that name.
+bool brings(const edit::EditRequest& request, const std::string& thing) {
+    const auto mode = edit::planned_mode(request);
+    return mode != edit::EditMode::Modify &&
+           language::new_thing(edit::unchecked_sentence(request), mode) == thing;
+}
+
+/// Takes an edit on top of the others. One that removes a thing takes back what brought it.
+void take_request(std::vector<edit::EditRequest>& applied, edit::EditRequest request) {
+    const auto mode = edit::planned_mode(request);
+    if (edit::is_drawn(mode)) return applied.push_back(std::move(request));
+    if (mode == edit::EditMode::Remove)
+        std::erase_if(applied, [&](const auto& other) { return brings(other, request.source); });
+}
+
+/// Requests of the edits that are switched on and that a version like this one made. What was removed again
+/// is none of them.
 std::vector<edit::EditRequest> applied_requests(const std::vector<EditNode>& stack) {
     std::vector<edit::EditRequest> applied;
     for (const auto& node : stack) {
         if (!node.enabled) continue;
         try {
-            if (auto request = recorded_request(node)) applied.push_back(std::move(*request));
+            if (auto request = recorded_request(node)) take_request(applied, std::move(*request));
         } catch (const Error&) {  // of another version: what it said is not known
         }
     }

@@ -31,6 +31,16 @@ void require_steps(const EditJob& job) {
         throw Error(ErrorCode::Cancelled, "the edit was stopped before its first step");
 }
 
+/// New rows of a result that fill a hole: [new rows] 0 or 1.
+std::vector<std::uint8_t> new_rows_apart(const edit::EditResult& result) {
+    std::vector<std::uint8_t> old(result.set.size(), 0), apart;
+    for (const auto row : result.base_to_new)
+        if (row >= 0) old[static_cast<std::size_t>(row)] = 1;
+    for (std::size_t row = 0; row < old.size() && row < result.hidden.size(); ++row)
+        if (old[row] == 0) apart.push_back(result.hidden[row]);
+    return apart;
+}
+
 }  // namespace
 
 void fill_pending(EditJob& job, PendingResult& pending) {
@@ -44,6 +54,7 @@ void fill_pending(EditJob& job, const nlohmann::ordered_json& report, PendingRes
     pending.before = job.scene().gaussians;
     pending.set = result.set;
     pending.base_to_new = std::make_shared<const std::vector<std::int64_t>>(result.base_to_new);
+    pending.apart = new_rows_apart(result);
     const auto& request = job.recipe().request;
     pending.name = request.prompt();
     pending.target = request.target();
@@ -77,7 +88,7 @@ EditNode node_of(const PendingResult& result) {
 }
 
 DocumentState with_result(const DocumentState& before, EditNode node, const PendingResult& result) {
-    DocumentState state = with_edit(before, std::move(node), result.target, result.adds);
+    DocumentState state = with_edit(before, std::move(node), result.target, result.adds, result.apart);
     const auto called = [](const std::string& name) {
         return [&name](const NamedLabel& label) { return label.name == name; };
     };

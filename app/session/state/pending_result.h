@@ -27,6 +27,7 @@ Renamed renamed_by(const EditJob& job);
 struct PendingResult {
     GaussianSet before, set;
     std::shared_ptr<const std::vector<std::int64_t>> base_to_new;  // [before rows]
+    std::vector<std::uint8_t> apart;  // [new rows] 1 = fills a hole, and belongs to no label
     std::string name, recipe, target;
     std::uint64_t seed = 0;
     bool adds = false;

@@ -152,7 +152,7 @@ double psnr_outside(EditJob& job) {
         const Image before = job.painter().paint(job.drawn().spans(), camera, job.plan().settings).colour;
         const Image& after =
             job.painter().paint(job.drawn_result().spans(), camera, job.plan().settings).colour;
-        const evaluate::Region outside{&job.plan().masks[v], false};
+        const evaluate::Region outside{&job.changed_masks()[v], false};
         error += std::pow(10, -evaluate::psnr_db(before, after, outside) / 10);
     }
     return -10 * std::log10(error / static_cast<double>(job.views().size()));

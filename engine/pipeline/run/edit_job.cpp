@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "engine/base/check.h"
@@ -257,9 +258,10 @@ language::plan::SceneWords EditJob::words_shown(language::plan::SceneWords assum
 }
 
 std::vector<std::uint8_t> EditJob::source_in_result() const {
-    if (edited_ == nullptr || located().mode == edit::EditMode::Replace) return {};
+    const auto mode = located().mode;
+    if (edited_ == nullptr || mode == edit::EditMode::Replace || mode == edit::EditMode::Remove) return {};
     const auto& after = result();
-    if (located().mode == edit::EditMode::Modify) return after.label;  // with rows that came while it ran
+    if (mode == edit::EditMode::Modify) return after.label;  // with rows that came while it ran
     std::vector<std::uint8_t> source(after.set.size(), 0);
     const auto& before = *located().source_label.bits;
     for (std::size_t row = 0; row < before.size(); ++row)
@@ -269,7 +271,7 @@ std::vector<std::uint8_t> EditJob::source_in_result() const {
 }
 
 void EditJob::locate() {
-    if (recipe_.use_dreambooth && !tuning_) tune();
+    if (recipe_.use_dreambooth && !tuning_ && !recipe_.request.is_rearranged()) tune();
     times_.begin("locate");
     take(pipeline::locate(*workplace_, recipe_, *views_, hints_, control_));
     plan();
@@ -326,6 +328,7 @@ void EditJob::take_settings(const CheckedRecipe& recipe, bool relabels) {
     const edit::LoopSettings& loop = recipe.request;
     const edit::LabelThresholds before = recipe_.request, &after = recipe.request;
     static_cast<edit::LoopSettings&>(recipe_.request) = loop;
+    static_cast<edit::RearrangeSettings&>(recipe_.request) = recipe.request;
     recipe_.request.label_threshold = after.label_threshold;
     recipe_.guidance = recipe.guidance;
     plan_.reset();  // how far masks are grown, and whether the label counts at all
@@ -340,7 +343,27 @@ const edit::EditPlan& EditJob::plan() {
     return *plan_;
 }
 
+const std::vector<Mask>& EditJob::changed_masks() {
+    return edited_->touched.empty() ? plan().masks : edited_->touched;
+}
+
+/// Orbit that frames a thing where it stood and where it stands.
+OrbitParameters EditJob::moved_orbit() const {
+    auto now = result().label;
+    for (std::size_t row = 0; row < now.size(); ++row)
+        if (result().hidden[row] != 0) now[row] = 0;
+    const auto from = localize::focus_orbit(drawn(), *located().label.bits, views_->orbit);
+    OrbitParameters orbit = localize::focus_orbit(drawn_result(), now, views_->orbit);
+    const double apart = length(orbit.centre - from.centre);
+    orbit.centre = (orbit.centre + from.centre) * 0.5;
+    orbit.radius = std::max(orbit.radius, from.radius) + apart / 2 / std::tan(orbit.fov_x / 2);
+    return orbit;
+}
+
 OrbitParameters EditJob::film_orbit() const {
+    if (located().mode == edit::EditMode::Remove)  // what filled the hole may be seen from nowhere
+        return localize::focus_orbit(drawn(), *located().label.bits, views_->orbit);
+    if (located().mode == edit::EditMode::Transform) return moved_orbit();
     // What was changed or added, and what it belongs to, with room around.
     std::vector<std::uint8_t> bits = result().label;
     const auto& source = located().source_label.bits;

@@ -98,6 +98,9 @@ public:
     const edit::LocateResult& located() const { return located_->result; }
     /// Plan of the loop, made anew when label or settings have changed.
     const edit::EditPlan& plan();
+    /// Pixels of each view that the edit may have changed, once it has run: the plan's masks, and where
+    /// things went.
+    const std::vector<Mask>& changed_masks();
     const edit::EditResult& result() const { return edited_->result; }
     const Edited& edited() const { return *edited_; }
     /// The redrawn views of every round, where the edit was led by them.
@@ -150,6 +153,7 @@ private:
     void begin(Scene scene, std::shared_ptr<neural::TextToImage> model, Segmenters segmenters,
                const GivenCameras& given);
     void take(Located located);
+    OrbitParameters moved_orbit() const;
     void relocate(const CheckedRecipe& recipe);
     std::vector<Image> instance_pictures();
 

@@ -12,6 +12,7 @@
 #include "engine/pipeline/models/neural_loader.h"
 #include "engine/pipeline/models/recipe_model.h"
 #include "engine/pipeline/models/segmenters.h"
+#include "engine/pipeline/run/rearranged_scene.h"
 #include "engine/pipeline/run/view_candidate.h"
 
 namespace gse::pipeline {
@@ -169,6 +170,7 @@ Edited edit_scene(RunContext& workplace, const GaussianSet& scene, const Located
                   const JobControl& control) {
     const auto use_before = network_use();
     const SceneEdit scene_edit{workplace, scene, located, plan, recipe, observer, control};
+    if (!edit::is_drawn(plan.mode)) return rearranged_scene(scene_edit);
     SceneMethodRun run(scene_edit);
     edit::method_of(recipe.request).run(run, recipe.request);
     Edited edited = run.take();

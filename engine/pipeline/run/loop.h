@@ -33,6 +33,7 @@ struct Edited {
     std::vector<edit::ViewTargets>
         targets;  // of view guidance: every round that was fitted, as it was in the end
     std::optional<EditQuality> verdict;  // of view guidance: whether the first redrawn views show the edit
+    std::vector<Mask> touched;  // where nothing is drawn: pixels of each view that may differ; else empty
     std::string key;  // of all that it follows from, beside scene, model and what the artist did meanwhile
     neural::NetworkUse use;  // what the loop has asked for
     double seconds = 0;      // that it took, with what the artist was waited for

@@ -12,8 +12,8 @@
 #include "engine/base/content_hash.h"
 #include "engine/base/error.h"
 #include "engine/base/log.h"
-#include "engine/heal/heal.h"
 #include "engine/edit/placement/rearrangement.h"
+#include "engine/heal/heal.h"
 #include "engine/language/grammar.h"
 #include "engine/localize/clusters.h"
 #include "engine/scene/delta.h"
@@ -28,11 +28,11 @@ constexpr float TouchedShare = 0.02f;  // of a pixel that changed rows make up: 
 
 /// Rows of a result in the making: those that go, those that come.
 struct RowChange {
-    Bits gone;               // [N]
-    GaussianSet changed;     // [N] the scene, with rows that moved
-    GaussianData copies;     // rows of the thing that come
-    GaussianData healing;    // rows that fill a hole
-    Bits moved;              // [N] rows of the thing that stay its rows
+    Bits gone;             // [N]
+    GaussianSet changed;   // [N] the scene, with rows that moved
+    GaussianData copies;   // rows of the thing that come
+    GaussianData healing;  // rows that fill a hole
+    Bits moved;            // [N] rows of the thing that stay its rows
 };
 
 void append(GaussianData& to, const GaussianData& rows) {
@@ -113,13 +113,13 @@ std::vector<Mask> touched_masks(const SceneEdit& edit, const RowChange& change,
     return masks;
 }
 
-/// What the thing leaves: rows that go with it and rows that fill its hole.
+/// Rows that go with the thing, and rows that fill its hole.
 heal::Healed healed(const SceneEdit& edit) {
     heal::HealSettings settings;
     settings.seed = edit.recipe.request.seed;
     edit.control.report("healing the hole", 0, 0);
-    return heal::remove_and_heal(
-        {edit.scene, edit.plan.label, edit.located.views.orbit.up, edit.control}, settings);
+    return heal::remove_and_heal({edit.scene, edit.plan.label, edit.located.views.orbit.up, edit.control},
+                                 settings);
 }
 
 /// A ground that goes leaves nothing around it to go on.
@@ -128,8 +128,7 @@ bool heals(const SceneEdit& edit) {
 }
 
 void tell(const heal::Healed& healed) {
-    if (healed.carried > 0)
-        log::info("{} splats that only the thing held go with it", healed.carried);
+    if (healed.carried > 0) log::info("{} splats that only the thing held go with it", healed.carried);
     if (!healed.open.empty()) log::warning("{}", healed.open);
 }
 
@@ -169,8 +168,7 @@ RowChange transformation(const SceneEdit& edit) {
     Bits known = label;
     for (std::size_t row = 0; row < anchor.size(); ++row) known[row] |= anchor[row];
     const auto thing = edit::thing_frame(edit.scene, label, up, front);
-    const auto other =
-        anchor.empty() ? edit::ThingFrame{} : edit::thing_frame(edit.scene, anchor, up, front);
+    const auto other = anchor.empty() ? edit::ThingFrame{} : edit::thing_frame(edit.scene, anchor, up, front);
     const auto places =
         edit::rearrangement(edit.recipe.request, thing, anchor.empty() ? nullptr : &other,
                             edit::other_points(edit.scene, anchor.empty() ? label : known, thing.frame));

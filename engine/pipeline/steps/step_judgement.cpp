@@ -76,7 +76,7 @@ public:
         const bool adds = job_.located().mode == edit::EditMode::Add;
         const Mask thing =
             adds ? shown(job_.result().set, new_, camera) : shown(job_.scene().gaussians, label_, camera);
-        const Mask& inside = job_.plan().masks[view];
+        const Mask& inside = job_.changed_masks()[view];
         for (std::size_t p = 0; p < changed.data.size(); ++p) {
             shares_.thing += thing.data[p];
             shares_.changed += thing.data[p] & changed.data[p];
@@ -150,8 +150,13 @@ Verdict fault_of_rows(const StepFigures& figures) {
 
 Verdict fault_of_amount(const StepFigures& figures) {
     const bool scored = figures.pictures || figures.scene;
-    if (figures.mode == edit::EditMode::Add || figures.changed >= (scored ? LeastChanged : LeastDyed))
+    if (figures.mode == edit::EditMode::Add || figures.mode == edit::EditMode::Transform ||
+        figures.changed >= (scored ? LeastChanged : LeastDyed))
         return {};
+    if (figures.mode == edit::EditMode::Remove)
+        return Fault{fmt::format("the place of the {} looks as before: {:.0f} % of it changed visibly",
+                                 figures.thing, Percent * figures.changed),
+                     BetterLabel};
     return Fault{
         fmt::format("only {:.0f} % of the {} changed visibly", Percent * figures.changed, figures.thing),
         "raise the strength, or say what differs more: the scene may show it already"};
@@ -229,7 +234,8 @@ StepFigures measure_step(EditJob& job) {
         figures.pictures = verdict->score;
         figures.likeness = verdict->likeness;
     }
-    figures.scene = judge(job.model(), sentence, sentence.prompt(), seen.pairs()).score;
+    if (edit::is_drawn(figures.mode))
+        figures.scene = judge(job.model(), sentence, sentence.prompt(), seen.pairs()).score;
     figures.changed = share(shares.changed, shares.thing);
     figures.spilled = share(shares.spilled, shares.outside);
     figures.old_left = share(shares.old_left, shares.thing);
