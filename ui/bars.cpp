@@ -41,6 +41,8 @@ void draw_tools(Context& context) {
                 with_key(context, "Lasso: label what is inside", Shortcut::Lasso));
     tool_button("tool.cut_out", Icon::CutOut, Tool::CutOut,
                 with_key(context, "Cut out: label the thing in a box, all its sides", Shortcut::CutOut));
+    tool_button("tool.place", Icon::Place, Tool::Place,
+                with_key(context, "Move, turn and resize what is labelled", Shortcut::Place));
     gap(context);
     const bool front = context.view.front_only;
     if (icon_button(context,

@@ -89,6 +89,8 @@ void edit_menu(Context& context) {
     if (why.empty() && label_count(context) == 0) why = "Nothing is labelled";
     if (item(context, {"menu.delete", "Delete labelled splats", keys_of(context, Shortcut::Delete), why}))
         context.emit(command::DeleteLabelledSplats{});
+    if (item(context, {"menu.heal", "Delete and heal", keys_of(context, Shortcut::Heal), why}))
+        context.emit(command::HealLabelledSplats{});
     if (item(context, {"menu.repair", "Drop what cannot be drawn", "",
                        document != nullptr ? "" : "Open a scene first"}))
         context.emit(command::RepairScene{});
@@ -109,6 +111,9 @@ void select_menu(Context& context) {
     if (item(context,
              {"menu.cut_out", "Cut out", keys_of(context, Shortcut::CutOut), open, tool == Tool::CutOut}))
         set_tool(context, Tool::CutOut);
+    if (item(context, {"menu.place", "Move, turn, resize", keys_of(context, Shortcut::Place), open,
+                       tool == Tool::Place}))
+        set_tool(context, Tool::Place);
     if (item(context, {"menu.front", "Front only", keys_of(context, Shortcut::FrontOnly), "",
                        context.view.front_only})) {
         context.view.front_only = !context.view.front_only;

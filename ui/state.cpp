@@ -21,7 +21,7 @@ void forget_scene(UiState& state) {
     const auto choices = state.pick.choices;
     state.pick = {};
     state.pick.choices = choices;
-    state.adjust = {};
+    state.by_hand = {};
     state.targets = {};
     state.history = {};
     state.question = {};  // a question about the last scene

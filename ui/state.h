@@ -141,6 +141,24 @@ struct AdjustState {
     int frames_to_bring = 0;  // as in PickState
 };
 
+/// Place of the labelled thing by hand, as the controls stand.
+struct PlaceState {
+    edit::RearrangeSettings values;
+    bool placing = false;  // in the last frame
+    bool used = false;     // command::UsePlacing as it was sent last
+    int handle = -1;       // that is dragged, or under the mouse; -1 = none
+    bool dragged = false;
+    ImVec2 start{};  // of the drag
+    edit::RearrangeSettings start_values;
+    int frames_to_bring = 0;  // as in PickState
+};
+
+/// Changes of the labelled splats by hand.
+struct HandState {
+    AdjustState adjust;
+    PlaceState place;
+};
+
 /// Keys as the artist has them.
 struct KeysState {
     std::string read;                  // ViewModel::keymap that `keymap` was read from
@@ -206,7 +224,7 @@ struct UiState {
     AttentionState attention;
     LabelsState labels;
     PickState pick;
-    AdjustState adjust;
+    HandState by_hand;
     Keymap keymap;
     KeysState keys;
     ProgressState progress;

@@ -56,7 +56,7 @@ constexpr std::array<const char*, 10> DisplayModeNames{"Beauty",    "Centres", "
                                                        "Depth",     "Opacity", "Labels", "Label weight",
                                                        "Attention", "Changed"};
 
-enum class Tool { Orbit, Brush, Rectangle, Lasso, CutOut, PickColour };
+enum class Tool { Orbit, Brush, Rectangle, Lasso, CutOut, PickColour, Place };
 enum class SetOperation { Add, Remove, Intersect, Replace };
 enum class Comparison { None, Wipe, Original };
 
@@ -296,6 +296,13 @@ struct PickedRows {
         values;  // [N] of the property, NaN where there is none; null until it is measured
 };
 
+/// Labelled thing that is placed by hand, as it stood before: world units and unit vectors.
+struct PlacedThing {
+    Vec3 foot;             // the middle of where it stands
+    Vec3 side, up, front;  // right, up and towards who looks at the front
+    double height = 0, width = 0;
+};
+
 /// Requests of the running or last job to the networks.
 struct NetworkCost {
     std::uint64_t unet = 0, encoder = 0, decoder = 0;  // passes over one picture
@@ -422,6 +429,12 @@ struct LabelPart {
     bool adjusting = false;  // the last step is an adjustment of colours, which more of it changes
 };
 
+/// The labelled thing while the artist places it.
+struct PlacePart {
+    std::optional<PlacedThing> placed;  // none = nothing is labelled, or it is not placed by hand
+    bool placing = false;               // the last step is a placement, which more of it changes
+};
+
 /// Models and their settings.
 struct ModelPart {
     std::vector<ModelView> models;
@@ -466,6 +479,7 @@ struct ViewModel : DocumentPart,
                    SearchPart,
                    EditPart,
                    LabelPart,
+                   PlacePart,
                    ModelPart,
                    ExportPart,
                    NoticePart,

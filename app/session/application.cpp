@@ -27,7 +27,8 @@ Application::Application(ApplicationOptions options)
               [this](const auto& before, const auto& after) { search_.move_request(before, after); }),
       costs_(workspace_, models_), search_(workspace_, view_, models_, costs_),
       edits_(workspace_, view_, models_, costs_, search_),
-      labels_(workspace_, view_, models_, search_, edits_), exports_(workspace_, view_, search_, edits_),
+      labels_(workspace_, view_, models_, search_, edits_), places_(workspace_, view_),
+      exports_(workspace_, view_, search_, edits_),
       files_(workspace_, {view_, models_, search_, edits_, labels_, exports_}) {
     workspace_.run = [this](const ui::Command& command) { run(command); };
     load_settings();
@@ -45,6 +46,7 @@ void Application::run(const ui::Command& command) {
                           [this](const ui::SearchCommand& one) { search_.run(one); },
                           [this](const ui::EditCommand& one) { edits_.run(one); },
                           [this](const ui::LabelCommand& one) { labels_.run(one); },
+                          [this](const ui::PlaceCommand& one) { places_.run(one); },
                           [this](const ui::ViewCommand& one) { view_.run(one); },
                           [this](const ui::ModelCommand& one) { models_.run(one); },
                           [this](const ui::ExportCommand& one) { exports_.run(one); },
@@ -73,7 +75,7 @@ void Application::update(PreviewHost& preview) {
     edits_.refresh();
     follow_document();
     search_.refresh();
-    if (!workspace_.document.empty()) labels_.refresh();
+    if (!workspace_.document.empty()) labels_.refresh(), places_.refresh();
     exports_.refresh();
     files_.refresh();
     if (workspace_.document.empty()) {
@@ -117,6 +119,7 @@ void Application::show() {
     search_.show(model_);
     edits_.show(model_);
     labels_.show(model_);
+    places_.show(model_);
     exports_.show(model_);
     model_.job = workspace_.jobs->work.status();
     model_.file_job = workspace_.jobs->files.status();

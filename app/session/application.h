@@ -13,6 +13,7 @@
 #include "app/session/file_controller.h"
 #include "app/session/label_controller.h"
 #include "app/session/model_controller.h"
+#include "app/session/place_controller.h"
 #include "app/session/preview_host.h"
 #include "app/session/search_controller.h"
 #include "app/session/state/workspace.h"
@@ -71,6 +72,7 @@ private:
     SearchController search_;
     EditController edits_;
     LabelController labels_;
+    PlaceController places_;
     ExportController exports_;
     FileController files_;
     ui::ViewModel model_;

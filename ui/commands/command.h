@@ -173,11 +173,24 @@ struct GrowLabel {
 struct InvertLabel {};
 struct ClearLabel {};
 struct DeleteLabelledSplats {};
+/// Deletes them and fills the hole with what is around it.
+struct HealLabelledSplats {};
 /// Adjusts the colours of the labelled splats, or of all if none is labelled. Several in a row start from
 /// their common colours and are one step of undo. The neutral adjustment takes them back.
 struct AdjustColours {
     ColourAdjustment adjustment;
 };
+/// Shows the labelled thing's place, for handles to drag, or no longer.
+struct UsePlacing {
+    bool on = false;
+};
+/// Moves, turns, resizes or copies the labelled thing. Several in a row start from its common place and are
+/// one step of undo. The settings' defaults take them back.
+struct PlaceThing {
+    edit::RearrangeSettings settings;
+};
+/// Fills the hole where the thing stood that was just placed.
+struct HealPlace {};
 /// Shows the splats of a choice by property until they are dropped. Only UsePicked changes anything.
 struct PickRows {
     localize::RowChoice choice;
@@ -346,6 +359,8 @@ using LabelCommand =
                  command::Undo, command::Redo, command::GoTo, command::SetEditEnabled,
                  command::SetEditStrength, command::ExchangeVariation, command::DeleteEdit,
                  command::MoveEdit>;
+using PlaceCommand =
+    std::variant<command::HealLabelledSplats, command::UsePlacing, command::PlaceThing, command::HealPlace>;
 using ViewCommand =
     std::variant<command::HideLabel, command::IsolateLabel, command::ShowHidden, command::SetCamera,
                  command::SetViewSettings, command::SetComparison, command::CompareWith, command::LookThrough,
@@ -362,8 +377,8 @@ using WindowCommand = std::variant<command::OpenGuide, command::ToggleFullscreen
                                    command::SetKeymap, command::Quit>;
 
 /// A command; each alternative is the list of one controller.
-using Command = std::variant<FileCommand, SearchCommand, EditCommand, LabelCommand, ViewCommand, ModelCommand,
-                             ExportCommand, NoticeCommand, WindowCommand>;
+using Command = std::variant<FileCommand, SearchCommand, EditCommand, LabelCommand, PlaceCommand, ViewCommand,
+                             ModelCommand, ExportCommand, NoticeCommand, WindowCommand>;
 
 /// Commands of a frame in their order, kept until the frame is drawn. Nothing that panels read changes under
 /// their hands.

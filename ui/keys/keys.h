@@ -29,6 +29,8 @@ enum class Shortcut {
     Isolate,
     ShowHidden,
     Delete,
+    Heal,
+    Place,
     Evidence,
     Tint,
     Wipe,
@@ -46,7 +48,7 @@ enum class Shortcut {
     Turntable,
     Quit
 };
-inline constexpr std::size_t ShortcutCount = 29;
+inline constexpr std::size_t ShortcutCount = 31;
 inline constexpr Shortcut NoShortcut = static_cast<Shortcut>(-1);
 
 /// One line of the list of keys.
@@ -59,7 +61,7 @@ struct KeyHelp {
 };
 
 /// All keys. Shortcuts and camera must agree with it.
-inline constexpr std::array<KeyHelp, 53> KeyTable{{
+inline constexpr std::array<KeyHelp, 55> KeyTable{{
     {"Camera", "Left drag (no tool), middle drag", "Orbit"},
     {"Camera", "Shift + middle drag, right drag", "Pan"},
     {"Camera", "Wheel", "Zoom to the cursor"},
@@ -72,6 +74,7 @@ inline constexpr std::array<KeyHelp, 53> KeyTable{{
     {"Labels", "R", "Rectangle", Shortcut::Rectangle, "rectangle"},
     {"Labels", "L", "Lasso", Shortcut::Lasso, "lasso"},
     {"Labels", "C", "Cut out the thing in a box", Shortcut::CutOut, "cut_out"},
+    {"Labels", "G", "Handles that move, turn and resize what is labelled", Shortcut::Place, "place"},
     {"Labels", "Shift", "Add"},
     {"Labels", "Ctrl", "Remove"},
     {"Labels", "Alt, Shift + Ctrl", "Intersect"},
@@ -84,6 +87,7 @@ inline constexpr std::array<KeyHelp, 53> KeyTable{{
     {"Labels", "I", "Isolate what is labelled: hide all else", Shortcut::Isolate, "isolate"},
     {"Labels", "Shift + H", "Show what is hidden", Shortcut::ShowHidden, "show_hidden"},
     {"Labels", "Delete", "Delete the labelled splats", Shortcut::Delete, "delete"},
+    {"Labels", "Ctrl + Delete", "Delete them and heal the hole", Shortcut::Heal, "heal"},
     {"Show", "M", "Chosen view of the search: its attention, its mask, nothing", Shortcut::Evidence,
      "evidence"},
     {"Show", "T", "Tint of what is labelled on, off", Shortcut::Tint, "tint"},

@@ -87,10 +87,11 @@ void step_evidence(Context& context) {
 }
 
 void tool_keys(Context& context) {
-    constexpr std::array<std::pair<Shortcut, Tool>, 4> Tools{{{Shortcut::Brush, Tool::Brush},
+    constexpr std::array<std::pair<Shortcut, Tool>, 5> Tools{{{Shortcut::Brush, Tool::Brush},
                                                               {Shortcut::Rectangle, Tool::Rectangle},
                                                               {Shortcut::Lasso, Tool::Lasso},
-                                                              {Shortcut::CutOut, Tool::CutOut}}};
+                                                              {Shortcut::CutOut, Tool::CutOut},
+                                                              {Shortcut::Place, Tool::Place}}};
     for (const auto& [command, tool] : Tools)
         if (hit(context, command)) set_tool(context, tool);
     if (ImGui::GetIO().KeyCtrl || ImGui::GetIO().KeyAlt) return;
@@ -107,6 +108,8 @@ void label_keys(Context& context) {
     if (hit(context, Shortcut::Isolate)) isolate_label(context);
     if (hit(context, Shortcut::Delete) && labelled && label_count(context) > 0)
         context.emit(command::DeleteLabelledSplats{});
+    if (hit(context, Shortcut::Heal) && labelled && label_count(context) > 0)
+        context.emit(command::HealLabelledSplats{});
 }
 
 void view_keys(Context& context) {

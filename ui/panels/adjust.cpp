@@ -30,7 +30,7 @@ bool slider_row(Context& context, const char* name, double& value, const char* h
 }  // namespace
 
 void draw_adjust(Context& context) {
-    auto& adjust = context.state.adjust;
+    auto& adjust = context.state.by_hand.adjust;
     // Another step: the next one begins from there.
     const bool went_on = adjust.adjusting && !context.model.adjusting;
     adjust.adjusting = context.model.adjusting;

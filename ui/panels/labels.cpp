@@ -188,6 +188,16 @@ void draw_operations(Context& context, const std::string& why) {
                              Shortcut::Delete),
                          .look = Look::Danger}))
         context.emit(command::DeleteLabelledSplats{});
+    flow(button_width("Delete and heal"));
+    if (button(context, {.name = "labels.heal",
+                         .text = "Delete and heal",
+                         .why_off = why_delete,
+                         .tooltip = with_key(context,
+                                             "Removes the labelled splats, what only they held and their "
+                                             "shadow, and fills the hole with what is around it",
+                                             Shortcut::Heal),
+                         .look = Look::Danger}))
+        context.emit(command::HealLabelledSplats{});
 }
 
 }  // namespace
@@ -215,6 +225,7 @@ void draw_labels_panel(Context& context) {
     draw_operations(context, why);
     draw_pick(context);
     draw_adjust(context);
+    draw_place(context);
 }
 
 }  // namespace gse::ui

@@ -15,6 +15,11 @@ inline constexpr int FramesToBring = 3;
 void draw_pick(Context& context);
 /// Part of the labels: colours of what is labelled.
 void draw_adjust(Context& context);
+/// Part of the labels: place, size and number of what is labelled.
+void draw_place(Context& context);
+/// Begins anew behind another step, and asks for the labelled thing's place while the tool is chosen. Once
+/// per frame.
+void follow_placing(Context& context);
 void draw_labels_panel(Context& context);
 void draw_scene_panel(Context& context);
 void draw_models_panel(Context& context);

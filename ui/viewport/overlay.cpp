@@ -40,27 +40,11 @@ void world_line(const Context& context, ImDrawList* list, const Vec3& a, const V
     list->AddLine(project(from), project(to), colour, width);
 }
 
-std::optional<ImVec2> project(const Context& context, const Vec3& world) {
-    const Camera& camera = context.model.camera;
-    const Vec3 p = camera.to_camera(world);
-    if (p.z < near_of(context)) return std::nullopt;
-    return to_screen(context, camera.fx * p.x / p.z + camera.cx, camera.fy * p.y / p.z + camera.cy);
-}
-
 ImVec2 axes_centre(const Context& context) {
     const auto& state = context.state.viewport;
     const float away = context.em * AxesEm * 1.5f;
     const bool covered = state.foot_low.x < state.low.x + 2 * away;
     return {state.low.x + away, (covered ? std::min(state.high.y, state.foot_low.y) : state.high.y) - away};
-}
-
-void shaded_text(Context& context, ImDrawList* list, ImVec2 at, const std::string& text,
-                 ImU32 colour = palette::Text) {
-    const ImVec2 size = ImGui::CalcTextSize(text.c_str());
-    const float pad = context.em * 0.4f;
-    list->AddRectFilled({at.x, at.y}, {at.x + size.x + 2 * pad, at.y + size.y + pad}, palette::Shade,
-                        context.em * 0.2f);
-    list->AddText({at.x + pad, at.y + pad * 0.5f}, colour, text.c_str());
 }
 
 /// "x", "-x" and so on.
@@ -136,7 +120,7 @@ void draw_view(Context& context, ImDrawList* list, const View& view, bool select
         world_line(context, list, eye, corners[at], colour, width);
         world_line(context, list, corners[at], corners[(at + 1) % 4], colour, width);
     }
-    const auto apex = project(context, eye);
+    const auto apex = screen_point(context, eye);
     if (apex) list->AddCircleFilled(*apex, context.em * (selected ? 0.26f : 0.18f), colour);
     if (apex && selected)
         list->AddText({apex->x + context.em * 0.5f, apex->y - context.em * 0.5f}, palette::Text,
@@ -211,6 +195,10 @@ void draw_hint(Context& context, ImDrawList* list) {
     const ImVec2 corner{state.low.x + context.em * 0.5f, state.low.y + context.em * below};
     if (state.tool == Tool::PickColour)
         return shaded_text(context, list, corner, "Click a colour   Esc leaves");
+    if (state.tool == Tool::Place)
+        return shaded_text(context, list, corner,
+                           context.model.placed ? "Place: drag a handle   Ctrl snaps   Esc leaves"
+                                                : "Place: label a thing first   Esc leaves");
     std::string text = state.tool == Tool::Brush       ? "Brush: drag to paint"
                        : state.tool == Tool::Rectangle ? "Rectangle: drag a box"
                        : state.tool == Tool::CutOut    ? "Cut out: drag a box around a thing"
@@ -229,6 +217,21 @@ void draw_hint(Context& context, ImDrawList* list) {
 }
 
 }  // namespace
+
+std::optional<ImVec2> screen_point(const Context& context, const Vec3& world) {
+    const Camera& camera = context.model.camera;
+    const Vec3 p = camera.to_camera(world);
+    if (p.z < near_of(context)) return std::nullopt;
+    return to_screen(context, camera.fx * p.x / p.z + camera.cx, camera.fy * p.y / p.z + camera.cy);
+}
+
+void shaded_text(Context& context, ImDrawList* list, ImVec2 at, const std::string& text, ImU32 colour) {
+    const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+    const float pad = context.em * 0.4f;
+    list->AddRectFilled({at.x, at.y}, {at.x + size.x + 2 * pad, at.y + size.y + pad}, palette::Shade,
+                        context.em * 0.2f);
+    list->AddText({at.x + pad, at.y + pad * 0.5f}, colour, text.c_str());
+}
 
 ImVec2 to_screen(const Context& context, double x_px, double y_px) {
     const auto& state = context.state.viewport;
@@ -266,7 +269,7 @@ int view_at(const Context& context, ImVec2 point) {
     int nearest = -1;
     float least = context.em * PickRadiusEm;
     for (std::size_t index = 0; index < views.size(); ++index) {
-        const auto at = project(context, views[index].camera.centre());
+        const auto at = screen_point(context, views[index].camera.centre());
         if (!at) continue;
         const float distance = std::hypot(at->x - point.x, at->y - point.y);
         if (distance >= least) continue;
@@ -296,6 +299,7 @@ void draw_overlays(Context& context, ImDrawList* list) {
     }
     if (context.view.show_hud) draw_hud(context, list);
     draw_hint(context, list);
+    draw_gizmo(context, list);
     list->PopClipRect();
 }
 

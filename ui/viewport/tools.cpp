@@ -180,6 +180,7 @@ bool use_tool(Context& context, bool hovered) {
     if (state.tool == Tool::Orbit ||
         (!state.stroke && ImGui::GetIO().KeyAlt && context.state.keymap.alt_navigates()))
         return false;
+    if (state.tool == Tool::Place) return use_gizmo(context, hovered);
     if (state.tool == Tool::PickColour) {
         if (!hovered || !ImGui::IsMouseClicked(0)) return true;
         if (pick_colour(context, mouse)) state.tool = Tool::Orbit;
@@ -202,7 +203,7 @@ bool use_tool(Context& context, bool hovered) {
 void draw_tool_cursor(Context& context, ImDrawList* list, bool hovered) {
     const auto& state = context.state.viewport;
     const ImVec2 mouse = ImGui::GetIO().MousePos;
-    if (state.tool == Tool::Orbit || state.wipe_dragged) return;
+    if (state.tool == Tool::Orbit || state.tool == Tool::Place || state.wipe_dragged) return;
     if (state.stroke) draw_stroke(context, list, mouse);
     if (!hovered) return;
     if (state.tool == Tool::PickColour) {

@@ -9,6 +9,7 @@
 #include "ui/commands/guarded.h"
 #include "ui/glyphs.h"
 #include "ui/keys/keys.h"
+#include "ui/panels/panels.h"
 #include "ui/state.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/icons.h"
@@ -140,6 +141,7 @@ void bare_colours(Context& context) {
 
 void draw_viewport(Context& context) {
     bare_colours(context);
+    follow_placing(context);
     auto& state = context.state.viewport;
     draw_header(context);
     const ImVec2 space = ImGui::GetContentRegionAvail();

@@ -1,6 +1,9 @@
 // The picture in the middle: its header, the camera and tools that work in it, and its overlays.
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "ui/context.h"
 
 namespace gse::ui {
@@ -19,6 +22,9 @@ void update_camera(Context& context, bool keys_free);
 void navigate(Context& context, bool hovered);
 /// Brush, rectangle and lasso. True when the left button belongs to a tool.
 bool use_tool(Context& context, bool hovered);
+/// Handles of the labelled thing. True when the left button belongs to one.
+bool use_gizmo(Context& context, bool hovered);
+void draw_gizmo(Context& context, ImDrawList* list);
 /// Operation of the keys held now, else the chosen one.
 SetOperation operation_now(const Context& context);
 
@@ -46,6 +52,11 @@ void draw_recovery(Context& context, const char* prefix, std::size_t index, bool
 
 /// Depth along the view under a point of the window. Not positive = nothing there or unknown.
 double depth_at(const Context& context, ImVec2 point);
+/// Place in the window of a point of the world; nothing behind the camera.
+std::optional<ImVec2> screen_point(const Context& context, const Vec3& world);
+/// Text before a shade.
+void shaded_text(Context& context, ImDrawList* list, ImVec2 at, const std::string& text,
+                 ImU32 colour = palette::Text);
 /// Place in the window of a pixel of the shown camera.
 ImVec2 to_screen(const Context& context, double x_px, double y_px);
 /// Ends of the world's axes in the corner: x, y, z, -x, -y, -z.

@@ -126,6 +126,15 @@ void draw_tool(const Pen& pen, Icon icon) {
             pen.dot(0, -0.2f, 0.24f);
             pen.ellipse(0, 0.3f, 0.42f, 0.26f);
             break;
+        case Icon::Place:  // arrows in four directions
+            pen.path({{-0.85f, 0}, {0.85f, 0}});
+            pen.path({{0, -0.85f}, {0, 0.85f}});
+            for (const float end : {-0.85f, 0.85f}) {
+                const float back = end * 0.7f;
+                pen.path({{back, -0.25f}, {end, 0}, {back, 0.25f}});
+                pen.path({{-0.25f, back}, {0, end}, {0.25f, back}});
+            }
+            break;
         default: draw_place(pen, icon);
     }
 }

@@ -14,6 +14,7 @@ enum class Icon {
     Rectangle,
     Lasso,
     CutOut,
+    Place,
     FrontOnly,
     Through,
     Undo,

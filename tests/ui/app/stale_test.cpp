@@ -89,6 +89,11 @@ void show(Shown& shown, const ui::LabelPart& part) {
     shown["label.adjusting"] = fmt::format("{}", adjusting);
 }
 
+void show(Shown& shown, const ui::PlacePart& part) {
+    const auto& [placed, placing] = part;
+    shown["place.placed"] = fmt::format("{} {}", placed ? placed->height : -1, placing);
+}
+
 void show(Shown& shown, const ui::ExportPart& part) {
     const auto& [exports, keys] = part;
     shown["exports.settings"] = text_of(exports);
@@ -118,8 +123,9 @@ Shown shown_by(Session& session) {
     const auto show_all = [&](const auto&... parts) { (show(shown, parts), ...); };
     show_all(static_cast<const ui::DocumentPart&>(model), static_cast<const ui::ViewportPart&>(model),
              static_cast<const ui::SearchPart&>(model), static_cast<const ui::EditPart&>(model),
-             static_cast<const ui::LabelPart&>(model), static_cast<const ui::ExportPart&>(model),
-             static_cast<const ui::NoticePart&>(model), static_cast<const ui::WindowPart&>(model));
+             static_cast<const ui::LabelPart&>(model), static_cast<const ui::PlacePart&>(model),
+             static_cast<const ui::ExportPart&>(model), static_cast<const ui::NoticePart&>(model),
+             static_cast<const ui::WindowPart&>(model));
     shown["models.front"] = model.model_settings.front;  // the rest is of the program
     return shown;
 }

@@ -51,6 +51,8 @@ private:
     void take(const ui::command::DeleteLabel& one);
     void take(const ui::command::Select& one);
     void take(const ui::command::AdjustColours& one);
+    void take(const ui::command::UsePlacing& one);
+    void take(const ui::command::PlaceThing& one);
     void take(const ui::command::PickRows& one);
     void take(const ui::command::DropPicked& one);
     void take(const ui::command::PickColour& one);

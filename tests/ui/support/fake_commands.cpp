@@ -81,6 +81,12 @@ template <class C> std::string fields_of(const C& wanted) {
         [&](const command::ExchangeVariation& one) { return two(one.id, one.index); },
         [&](const command::GrowLabel& one) { return text(one.steps); },
         [&](const command::AdjustColours& one) { return text(adjustment_text(one.adjustment)); },
+        [&](const command::UsePlacing& one) { return text(one.on ? "on" : "off"); },
+        [&](const command::PlaceThing& one) {
+            return fmt::format(" {:.2f} {:.2f} {:.2f} turn {:.0f} size {:.2f}", one.settings.move_right,
+                               one.settings.move_up, one.settings.move_forward, one.settings.turn,
+                               one.settings.resize);
+        },
         [&](const command::PickRows& one) {
             return text(localize::choice_text(one.choice)) + (one.choice.within_label ? " within" : "");
         },
@@ -175,6 +181,15 @@ void FakeApplication::take(const command::Select& one) {
 
 void FakeApplication::take(const command::AdjustColours& one) {
     model_.adjusting = !(one.adjustment == ColourAdjustment{});
+}
+
+void FakeApplication::take(const command::UsePlacing& one) {
+    model_.placed.reset();
+    if (one.on) model_.placed = ui::PlacedThing{{}, {1, 0, 0}, {0, -1, 0}, {0, 0, -1}, 1, 0.7};
+}
+
+void FakeApplication::take(const command::PlaceThing& one) {
+    model_.placing = !(one.settings == edit::RearrangeSettings{});
 }
 
 void FakeApplication::take(const command::PickRows& one) {

@@ -38,10 +38,10 @@ DOCTEST_TEST_CASE(
     harness.drag({slider.x + slider.width / 3, slider.y + slider.height / 2},
                  {slider.x + 3, slider.y + slider.height / 2});
     harness.frame(2);
-    DOCTEST_CHECK(harness.shell.state().adjust.values.saturation < 0.1);
+    DOCTEST_CHECK(harness.shell.state().by_hand.adjust.values.saturation < 0.1);
     harness.application.model().adjusting = false;  // undone, or something else was done
     harness.frame(2);
-    DOCTEST_CHECK(harness.shell.state().adjust.values == ColourAdjustment{});
+    DOCTEST_CHECK(harness.shell.state().by_hand.adjust.values == ColourAdjustment{});
     harness.application.model().result_waiting = true;
     harness.frame(3);
     DOCTEST_CHECK(harness.find("adjust.saturation") == nullptr);

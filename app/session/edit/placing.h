@@ -1,0 +1,41 @@
+// A labelled thing that is moved, turned, resized or copied by hand: one edit of the stack while it changes.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "engine/edit/placement/rearrangement.h"
+#include "engine/scene/document.h"
+#include "ui/view_model.h"
+
+namespace gse::app {
+
+class Placing {
+public:
+    /// Thing of a label in a state. `front`: the world direction in which its front looks.
+    Placing(DocumentState before, std::shared_ptr<const std::vector<std::uint8_t>> rows, const Vec3& front);
+
+    const DocumentState& before() const { return before_; }
+    const std::vector<std::uint8_t>& rows() const { return *rows_; }
+    /// True for the thing of this label in this state.
+    bool is_of(const DocumentState& state,
+               const std::shared_ptr<const std::vector<std::uint8_t>>& rows) const;
+    /// False where nothing of the label can be seen.
+    bool found() const { return thing_.found(); }
+    /// Place and size before the change, for the handles in the viewport.
+    ui::PlacedThing shown() const;
+    /// The state with an edit of that identity on top of the stack. Throws Error (InvalidArgument).
+    DocumentState placed(const edit::RearrangeSettings& settings, std::uint64_t id) const;
+
+private:
+    DocumentState before_;
+    std::shared_ptr<const std::vector<std::uint8_t>> rows_;  // [current of before_]
+    edit::ThingFrame thing_;
+    mutable std::vector<Vec3> others_;  // of copies, once one was asked for
+};
+
+/// "Place: right 0.30, turn 45, size 1.2".
+std::string placing_text(const edit::RearrangeSettings& settings);
+
+}  // namespace gse::app

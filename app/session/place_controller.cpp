@@ -1,0 +1,128 @@
+// Jobs that heal, and placements as one step of undo each.
+#include "app/session/place_controller.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "engine/base/error.h"
+#include "engine/scene/label_ops.h"
+#include "engine/scene/stack_edits.h"
+#include "ui/widgets/controls.h"
+
+namespace gse::app {
+
+namespace command = ui::command;
+
+const NamedLabel* PlaceController::labelled() {
+    if (!workspace_.require_scene()) return nullptr;
+    if (workspace_.results || workspace_.jobs->works()) {
+        workspace_.notices.toast(workspace_.results ? "Apply or discard the edit first."
+                                                    : "The edit stack can be changed when the job is done.");
+        return nullptr;
+    }
+    const NamedLabel* label = workspace_.active_label();
+    if (label != nullptr && count_labelled(*label) > 0) return label;
+    workspace_.notices.toast("Nothing is labelled.");
+    return nullptr;
+}
+
+/// Direction from the scene to who looks at its front.
+Vec3 PlaceController::front() const {
+    const auto& orbit = view_.orbit();
+    return normalized(orbit_camera(orbit, 0, 1, 1).centre() - orbit.centre);
+}
+
+// Healing
+
+template <> void PlaceController::on(const command::HealLabelledSplats&) {
+    if (const NamedLabel* label = labelled()) heal(state(), label->bits, false);
+}
+
+template <> void PlaceController::on(const command::HealPlace&) {
+    if (!step_ || !thing_ || workspace_.document.revision() != step_->revision)
+        return workspace_.notices.toast("Nothing was just placed.");
+    if (labelled() != nullptr)
+        heal(thing_->before(), std::make_shared<const std::vector<std::uint8_t>>(thing_->rows()), true);
+}
+
+/// Heals the hole of `rows` in that state. `stays`: they are elsewhere by now, and not deleted.
+void PlaceController::heal(const DocumentState& from, std::shared_ptr<const std::vector<std::uint8_t>> rows,
+                           bool stays) {
+    auto healed = std::make_shared<heal::Healed>();
+    auto work = [healed, set = from.current, rows, up = from.info.up, stays](const JobControl& control) {
+        control.report("healing the hole", 0, 0);
+        heal::HealSettings settings;
+        settings.held_parts = !stays;
+        *healed = heal::remove_and_heal({set, *rows, up, control}, settings);
+    };
+    auto done = [this, from, healed, rows, stays,
+                 revision = workspace_.document.revision()](const Error* error) {
+        if (error != nullptr) return workspace_.report_end(*error);
+        if (workspace_.document.revision() == revision) take_healed(from, *healed, *rows, stays);
+    };
+    workspace_.jobs->start_work(JobKind::Heal,
+                                {stays ? "Heal the place" : "Delete and heal", work, done, true});
+}
+
+void PlaceController::take_healed(const DocumentState& from, const heal::Healed& healed,
+                                  const std::vector<std::uint8_t>& rows, bool stays) {
+    auto gone = healed.removed;
+    for (std::size_t row = 0; row < gone.size(); ++row)
+        if (stays && rows[row] != 0) gone[row] = 0;
+    EditNode node = exchange_of(from, gone, healed.added, workspace_.next_edit_id++);
+    const auto removed = node.delta->removed.size(), added = node.delta->added.size();
+    if (removed == gone.size() && added == 0)
+        return workspace_.notices.toast("That is every splat; an empty scene cannot be kept.");
+    if (removed + added == 0) return workspace_.notices.toast("There is no hole to heal.");
+    node.name = stays ? "Heal the place" : "Delete and heal";
+    auto stack = state().stack;
+    stack.push_back(node);
+    workspace_.document.apply(node.name, with_stack(state(), std::move(stack)));
+    workspace_.toast_step(fmt::format("{} splats are deleted, {} fill the hole.{}{}", ui::count_text(removed),
+                                      ui::count_text(added), healed.open.empty() ? "" : " ", healed.open));
+}
+
+// Placing
+
+template <> void PlaceController::on(const command::UsePlacing& one) { used_ = one.on; }
+
+template <> void PlaceController::on(const command::PlaceThing& one) {
+    if (!workspace_.require_scene() || workspace_.jobs->works() || workspace_.results || !thing_) return;
+    const bool goes_on = step_ && step_->revision == workspace_.document.revision();
+    if (one.settings == edit::RearrangeSettings{}) return goes_on ? workspace_.run(command::Undo{}) : void();
+    if (!goes_on) step_ = Step{0, workspace_.next_edit_id++};
+    try {
+        auto next = thing_->placed(one.settings, step_->id);
+        const std::string name = next.stack.back().name;
+        workspace_.document.apply(name, std::move(next), fmt::format("place{}", step_->id));
+        step_->revision = workspace_.document.revision();
+    } catch (const Error& error) {
+        if (!goes_on) step_.reset();
+        workspace_.notices.report(error);
+    }
+}
+
+void PlaceController::refresh() {
+    const bool goes_on = step_ && step_->revision == workspace_.document.revision();
+    if (goes_on) return;
+    step_.reset();
+    const NamedLabel* label = workspace_.active_label();
+    if (!used_ || label == nullptr || count_labelled(*label) == 0) return thing_.reset();
+    if (thing_ && thing_->is_of(state(), label->bits)) return;
+    thing_.emplace(state(), label->bits, front());
+    if (!thing_->found()) thing_.reset();
+}
+
+void PlaceController::show(ui::PlacePart& model) const {
+    model.placed = thing_ ? std::optional(thing_->shown()) : std::nullopt;
+    model.placing = step_.has_value();
+}
+
+void PlaceController::run(const ui::PlaceCommand& command) {
+    std::visit([this](const auto& one) { on(one); }, command);
+}
+
+}  // namespace gse::app

@@ -1,0 +1,44 @@
+// Labelled things that are deleted with their hole healed, or placed by hand.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "app/session/edit/placing.h"
+#include "app/session/state/workspace.h"
+#include "app/session/view_controller.h"
+#include "engine/heal/heal.h"
+
+namespace gse::app {
+
+class PlaceController {
+public:
+    PlaceController(Workspace& workspace, ViewController& view) : workspace_(workspace), view_(view) {}
+
+    void run(const ui::PlaceCommand& command);
+    /// Follows the label whose thing is placed. Once per frame.
+    void refresh();
+    void show(ui::PlacePart& model) const;
+
+private:
+    /// Placement that is the last step, while more of it changes it.
+    struct Step {
+        std::uint64_t revision = 0, id = 0;  // of the step, and of its edit
+    };
+    template <class C> void on(const C& command);
+    const DocumentState& state() const { return workspace_.document.state(); }
+    /// The labelled rows; null, and said, where there are none or the stack cannot be changed.
+    const NamedLabel* labelled();
+    Vec3 front() const;
+    void heal(const DocumentState& from, std::shared_ptr<const std::vector<std::uint8_t>> rows, bool stays);
+    void take_healed(const DocumentState& from, const heal::Healed& healed,
+                     const std::vector<std::uint8_t>& rows, bool stays);
+
+    Workspace& workspace_;
+    ViewController& view_;
+    bool used_ = false;  // the artist places the labelled thing
+    std::optional<Placing> thing_;
+    std::optional<Step> step_;
+};
+
+}  // namespace gse::app

@@ -1,0 +1,137 @@
+// Things that are deleted with their hole healed, or placed by hand, with the application behind it.
+#include <algorithm>
+#include <cmath>
+
+#include "tests/ui/app/session.h"
+
+namespace place_test {
+
+using namespace gse;
+using namespace gse::test;
+
+namespace {
+
+/// The sample with a label of its bear's splats, by colour.
+struct Labelled : Session {
+    Labelled() {
+        open_bear();
+        app.run(command::PickRows{{localize::RowProperty::Colour, {0.8f, 0.1f, 0.1f}, 0.25f, false, false}});
+        DOCTEST_REQUIRE(until([&] { return app.model().picked.count > 0; }));
+        app.run(command::UsePicked{ui::PickedUse::NewLabel});
+        app.run(command::DropPicked{});
+        app.update(preview);
+        app.run(command::UsePlacing{true});
+        app.update(preview);
+    }
+    const DocumentState& state() const { return app.document().state(); }
+    const std::vector<std::uint8_t>& bits() const {
+        return *state().labels.at(static_cast<std::size_t>(state().active_label)).bits;
+    }
+    Vec3 centre() const {
+        Vec3 sum;
+        double count = 0;
+        const auto position = state().current.position();
+        for (std::size_t row = 0; row < bits().size(); ++row) {
+            if (bits()[row] == 0) continue;
+            sum = sum + Vec3{position[row * 3], position[row * 3 + 1], position[row * 3 + 2]};
+            count += 1;
+        }
+        return sum * (1 / count);
+    }
+    void place(const edit::RearrangeSettings& settings) {
+        app.run(command::PlaceThing{settings});
+        app.update(preview);
+    }
+};
+
+edit::RearrangeSettings to_the_right(double by) {
+    edit::RearrangeSettings settings;
+    settings.move_right = by;
+    return settings;
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("a thing that is dragged is one edit and one step of undo, and nothing else changes") {
+    const Place place;
+    Labelled session;
+    auto& app = session.app;
+    const auto before = session.state().current;
+    const auto bits = session.bits();
+    const Vec3 centre = session.centre();
+    const auto at = app.document().position();
+    DOCTEST_REQUIRE(app.model().placed);
+    const Vec3 side = app.model().placed->side;
+    for (const double by : {0.1, 0.3, 0.5}) session.place(to_the_right(by));
+    DOCTEST_CHECK(app.model().placing);
+    DOCTEST_CHECK(app.document().position() == at + 1);
+    DOCTEST_CHECK(session.state().stack.size() == 1);
+    constexpr double Rounding = 1e-4;  // of means of floats
+    DOCTEST_CHECK(length(session.centre() - centre - side * 0.5) < Rounding);
+    std::size_t elsewhere = 0;
+    for (std::size_t row = 0; row < before.size(); ++row)
+        elsewhere += bits[row] == 0 && !same_row(before.spans(), row, session.state().current.spans(), row);
+    DOCTEST_CHECK(elsewhere == 0);
+    session.place({});  // as it was
+    DOCTEST_CHECK(app.document().position() == at);
+    DOCTEST_CHECK_FALSE(app.model().placing);
+    DOCTEST_CHECK(length(session.centre() - centre) < Rounding);
+}
+
+DOCTEST_TEST_CASE("copies join the label; a change that cannot be made is said and changes nothing") {
+    const Place place;
+    Labelled session;
+    const auto rows = session.state().current.size();
+    const auto labelled = session.app.model().labelled;
+    edit::RearrangeSettings settings;
+    settings.copies = 2;
+    session.place(settings);
+    DOCTEST_CHECK(session.state().current.size() == rows + labelled);
+    session.app.run(command::Undo{});
+    session.app.update(session.preview);
+    settings = {};
+    settings.change = "sideways";
+    session.place(settings);
+    DOCTEST_CHECK(session.state().current.size() == rows);
+    DOCTEST_CHECK(session.state().stack.empty());
+    DOCTEST_CHECK_FALSE(session.app.model().toasts.empty());
+}
+
+DOCTEST_TEST_CASE("delete and heal is one edit; undo brings the thing back") {
+    const Place place;
+    Labelled session;
+    auto& app = session.app;
+    const auto before = session.state().current;
+    const auto at = app.document().position();
+    app.run(command::HealLabelledSplats{});
+    DOCTEST_REQUIRE(session.idle());
+    app.update(session.preview);
+    DOCTEST_REQUIRE(session.state().stack.size() == 1);
+    DOCTEST_CHECK(session.state().stack[0].name == "Delete and heal");
+    DOCTEST_CHECK(app.document().position() == at + 1);
+    DOCTEST_CHECK(std::count(session.bits().begin(), session.bits().end(), std::uint8_t{1}) == 0);
+    app.run(command::Undo{});
+    app.update(session.preview);
+    DOCTEST_CHECK(session.state().current.shares_all_with(before));
+}
+
+DOCTEST_TEST_CASE("the place that a thing has left is healed behind it") {
+    const Place place;
+    Labelled session;
+    auto& app = session.app;
+    app.run(command::HealPlace{});  // nothing was placed
+    app.update(session.preview);
+    DOCTEST_CHECK(session.state().stack.empty());
+    session.place(to_the_right(2));
+    const Vec3 centre = session.centre();
+    app.run(command::HealPlace{});
+    DOCTEST_REQUIRE(session.idle());
+    app.update(session.preview);
+    const bool healed = session.state().stack.size() == 2;
+    const bool said_whole = !healed && !app.model().toasts.empty();
+    DOCTEST_CHECK((healed || said_whole));
+    constexpr double Rounding = 1e-4;  // of means of floats
+    DOCTEST_CHECK(length(session.centre() - centre) < Rounding);
+}
+
+}  // namespace place_test
