@@ -25,7 +25,7 @@ DOCTEST_TEST_CASE(
     state.labels.threshold = 0.4f;
     state.pick.within = true;
     state.pick.choices[0].threshold = 0.7f;
-    state.adjust.values.brightness = 2;
+    state.by_hand.adjust.values.brightness = 2;
     state.targets.chosen = 1;
     state.history.chosen = 7;
     state.progress.logarithmic = false;
@@ -45,7 +45,7 @@ DOCTEST_TEST_CASE(
     DOCTEST_CHECK(state.labels.renamed == fresh.labels.renamed);
     DOCTEST_CHECK(state.labels.threshold == fresh.labels.threshold);
     DOCTEST_CHECK(state.pick.within == fresh.pick.within);
-    DOCTEST_CHECK(state.adjust.values == fresh.adjust.values);
+    DOCTEST_CHECK(state.by_hand.adjust.values == fresh.by_hand.adjust.values);
     DOCTEST_CHECK(state.targets.chosen == fresh.targets.chosen);
     DOCTEST_CHECK(state.history.chosen == fresh.history.chosen);
     DOCTEST_CHECK_FALSE(state.attention.points);
