@@ -94,7 +94,7 @@ bool apart_from_all(const Vec3& offset, const std::vector<Vec3>& places, const B
     return apart({}) && std::all_of(places.begin(), places.end(), apart);
 }
 
-/// What stands around a thing that is copied.
+/// Surroundings of a thing that is copied.
 class CopySpace {
 public:
     CopySpace(const Box& box, std::span<const Vec3> others) : box_(box), others_(others) {
