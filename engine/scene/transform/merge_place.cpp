@@ -163,7 +163,8 @@ Vec3 chosen_foot(const Points& host, const UprightBox& box, const Vec3& size, st
         return *best;
     }
     where = "it stands beside the other, which has no ground to stand on";
-    return {box.high.x + size.x / 2 + BesideGap * std::max(size.x, size.z), box.low.y, middle.z};
+    const UprightBox whole = robust_box(host, GuestTrim);  // its foot may have few rows
+    return {whole.high.x + size.x / 2 + BesideGap * std::max(size.x, size.z), whole.low.y, middle.z};
 }
 
 /// Directions of a scene with y up, about the origin.
