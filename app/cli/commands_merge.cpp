@@ -13,6 +13,7 @@
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/base/print.h"
+#include "engine/base/printable.h"
 #include "engine/pipeline/scene/scene_loading.h"
 #include "engine/pipeline/scene/scene_tools.h"
 #include "engine/scene/transform/merge.h"
@@ -54,19 +55,19 @@ void merge(const MergeOptions& options) {
     if (options.scale > 0) wishes.scale = options.scale;
     const MergePlace place = merge_place(host, guest, wishes);
     const std::string name = options.name.empty() ? stem_of(options.guest) : options.name;
-    for (const std::string& note : place.notes) log::info("{}: {}", name, note);
+    for (const std::string& note : place.notes) log::info("{}: {}", printable(name), note);
     if (host.info.antialiased != guest.info.antialiased)
         log::warning(
             "one scene was trained with opacity compensation, the other was not: {} may look "
             "thinner or thicker than before",
-            name);
+            printable(name));
     const Scene scene = merged(host, guest, place.placement, name);
     SaveOptions save;
     if (has_room_for_labels(options.output)) {
         save.from_label = &scene.labels.labels.back();
         if (scene.labels.labels.size() > 1)
             log::warning("the labels of {} are not written: the file has room for one, which marks {}",
-                         options.host.filename().string(), name);
+                         printable(options.host.filename().string()), printable(name));
     }
     const SavedRows rows = save_scene(options.output, scene, save);
     print("{} splats written to {}{}\n", rows.written, options.output.string(), left_out_text(rows));

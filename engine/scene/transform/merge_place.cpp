@@ -162,7 +162,7 @@ Vec3 chosen_foot(const Points& host, const UprightBox& box, const Vec3& size, st
         where = "it stands on the ground near the middle";
         return *best;
     }
-    where = "it stands beside the other, which has no ground to stand on";
+    where = "it stands beside the scene, which has no ground for it";
     const UprightBox whole = robust_box(host, GuestTrim);  // its foot may have few rows
     return {whole.high.x + size.x / 2 + BesideGap * std::max(size.x, size.z), whole.low.y, middle.z};
 }
