@@ -112,6 +112,8 @@ void add_window_command(CLI::App& app, CommandContext& context);       // open (
 void run_default_window();                                             // the program without a command
 void add_scene_commands(CLI::App& app, CommandContext& context);       // info, convert, render, turntable
 void add_edit_commands(CLI::App& app, CommandContext& context);        // locate, edit
+void add_merge_command(CLI::App& app, CommandContext& context);        // merge
+void add_transform_command(CLI::App& app, CommandContext& context);    // transform
 void add_plan_command(CLI::App& app, CommandContext& context);         // plan
 void add_project_command(CLI::App& app, CommandContext& context);      // project
 void add_laboratory_pointers(CLI::App& app, CommandContext& context);  // commands that gseditpro-lab has

@@ -6,6 +6,7 @@
 
 #include "app/cli/cli.h"
 #include "app/cli/label_columns.h"
+#include "app/cli/scene_output.h"
 #include "app/engine_names.h"
 #include "engine/base/error.h"
 #include "engine/base/log.h"
@@ -81,8 +82,6 @@ void add_info(CLI::App& app, CommandContext&) {
     });
 }
 
-std::string output_help() { return "New file: " + in_words(writable_extensions(), "or"); }
-
 /// Endings of the formats that have room for labels.
 std::string labelled_formats() {
     return in_words(extensions_that_keep(&io::SceneFormat::keeps_labels), "or");
@@ -95,18 +94,6 @@ void add_format_options(CLI::App& command, SaveOptions& save) {
         command.add_option(option_name(option->name), save.choices[option->name], option->help)
             ->capture_default_str()
             ->check(CLI::Range(option->values.front().value, option->values.back().value));
-}
-
-void refuse_same_file(const std::filesystem::path& input, const std::filesystem::path& output) {
-    std::error_code ignored;
-    if (std::filesystem::equivalent(input, output, ignored))
-        throw Error(ErrorCode::InvalidArgument, "the output is the input itself", "choose another name",
-                    output);
-}
-
-std::string left_out_text(const SavedRows& rows) {
-    return rows.left_out == 0 ? ""
-                              : fmt::format(" ({} that the format cannot hold are left out)", rows.left_out);
 }
 
 void add_convert(CLI::App& app, CommandContext&) {

@@ -16,7 +16,8 @@ class Commands(ProgramTest):
     def test_version_and_help(self):
         self.assertRegex(run("--version").stdout, r"gseditpro \d+\.\d+")
         self.assertRegex(run_laboratory("--version").stdout, r"gseditpro-lab \d+\.\d+")
-        artist = ["info", "convert", "adjust", "cameras", "render", "turntable", "locate", "edit", "project"]
+        artist = ["info", "convert", "adjust", "cameras", "render", "turntable", "locate", "edit", "project",
+                  "merge", "transform"]
         for start, command in [(run, name) for name in artist] + [(run_laboratory, name)
                                                                   for name in LABORATORY_COMMANDS]:
             process = start(command, "--help")

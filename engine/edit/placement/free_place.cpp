@@ -2,7 +2,10 @@
 #include "engine/edit/placement/free_place.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <numeric>
 
@@ -22,8 +25,14 @@ constexpr double FlatShare = 0.25;     // of its width: a thing that is no highe
 constexpr double WideShare = 1.5;      // of a thing's size: so much wider is a ground on all sides
 constexpr int OutwardSteps = 8;        // of a quarter of the thing's size
 constexpr double OutwardStep = 0.25;
-constexpr int CandidatesPerSide = 6;  // on top of another thing, from its middle
-constexpr int MostColumns = 50;       // of copies, to either side
+constexpr int CandidatesPerSide = 6;   // on top of another thing, from its middle
+constexpr double SpeckShare = 0.02;    // of the points that carry a thing: floaters
+constexpr double CarryingShare = 0.2;  // of the points that carry a thing: so many carry a copy
+constexpr double StrayShare = 0.02;    // of the points around that float below their ground
+constexpr double Neighbourhood = 4;    // of a thing's longest side
+constexpr int CopyRows = 2;            // behind and before the thing
+constexpr int FineSteps = 3;           // per copy, where it does not go into the usual places
+constexpr int MostColumns = 50;        // of copies, to either side
 
 double longest_side(const Box& box) {
     const Vec3 size = box.size();
@@ -57,6 +66,100 @@ double column_radius(const Box& box) {
     const Vec3 size = box.size();
     return ColumnShare * std::max(size.x, size.z);
 }
+
+/// Offsets of a grid with `steps` per copy in either direction: to the right and left first, then behind and
+/// before, the nearest rows first.
+std::vector<Vec3> lattice(const Box& box, int columns, int steps) {
+    const Vec3 size = box.size();
+    const double across = size.x * (1 + CopyGap) / steps, along = (size.z + CopyGap * size.x) / steps;
+    std::vector<Vec3> offsets;
+    for (int row = 0; row <= CopyRows * steps; ++row)
+        for (int column = 0; column <= columns * steps; ++column)
+            for (const double side : {1.0, -1.0})
+                for (const double depth : {-1.0, 1.0}) {
+                    if ((row == 0 && depth > 0) || (column == 0 && side < 0)) continue;
+                    offsets.push_back({side * column * across, 0, depth * row * along});
+                }
+    return offsets;
+}
+
+/// True when copies at these offsets do not meet each other or the thing itself.
+bool apart_from_all(const Vec3& offset, const std::vector<Vec3>& places, const Box& box) {
+    const Vec3 size = box.size();
+    const auto apart = [&](const Vec3& place) {
+        constexpr double Touching = 1 + 0.5 * CopyGap;
+        return std::abs(place.x - offset.x) >= Touching * size.x ||
+               std::abs(place.z - offset.z) >= size.z + (Touching - 1) * size.x;
+    };
+    return apart({}) && std::all_of(places.begin(), places.end(), apart);
+}
+
+/// Surroundings of a thing that is copied.
+class CopySpace {
+public:
+    CopySpace(const Box& box, std::span<const Vec3> others) : box_(box), others_(others) {
+        own_ = ground_quarters({});
+        stands_ = is_carried({});
+        const int carrying = std::accumulate(own_.begin(), own_.end(), 0);
+        specks_ = std::max(SpeckPoints, static_cast<std::size_t>(SpeckShare * carrying));
+    }
+
+    bool free(const Vec3& offset) const { return count_in(inner(moved(box_, offset)), others_) <= specks_; }
+    /// True where the ground goes on below most of the copy, or the thing itself stands on none.
+    bool carried(const Vec3& offset) const { return !stands_ || is_carried(offset); }
+    /// The offset lowered to what lies below it, or to the lowest points around where nothing does. As it is
+    /// for what stands on nothing.
+    Vec3 lowered(const Vec3& offset) const {
+        if (!stands_) return offset;
+        const Box place = moved(box_, offset);
+        auto heights = heights_in_column(others_, place.centre(), column_radius(box_));
+        std::erase_if(heights, [&](double height) { return height > place.low.y; });
+        std::sort(heights.begin(), heights.end(), std::greater<>());
+        double ground = lowest_around();
+        for (std::size_t i = 0; i + specks_ < heights.size(); ++i)  // the highest layer that is no specks
+            if (heights[i] - heights[i + specks_] <= LeastRise * box_.size().y) {
+                ground = heights[i];
+                break;
+            }
+        return {offset.x, std::min(ground - box_.low.y, 0.0), offset.z};
+    }
+
+private:
+    using Quarters = std::array<int, 4>;
+
+    double lowest_around() const {
+        const double radius = Neighbourhood * longest_side(box_);
+        return quantile(heights_in_column(others_, box_.centre(), radius), StrayShare);
+    }
+
+    /// Points at the height of the foot, below each quarter of the box.
+    Quarters ground_quarters(const Vec3& offset) const {
+        const Box place = moved(box_, offset);
+        const Vec3 middle = place.centre(), size = place.size();
+        Quarters quarters{};
+        for (const Vec3& p : others_)
+            if (std::abs(p.y - place.low.y) <= LeastRise * size.y && std::abs(p.x - middle.x) <= size.x / 2 &&
+                std::abs(p.z - middle.z) <= size.z / 2)
+                ++quarters[(p.x > middle.x ? 1 : 0) + (p.z > middle.z ? 2 : 0)];
+        return quarters;
+    }
+
+    /// Most quarters must hold a share of the points that carry the thing itself.
+    bool is_carried(const Vec3& offset) const {
+        constexpr int LeastPoints = 2, LeastQuarters = 3;
+        const double own = std::accumulate(own_.begin(), own_.end(), 0) / 4.0;
+        const double least = std::max<double>(LeastPoints, CarryingShare * own);
+        const Quarters quarters = ground_quarters(offset);
+        return std::count_if(quarters.begin(), quarters.end(), [&](int points) { return points >= least; }) >=
+               LeastQuarters;
+    }
+
+    Box box_;
+    std::span<const Vec3> others_;
+    Quarters own_{};
+    std::size_t specks_ = SpeckPoints;
+    bool stands_ = false;
+};
 
 }  // namespace
 
@@ -147,34 +250,24 @@ double FreePlace::ground_below(const Vec3& place) const {
 
 std::vector<Vec3> places_of_copies(const Box& box, int count, std::span<const Vec3> others) {
     if (count <= 0) return {};
-    struct Candidate {
-        Vec3 offset;
-        int rank;
-    };
-    const Vec3 size = box.size();
-    const double across = size.x * (1 + CopyGap), along = size.z + CopyGap * size.x;
-    const int columns = std::min(count + 2, MostColumns), rows = 2;
-    const auto carried = [&](const Vec3& offset) {
-        Box below = moved(box, offset);
-        below.high.y = below.low.y + LeastRise * size.y, below.low.y -= LeastRise * size.y;
-        return count_in(below, others) > SpeckPoints;
-    };
-    const bool stands = carried({});
-    std::vector<Candidate> candidates;
-    for (int row = 0; row <= rows; ++row)
-        for (int column = 0; column <= columns; ++column)
-            for (const double side : {1.0, -1.0})
-                for (const double depth : {-1.0, 1.0}) {
-                    if ((row == 0 && (column == 0 || depth > 0)) || (column == 0 && side < 0)) continue;
-                    const Vec3 offset{side * column * across, 0, depth * row * along};
-                    const bool free = count_in(inner(moved(box, offset)), others) <= SpeckPoints;
-                    candidates.push_back({offset, (free ? 0 : 2) + (!stands || carried(offset) ? 0 : 1)});
-                }
-    std::stable_sort(candidates.begin(), candidates.end(),
-                     [](const Candidate& a, const Candidate& b) { return a.rank < b.rank; });
+    const CopySpace space(box, others);
+    const auto wanted = static_cast<std::size_t>(count);
+    const auto beside = lattice(box, std::min(count + 2, MostColumns), 1);
+    const auto between = lattice(box, std::min(count + 2, MostColumns), FineSteps);
     std::vector<Vec3> places;
-    for (const Candidate& candidate : candidates)
-        if (places.size() < static_cast<std::size_t>(count)) places.push_back(candidate.offset);
+    const auto take = [&](const std::vector<Vec3>& offsets, const auto& suits) {
+        for (const Vec3& offset : offsets)
+            if (places.size() < wanted && apart_from_all(offset, places, box) && suits(offset))
+                places.push_back(offset);
+    };
+    const auto good = [&](const Vec3& offset) { return space.carried(offset) && space.free(offset); };
+    take(beside, good);
+    take(between, good);
+    std::vector<Vec3> lower;
+    std::transform(beside.begin(), beside.end(), std::back_inserter(lower),
+                   [&](const Vec3& offset) { return space.lowered(offset); });
+    take(lower, [&](const Vec3& offset) { return space.free(offset); });
+    take(beside, [](const Vec3&) { return true; });
     return places;
 }
 

@@ -39,7 +39,8 @@ private:
 };
 
 /// Offsets of `count` copies from a thing with this box: to its right and left, then in rows behind and
-/// before it, with a gap. Places that others take, or where nothing carries the copy, come last.
+/// before it, with a gap. A copy that nothing carries at that height stands on what lies below. Places that
+/// others take come last.
 std::vector<Vec3> places_of_copies(const Box& box, int count, std::span<const Vec3> others);
 
 }  // namespace gse::edit

@@ -33,7 +33,6 @@ public:
 
 private:
     std::vector<GaussianSet> parts_;
-    std::uint64_t bytes_ = 0;
     Scene scene_;
 };
 

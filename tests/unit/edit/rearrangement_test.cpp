@@ -322,6 +322,24 @@ DOCTEST_TEST_CASE("copies stay on the table that carries the thing") {
     }
 }
 
+DOCTEST_TEST_CASE("copies for which a table has no room stand on the floor beside it") {
+    std::vector<Vec3> points;
+    Random random(5);
+    for (int i = 0; i < 2000; ++i)
+        points.push_back({random.uniform(0.5, 1.5), random.uniform(-0.02, 0), random.uniform(1.6, 2.4)});
+    for (int i = 0; i < 9000; ++i)
+        points.push_back({random.uniform(-6, 8), random.uniform(-0.72, -0.7), random.uniform(-4, 8)});
+    RearrangeSettings settings;
+    settings.copies = 3;
+    const auto copies = rearrangement(settings, Bear, nullptr, points).copies;
+    DOCTEST_REQUIRE(copies.size() == 2);
+    for (const Affine& copy : copies) {
+        const Box box = placed(Bear, copy);
+        DOCTEST_CHECK(std::abs(box.low.y + 0.7) < Close);
+        DOCTEST_CHECK((box.low.x > 1.5 || box.high.x < 0.5));
+    }
+}
+
 DOCTEST_TEST_CASE("rows of a thing follow words: from the label to the moved rows") {
     test::BoxRows rows;
     rows.box(-2, 6, -0.01, 0, -3, 3, 6000, false);    // the ground
