@@ -15,7 +15,7 @@ namespace gse::heal {
 struct HealSettings {
     bool held_parts = true;
     bool shadow = true;
-    double reach = 0.3;
+    double reach = 0.15;
     std::uint64_t seed = 1;
 
     template <class Self, class F> static void visit_fields(Self& self, F&& f) {
@@ -48,7 +48,7 @@ struct Healed {
     std::vector<std::uint8_t> removed;  // [N] the thing, what it held, its shadow, garbage beneath it
     GaussianData added;                 // of the scene's SH degree
     std::vector<HealedSurface> surfaces;
-    // Rows of `removed` beside the thing: held parts, shadow and garbage, and remains inside the holes.
+    // Rows of `removed` beside the thing: held parts, rows that were lit again, remains in foot and holes.
     std::size_t carried = 0, shadow = 0, cleared = 0;
     std::string open;  // sentence on what stays open; empty = nothing
 };

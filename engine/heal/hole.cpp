@@ -198,6 +198,18 @@ Grid<int> groups_of(const BitGrid& bits, std::vector<std::size_t>& sizes) {
     return groups;
 }
 
+void drop_seams(BitGrid& cells, const BitGrid& foot) {
+    BitGrid wide(cells.width, cells.height, 0);
+    each_cell(cells, [&](int x, int y) {
+        if (!cells.inside(x + 1, y + 1)) return;
+        const bool block = cells.at(x, y) != 0 && cells.at(x + 1, y) != 0 && cells.at(x, y + 1) != 0 &&
+                           cells.at(x + 1, y + 1) != 0;
+        if (block) wide.at(x, y) = wide.at(x + 1, y) = wide.at(x, y + 1) = wide.at(x + 1, y + 1) = 1;
+    });
+    for (std::size_t i = 0; i < cells.cells.size(); ++i)
+        if (wide.cells[i] == 0 && foot.cells[i] == 0) cells.cells[i] = 0;
+}
+
 Hole find_hole(const Chart& chart, const BitGrid& near, const BitGrid& border) {
     Hole hole{BitGrid(chart.known.width, chart.known.height, 0)};
     BitGrid ends = ends_of(chart, border);

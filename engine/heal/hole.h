@@ -27,6 +27,9 @@ Hole find_hole(const Chart& chart, const BitGrid& near, const BitGrid& border);
 /// Drops holes that other rows mostly hide from the thing, as the floor under the table that it stands on.
 void drop_behind(const Chart& chart, std::span<const SurfaceRow> rows, const Body& body, BitGrid& cells);
 
+/// Drops lines of cells, as along an edge that rows cover in part, but for those at the thing's foot.
+void drop_seams(BitGrid& cells, const BitGrid& foot);
+
 /// Groups of cells that touch each other, by sides and corners: numbers from 1; 0 = no bit.
 Grid<int> groups_of(const BitGrid& bits, std::vector<std::size_t>& sizes);
 
