@@ -20,6 +20,10 @@ constexpr std::size_t MostRing = 1500;
 constexpr std::array Lights{1.0, 1.25, 1.6, 2.0};  // factors by which a shaded colour may be too dark
 constexpr double Unlike = 0.15;                    // distance of a colour from all colours around
 constexpr double GarbageShare = 0.25;              // of the foot's known cells
+constexpr double LeastDensity = 0.5;  // of rows in the foot over those around; above its inverse, too
+constexpr double LargestSize = 1.5;   // of the rows in the foot over those around
+constexpr double LeastLight = 0.4, MostLight = 1.15;  // of the foot over that around
+constexpr double MostHue = 0.06;                      // difference of the channels' shares
 
 BitGrid shrunk(const BitGrid& bits, int cells) {
     BitGrid inverse = bits;
@@ -50,6 +54,58 @@ void fill_enclosed(BitGrid& bits) {
     for (std::size_t i = 0; i < bits.cells.size(); ++i) bits.cells[i] = outside.cells[i] != 0 ? 0 : 1;
 }
 
+/// Means over some known cells of a surface.
+struct Look {
+    std::size_t cells = 0;
+    double density = 0;  // rows in a cell
+    double size = 0;     // median standard deviation of the rows, along their longest axis
+    double light = 0;    // sum of the channels
+    Vec3 share;          // of the channels in it
+};
+
+template <class F> Look look_of(const Chart& chart, std::span<const SurfaceRow> rows, F&& wanted) {
+    Look look;
+    Vec3 sum;
+    std::vector<double> sizes;
+    each_cell(chart.known, [&](int x, int y) {
+        const std::size_t cell = chart.known.index(x, y);
+        if (chart.known.cells[cell] == 0 || !wanted(cell)) return;
+        ++look.cells;
+        sum += chart.colour.cells[cell];
+        for (const auto i : chart.rows_in(x, y)) sizes.push_back(rows[i].longest());
+    });
+    if (sizes.empty()) return {};
+    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+    std::nth_element(sizes.begin(), middle, sizes.end());
+    look.size = *middle;
+    look.density = static_cast<double>(sizes.size()) / static_cast<double>(look.cells);
+    look.light = std::max(1e-3, (sum.x + sum.y + sum.z) / static_cast<double>(look.cells));
+    look.share = sum / std::max(1e-3, sum.x + sum.y + sum.z);
+    return look;
+}
+
+/// Share of the foot's known cells with a colour that occurs nowhere in the ring, lit or shaded.
+template <class F> double unlike_share(const Chart& chart, const BitGrid& foot, F&& in_ring) {
+    std::vector<Vec3> around, ring;
+    for (std::size_t i = 0; i < foot.cells.size(); ++i)
+        if (chart.known.cells[i] != 0 && in_ring(i)) around.push_back(chart.colour.cells[i]);
+    const std::size_t count = std::min(MostRing, around.size());
+    for (std::size_t k = 0; k < count; ++k) ring.push_back(around[k * around.size() / count]);
+    double known = 0, unlike = 0;
+    for (std::size_t i = 0; i < foot.cells.size(); ++i) {
+        if (foot.cells[i] == 0 || chart.known.cells[i] == 0) continue;
+        double least = FarAway;
+        for (const double light : Lights)
+            for (const auto& colour : ring) {
+                const Vec3 d = chart.colour.cells[i] * light - colour;
+                least = std::min(least, dot(d, d));
+            }
+        known += 1;
+        if (least > Unlike * Unlike) unlike += 1;
+    }
+    return unlike / std::max(known, 1.0);
+}
+
 }  // namespace
 
 BitGrid grown(const BitGrid& bits, int cells) {
@@ -76,28 +132,20 @@ BitGrid foot_cells(const Chart& chart, const Body& body) {
     return foot;
 }
 
-bool foot_is_garbage(const Chart& chart, const BitGrid& foot) {
+bool foot_is_garbage(const Chart& chart, const BitGrid& foot, std::span<const SurfaceRow> rows) {
     const auto away = distance_to(foot);
-    std::vector<Vec3> around, ring;
-    for (std::size_t i = 0; i < foot.cells.size(); ++i)
-        if (chart.known.cells[i] != 0 && away.cells[i] >= NearestRing && away.cells[i] <= WidestRing)
-            around.push_back(chart.colour.cells[i]);
-    const std::size_t count = std::min(MostRing, around.size());
-    for (std::size_t k = 0; k < count; ++k) ring.push_back(around[k * around.size() / count]);
-    if (ring.empty()) return false;
-    std::size_t known = 0, unlike = 0;
-    for (std::size_t i = 0; i < foot.cells.size(); ++i) {
-        if (foot.cells[i] == 0 || chart.known.cells[i] == 0) continue;
-        double least = FarAway;
-        for (const double light : Lights)
-            for (const auto& colour : ring) {
-                const Vec3 d = chart.colour.cells[i] * light - colour;
-                least = std::min(least, dot(d, d));
-            }
-        ++known;
-        if (least > Unlike * Unlike) ++unlike;
-    }
-    return static_cast<double>(unlike) > GarbageShare * static_cast<double>(known);
+    const auto in_ring = [&](std::size_t i) {
+        return away.cells[i] >= NearestRing && away.cells[i] <= WidestRing;
+    };
+    const Look under = look_of(chart, rows, [&](std::size_t i) { return foot.cells[i] != 0; });
+    const Look around = look_of(chart, rows, in_ring);
+    if (under.cells == 0 || around.cells == 0) return false;
+    const double density = under.density / around.density, light = under.light / around.light;
+    if (density < LeastDensity || density > 1 / LeastDensity) return true;
+    if (under.size > LargestSize * around.size) return true;
+    if (light < LeastLight || light > MostLight) return true;
+    if (length(under.share - around.share) > MostHue) return true;
+    return unlike_share(chart, foot, in_ring) > GarbageShare;
 }
 
 void each_remain(const Chart& chart, const BitGrid& foot, std::span<const SurfaceRow> rows,

@@ -11,8 +11,9 @@ namespace gse::heal {
 /// Cells under the lowest part of the body, without gaps. Empty where the body does not touch the surface.
 BitGrid foot_cells(const Chart& chart, const Body& body);
 
-/// True when many known cells of the foot have colours that occur nowhere around, lit or shaded.
-bool foot_is_garbage(const Chart& chart, const BitGrid& foot);
+/// True when the foot does not look like the surface around: its rows are sparser or larger, its light or hue
+/// is none of a shadow, or many of its colours occur nowhere around.
+bool foot_is_garbage(const Chart& chart, const BitGrid& foot, std::span<const SurfaceRow> rows);
 
 /// Calls call(index) for the rows over or in the foot that are no part of a surface: remains of the thing.
 /// With `below`, also those beneath the surface. Rows with taken[index] != 0 belong to a surface.

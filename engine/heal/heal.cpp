@@ -22,8 +22,10 @@ constexpr double Margin = 1.0;      // of the thing's size, that is looked at ar
 constexpr double Band = 0.6;        // of the thing's size, in which surfaces are looked for
 constexpr double Tolerance = 0.02;  // of the thing's size, of rows from their plane
 constexpr std::size_t MostSurfaces = 5;
+constexpr double HidingShare =
+    0.5;  // of the thing's size: parts of it that are farther hide nothing for long
 constexpr double ShadowReach = 0.45;     // of the thing's size
-constexpr double StandsOn = 0.08;        // of the thing's size: a surface no farther has its shadow
+constexpr int FootRim = 2;               // cells around a foot that nothing saw, in which colours are mixed
 constexpr double LargestCleared = 2.0;   // cells, standard deviation of a row that is taken out of a hole
 constexpr double LeastGain = 1.02;       // of a row that is lit again
 constexpr double LeastOpenShare = 0.02;  // of the thing's size squared: open area worth a sentence
@@ -122,12 +124,8 @@ private:
     void heal(bool whole_thing) {
         gain_.assign(rows_.size(), Vec3(1));
         find_surfaces();
-        std::vector<Grid<double>> to_body;
         std::vector<BitGrid> near;
-        for (const auto& chart : charts_) {
-            to_body.push_back(distance_to_body(chart, body_));
-            near.push_back(near_cells(chart, to_body.back()));
-        }
+        for (const auto& chart : charts_) near.push_back(near_cells(chart));
         for (std::size_t k = 0; k < charts_.size(); ++k) {
             step("holes", static_cast<int>(k), static_cast<int>(charts_.size()));
             Chart& chart = charts_[k];
@@ -142,21 +140,24 @@ private:
         say_what_is_open();
     }
 
-    /// Cells that the thing may have hidden: little farther from it than the surface is at all.
-    BitGrid near_cells(const Chart& chart, const Grid<double>& to_body) const {
-        const double least = *std::min_element(to_body.cells.begin(), to_body.cells.end());
-        const double limit = least + reach_ / chart.cell + 1;
-        BitGrid near(chart.height.width, chart.height.height, 0);
-        for (std::size_t i = 0; i < near.cells.size(); ++i) near.cells[i] = to_body.cells[i] <= limit ? 1 : 0;
-        return near;
+    /// Cells that the thing may have hidden: those under it, seen along the normal, and a little around them.
+    BitGrid near_cells(const Chart& chart) const {
+        BitGrid under(chart.height.width, chart.height.height, 0);
+        for (const auto& point : body_.points) {
+            const Vec3 at = chart.local(point);
+            const int x = static_cast<int>(std::floor(at.x)), y = static_cast<int>(std::floor(at.y));
+            if (under.inside(x, y) && std::abs(at.z - chart.height.at(x, y)) < HidingShare * body_.size)
+                under.at(x, y) = 1;
+        }
+        return grown(under, static_cast<int>(std::ceil(reach_ / chart.cell)) + 2);
     }
 
     /// Removes what is left of the thing where it stood, and the surface there if no picture can have shown
     /// it.
     BitGrid clear_foot(Chart& chart) {
         BitGrid foot = foot_cells(chart, body_);
-        const bool garbage = foot_is_garbage(chart, foot);
-        if (garbage) foot = grown(foot, 1);
+        const bool garbage = foot_is_garbage(chart, foot, rows_);
+        if (garbage) foot = grown(foot, FootRim);
         each_remain(chart, foot, rows_, taken_, body_, garbage, [&](std::size_t i) {
             if (healed_.removed[rows_[i].row] != 0) return;
             healed_.removed[rows_[i].row] = 1;
@@ -182,8 +183,8 @@ private:
             step("texture", 0, 1);
             const auto texture = fill_by_patches(chart.colour, known, hole.cells, settings_.seed);
             surface.copied = texture.found;
-            lay_rows(input_.scene, rows_, chart, hole.cells, texture,
-                     rim_correction(chart, hole.cells, texture), gain_, healed_.added);
+            lay_rows(input_.scene, rows_, chart, hole.cells, texture, rim_gain(chart, hole.cells, texture),
+                     gain_, healed_.added);
         }
         const double area = chart.cell * chart.cell;
         surface.healed_area = area * static_cast<double>(cells);
@@ -217,7 +218,7 @@ private:
             if (std::max({gain.x, gain.y, gain.z}) < LeastGain) continue;
             healed_.removed[rows_[i].row] = 1;
             ++healed_.shadow;
-            append_copy(input_.scene, rows_[i].row, rows_[i].at, {1, 0, 0, 0}, gain, {}, healed_.added);
+            append_copy(input_.scene, rows_[i].row, rows_[i].at, {1, 0, 0, 0}, gain, healed_.added);
         }
     }
 

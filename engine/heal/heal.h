@@ -15,14 +15,14 @@ namespace gse::heal {
 struct HealSettings {
     bool held_parts = true;
     bool shadow = true;
-    double reach = 0.15;
+    double reach = 0.06;
     std::uint64_t seed = 1;
 
     template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         f("held_parts", self.held_parts, "Also remove what only the thing held.");
         f("shadow", self.shadow, "Light the thing's shadow on the surfaces around again.");
-        f("reach", self.reach, "Distance from the thing at which holes are still filled, in sizes of it.",
-          Range{0, 2});
+        f("reach", self.reach,
+          "Distance from where the thing was at which holes are still filled, in sizes of it.", Range{0, 2});
         f("seed", self.seed, "Seed of the planes and the texture.");
     }
 };

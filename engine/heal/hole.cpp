@@ -122,20 +122,6 @@ void add_border(const Chart& chart, const Chart& other, const BitGrid& other_nea
 
 }  // namespace
 
-Grid<double> distance_to_body(const Chart& chart, const Body& body) {
-    Grid<double> distance(chart.height.width, chart.height.height, FarAway);
-    for (const auto& point : body.points) {
-        const Vec3 at = chart.local(point);
-        const int x = static_cast<int>(std::floor(at.x)), y = static_cast<int>(std::floor(at.y));
-        if (!distance.inside(x, y)) continue;
-        const double above = (at.z - chart.height.at(x, y)) / chart.cell;
-        distance.at(x, y) = std::min(distance.at(x, y), above * above);
-    }
-    spread_squared_distances(distance);
-    for (auto& value : distance.cells) value = value < FarAway ? std::sqrt(value) : FarAway;
-    return distance;
-}
-
 BitGrid borders(std::span<const Chart> charts, std::span<const BitGrid> near, std::size_t which) {
     const Chart& chart = charts[which];
     BitGrid border(chart.height.width, chart.height.height, 0);

@@ -8,9 +8,6 @@
 
 namespace gse::heal {
 
-/// Distance from every cell to the body, in cells, heights counted.
-Grid<double> distance_to_body(const Chart& chart, const Body& body);
-
 /// Cells where another surface that is there cuts this one: a floor ends at the wall. `near` marks the cells
 /// of every chart that may be hidden by the thing, in the order of `charts`. 2 = already beyond the cut.
 BitGrid borders(std::span<const Chart> charts, std::span<const BitGrid> near, std::size_t which);
