@@ -173,16 +173,18 @@ private:
         }
     }
 
-    /// Means of the heights over the cells around that have one.
+    /// Means of the heights over pairs of opposite neighbours, so that a slope stays as it is at a rim.
     void smooth() {
+        constexpr int Pairs[4][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
         for (int pass = 0; pass < Smoothings; ++pass) {
             const auto before = chart_.height;
+            const auto seen = [&](int x, int y) { return before.inside(x, y) && chart_.seen.at(x, y) != 0; };
             each_cell(before, [&](int x, int y) {
-                if (chart_.seen.at(x, y) == 0) return;
+                if (!seen(x, y)) return;
                 double sum = before.at(x, y), count = 1;
-                each_neighbour(before, x, y, 1, [&](int nx, int ny) {
-                    if (chart_.seen.at(nx, ny) != 0) sum += before.at(nx, ny), count += 1;
-                });
+                for (const auto& [dx, dy] : Pairs)
+                    if (seen(x + dx, y + dy) && seen(x - dx, y - dy))
+                        sum += before.at(x + dx, y + dy) + before.at(x - dx, y - dy), count += 2;
                 chart_.height.at(x, y) = sum / count;
             });
         }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/base/error.h"
+#include "engine/heal/foot.h"
 #include "engine/heal/held_parts.h"
 #include "engine/heal/hole.h"
 #include "engine/heal/lay.h"
@@ -21,8 +22,10 @@ constexpr double Margin = 1.0;      // of the thing's size, that is looked at ar
 constexpr double Band = 0.6;        // of the thing's size, in which surfaces are looked for
 constexpr double Tolerance = 0.02;  // of the thing's size, of rows from their plane
 constexpr std::size_t MostSurfaces = 5;
+constexpr double HidingShare =
+    0.5;  // of the thing's size: parts of it that are farther hide nothing for long
 constexpr double ShadowReach = 0.45;     // of the thing's size
-constexpr double StandsOn = 0.08;        // of the thing's size: a surface no farther has its shadow
+constexpr int FootRim = 2;               // cells around a foot that nothing saw, in which colours are mixed
 constexpr double LargestCleared = 2.0;   // cells, standard deviation of a row that is taken out of a hole
 constexpr double LeastGain = 1.02;       // of a row that is lit again
 constexpr double LeastOpenShare = 0.02;  // of the thing's size squared: open area worth a sentence
@@ -99,7 +102,7 @@ private:
     /// Charts of the surfaces around, the one with most evidence first.
     void find_surfaces() {
         Random random = Random::stream(settings_.seed, 1);
-        std::vector<std::uint8_t> taken(rows_.size(), 0);
+        taken_.assign(rows_.size(), 0);
         auto samples = plane_samples(rows_, body_, Band * body_.size);
         double total = 0;
         for (const auto& sample : samples) total += sample.weight;
@@ -108,52 +111,71 @@ private:
             const double tolerance = Tolerance * body_.size;
             const auto plane = find_plane(samples, total, tolerance, body_, random);
             if (!plane) break;
-            auto chart = make_chart(rows_, taken, *plane, tolerance, body_, up_);
+            auto chart = make_chart(rows_, taken_, *plane, tolerance, body_, up_);
             if (chart)
-                for (const auto i : chart->own) taken[i] = 1;
+                for (const auto i : chart->own) taken_[i] = 1;
             std::erase_if(samples, [&](const PlaneSample& sample) {
-                return taken[sample.index] != 0 || std::abs(plane->height(sample.at)) < tolerance;
+                return taken_[sample.index] != 0 || std::abs(plane->height(sample.at)) < tolerance;
             });
             if (chart) charts_.push_back(std::move(*chart));
         }
     }
 
-    void heal(bool shadows) {
+    void heal(bool whole_thing) {
         gain_.assign(rows_.size(), Vec3(1));
         find_surfaces();
-        std::vector<Grid<double>> to_body;
         std::vector<BitGrid> near;
-        for (const auto& chart : charts_) {
-            to_body.push_back(distance_to_body(chart, body_));
-            near.push_back(near_cells(chart, to_body.back()));
-        }
+        for (const auto& chart : charts_) near.push_back(near_cells(chart));
         for (std::size_t k = 0; k < charts_.size(); ++k) {
             step("holes", static_cast<int>(k), static_cast<int>(charts_.size()));
-            Hole hole = find_hole(charts_[k], near[k], borders(charts_, near, k));
-            drop_behind(charts_[k], rows_, body_, hole.cells);
-            heal_surface(charts_[k], std::move(hole), to_body[k], shadows);
+            Chart& chart = charts_[k];
+            const BitGrid border = borders(charts_, near, k);
+            BitGrid foot(chart.height.width, chart.height.height, 0);
+            if (whole_thing) foot = clear_foot(chart);
+            Hole hole = find_hole(chart, near[k], border);
+            drop_behind(chart, rows_, body_, hole.cells);
+            drop_seams(hole.cells, foot);
+            heal_surface(chart, std::move(hole), foot, whole_thing && settings_.shadow);
         }
         say_what_is_open();
     }
 
-    /// Cells that the thing may have hidden: little farther from it than the surface is at all.
-    BitGrid near_cells(const Chart& chart, const Grid<double>& to_body) const {
-        const double least = *std::min_element(to_body.cells.begin(), to_body.cells.end());
-        const double limit = least + reach_ / chart.cell + 1;
-        BitGrid near(chart.height.width, chart.height.height, 0);
-        for (std::size_t i = 0; i < near.cells.size(); ++i) near.cells[i] = to_body.cells[i] <= limit ? 1 : 0;
-        return near;
+    /// Cells that the thing may have hidden: those under it, seen along the normal, and a little around them.
+    BitGrid near_cells(const Chart& chart) const {
+        BitGrid under(chart.height.width, chart.height.height, 0);
+        for (const auto& point : body_.points) {
+            const Vec3 at = chart.local(point);
+            const int x = static_cast<int>(std::floor(at.x)), y = static_cast<int>(std::floor(at.y));
+            if (under.inside(x, y) && std::abs(at.z - chart.height.at(x, y)) < HidingShare * body_.size)
+                under.at(x, y) = 1;
+        }
+        return grown(under, static_cast<int>(std::ceil(reach_ / chart.cell)) + 2);
     }
 
-    void heal_surface(Chart& chart, Hole hole, const Grid<double>& to_body, bool shadows) {
+    /// Removes what is left of the thing where it stood, and the surface there if no picture can have shown
+    /// it.
+    BitGrid clear_foot(Chart& chart) {
+        BitGrid foot = foot_cells(chart, body_);
+        const bool garbage = foot_is_garbage(chart, foot, rows_);
+        if (garbage) foot = grown(foot, FootRim);
+        each_remain(chart, foot, rows_, taken_, body_, garbage, [&](std::size_t i) {
+            if (healed_.removed[rows_[i].row] != 0) return;
+            healed_.removed[rows_[i].row] = 1;
+            ++healed_.cleared;
+        });
+        if (garbage) clear_cells(chart, foot, body_.size);
+        return foot;
+    }
+
+    void heal_surface(Chart& chart, Hole hole, const BitGrid& foot, bool shadows) {
         const std::size_t before = healed_.added.size();
-        const double least = *std::min_element(to_body.cells.begin(), to_body.cells.end());
-        if (shadows && least * chart.cell < StandsOn * body_.size) light_again(chart, hole.cells, to_body);
+        const bool stands = std::find(foot.cells.begin(), foot.cells.end(), 1) != foot.cells.end();
+        if (shadows && stands) light_again(chart, hole.cells, foot);
         HealedSurface surface{chart.origin, chart.normal, chart.cell};
         std::size_t cells = 0;
         for (const auto bit : hole.cells.cells) cells += bit;
         if (cells > 0) {
-            clear_hole(chart, hole.cells);
+            clear_cells(chart, hole.cells, LargestCleared * chart.cell);
             fill_heights(chart, hole.cells);
             BitGrid known = chart.known;
             for (std::size_t i = 0; i < known.cells.size(); ++i)
@@ -161,8 +183,8 @@ private:
             step("texture", 0, 1);
             const auto texture = fill_by_patches(chart.colour, known, hole.cells, settings_.seed);
             surface.copied = texture.found;
-            lay_rows(input_.scene, rows_, chart, hole.cells, texture,
-                     rim_correction(chart, hole.cells, texture), gain_, healed_.added);
+            lay_rows(input_.scene, rows_, chart, hole.cells, texture, rim_gain(chart, hole.cells, texture),
+                     gain_, healed_.added);
         }
         const double area = chart.cell * chart.cell;
         surface.healed_area = area * static_cast<double>(cells);
@@ -171,14 +193,13 @@ private:
         healed_.surfaces.push_back(surface);
     }
 
-    /// Removes the few rows of the surface inside its hole, half hidden before, so that nothing is doubled.
-    void clear_hole(Chart& chart, const BitGrid& hole) {
+    /// Removes the surface's own rows in cells that are filled anew, but for those larger than `largest`.
+    void clear_cells(Chart& chart, const BitGrid& cells, double largest) {
         const std::size_t before = chart.own.size();
         std::erase_if(chart.own, [&](std::uint32_t i) {
             const Vec3 at = chart.local(rows_[i].at);
             const int x = static_cast<int>(std::floor(at.x)), y = static_cast<int>(std::floor(at.y));
-            if (!hole.inside(x, y) || hole.at(x, y) == 0 || gain_[i] != Vec3(1)) return false;
-            if (rows_[i].longest() > LargestCleared * chart.cell) return false;
+            if (!cells.inside(x, y) || cells.at(x, y) == 0 || rows_[i].longest() > largest) return false;
             healed_.removed[rows_[i].row] = 1;
             ++healed_.cleared;
             return true;
@@ -186,31 +207,19 @@ private:
         if (chart.own.size() < before) draw_chart(chart, rows_);
     }
 
-    /// Replaces the rows in the shadow by lit copies. Garbage goes, and its cells become part of the hole.
-    void light_again(Chart& chart, BitGrid& hole, const Grid<double>& to_body) {
-        const auto shade = find_shade(chart, rows_, hole, to_body, ShadowReach * body_.size / chart.cell);
-        std::vector<std::uint32_t> kept;
-        for (std::size_t k = 0; k < chart.own.size(); ++k) {
-            const std::uint32_t i = chart.own[k];
-            const Vec3 at = chart.local(rows_[i].at);
-            const int x = std::clamp(static_cast<int>(std::floor(at.x)), 0, hole.width - 1);
-            const int y = std::clamp(static_cast<int>(std::floor(at.y)), 0, hole.height - 1);
-            const Vec3& gain = shade.gain[k];
-            const bool garbage = shade.garbage.at(x, y) != 0;
-            const bool lit = !garbage && std::max({gain.x, gain.y, gain.z}) > LeastGain;
-            if (!garbage) kept.push_back(i);
-            if (!garbage && !lit) continue;
+    /// Replaces the rows in the shadow by lit copies. Cells in deep shadow become part of the hole.
+    void light_again(Chart& chart, BitGrid& hole, const BitGrid& foot) {
+        const auto shade = find_shade(chart, rows_, hole, foot, ShadowReach * body_.size / chart.cell);
+        for (std::size_t i = 0; i < hole.cells.size(); ++i)
+            if (shade.deep.cells[i] != 0) hole.cells[i] = 1;
+        clear_cells(chart, hole, LargestCleared * chart.cell);
+        for (const auto i : chart.own) {
+            const Vec3& gain = gain_[i] = shade.gain[i];
+            if (std::max({gain.x, gain.y, gain.z}) < LeastGain) continue;
             healed_.removed[rows_[i].row] = 1;
             ++healed_.shadow;
-            if (!lit) continue;
-            gain_[i] = gain;
-            append_copy(input_.scene, rows_[i].row, rows_[i].at, {1, 0, 0, 0}, gain, {}, healed_.added);
+            append_copy(input_.scene, rows_[i].row, rows_[i].at, {1, 0, 0, 0}, gain, healed_.added);
         }
-        for (std::size_t i = 0; i < hole.cells.size(); ++i)
-            if (shade.garbage.cells[i] != 0) hole.cells[i] = 1;
-        if (kept.size() == chart.own.size()) return;
-        chart.own.swap(kept);
-        draw_chart(chart, rows_);
     }
 
     void say_what_is_open() {
@@ -233,7 +242,8 @@ private:
     Body body_;
     double reach_ = 0;  // world units
     std::vector<SurfaceRow> rows_;
-    std::vector<Vec3> gain_;  // of the rows' colours, that lights them again
+    std::vector<std::uint8_t> taken_;  // rows that belong to a surface
+    std::vector<Vec3> gain_;           // of the rows' colours, that lights them again
     std::vector<Chart> charts_;
     Healed healed_;
 };

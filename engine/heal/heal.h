@@ -15,14 +15,14 @@ namespace gse::heal {
 struct HealSettings {
     bool held_parts = true;
     bool shadow = true;
-    double reach = 0.3;
+    double reach = 0.06;
     std::uint64_t seed = 1;
 
     template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         f("held_parts", self.held_parts, "Also remove what only the thing held.");
         f("shadow", self.shadow, "Light the thing's shadow on the surfaces around again.");
-        f("reach", self.reach, "Distance from the thing at which holes are still filled, in sizes of it.",
-          Range{0, 2});
+        f("reach", self.reach,
+          "Distance from where the thing was at which holes are still filled, in sizes of it.", Range{0, 2});
         f("seed", self.seed, "Seed of the planes and the texture.");
     }
 };
@@ -48,7 +48,7 @@ struct Healed {
     std::vector<std::uint8_t> removed;  // [N] the thing, what it held, its shadow, garbage beneath it
     GaussianData added;                 // of the scene's SH degree
     std::vector<HealedSurface> surfaces;
-    // Rows of `removed` beside the thing: held parts, shadow and garbage, and remains inside the holes.
+    // Rows of `removed` beside the thing: held parts, rows that were lit again, remains in foot and holes.
     std::size_t carried = 0, shadow = 0, cleared = 0;
     std::string open;  // sentence on what stays open; empty = nothing
 };

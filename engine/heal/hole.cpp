@@ -122,20 +122,6 @@ void add_border(const Chart& chart, const Chart& other, const BitGrid& other_nea
 
 }  // namespace
 
-Grid<double> distance_to_body(const Chart& chart, const Body& body) {
-    Grid<double> distance(chart.height.width, chart.height.height, FarAway);
-    for (const auto& point : body.points) {
-        const Vec3 at = chart.local(point);
-        const int x = static_cast<int>(std::floor(at.x)), y = static_cast<int>(std::floor(at.y));
-        if (!distance.inside(x, y)) continue;
-        const double above = (at.z - chart.height.at(x, y)) / chart.cell;
-        distance.at(x, y) = std::min(distance.at(x, y), above * above);
-    }
-    spread_squared_distances(distance);
-    for (auto& value : distance.cells) value = value < FarAway ? std::sqrt(value) : FarAway;
-    return distance;
-}
-
 BitGrid borders(std::span<const Chart> charts, std::span<const BitGrid> near, std::size_t which) {
     const Chart& chart = charts[which];
     BitGrid border(chart.height.width, chart.height.height, 0);
@@ -196,6 +182,18 @@ Grid<int> groups_of(const BitGrid& bits, std::vector<std::size_t>& sizes) {
         }
     }
     return groups;
+}
+
+void drop_seams(BitGrid& cells, const BitGrid& foot) {
+    BitGrid wide(cells.width, cells.height, 0);
+    each_cell(cells, [&](int x, int y) {
+        if (!cells.inside(x + 1, y + 1)) return;
+        const bool block = cells.at(x, y) != 0 && cells.at(x + 1, y) != 0 && cells.at(x, y + 1) != 0 &&
+                           cells.at(x + 1, y + 1) != 0;
+        if (block) wide.at(x, y) = wide.at(x + 1, y) = wide.at(x, y + 1) = wide.at(x + 1, y + 1) = 1;
+    });
+    for (std::size_t i = 0; i < cells.cells.size(); ++i)
+        if (wide.cells[i] == 0 && foot.cells[i] == 0) cells.cells[i] = 0;
 }
 
 Hole find_hole(const Chart& chart, const BitGrid& near, const BitGrid& border) {

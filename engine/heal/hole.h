@@ -8,9 +8,6 @@
 
 namespace gse::heal {
 
-/// Distance from every cell to the body, in cells, heights counted.
-Grid<double> distance_to_body(const Chart& chart, const Body& body);
-
 /// Cells where another surface that is there cuts this one: a floor ends at the wall. `near` marks the cells
 /// of every chart that may be hidden by the thing, in the order of `charts`. 2 = already beyond the cut.
 BitGrid borders(std::span<const Chart> charts, std::span<const BitGrid> near, std::size_t which);
@@ -26,6 +23,9 @@ Hole find_hole(const Chart& chart, const BitGrid& near, const BitGrid& border);
 
 /// Drops holes that other rows mostly hide from the thing, as the floor under the table that it stands on.
 void drop_behind(const Chart& chart, std::span<const SurfaceRow> rows, const Body& body, BitGrid& cells);
+
+/// Drops lines of cells, as along an edge that rows cover in part, but for those at the thing's foot.
+void drop_seams(BitGrid& cells, const BitGrid& foot);
 
 /// Groups of cells that touch each other, by sides and corners: numbers from 1; 0 = no bit.
 Grid<int> groups_of(const BitGrid& bits, std::vector<std::size_t>& sizes);

@@ -10,8 +10,10 @@
 namespace gse::heal {
 namespace {
 
-constexpr double LargestCopy = 3.5;      // cells, standard deviation of a row that is copied
-constexpr double MostCorrection = 0.15;  // of a colour channel
+constexpr double LargestCopy = 3.5;  // cells, standard deviation of a row that is copied
+constexpr double MostRimGain = 0.5;  // of a channel at the rim, in logarithms
+constexpr double DarkestRim = 0.03;  // channel value that logarithms start from
+constexpr double RimBlur = 2.5;      // standard deviation
 constexpr int RimSmoothings = 3;
 constexpr double ThinShare = 0.96;   // of the usual cover, below which a cell gets a row of its own
 constexpr double FreshDepth = 0.25;  // cells, that such a row lies below the surface
@@ -71,10 +73,31 @@ void smooth_over(Grid<Vec3>& values, const BitGrid& bits) {
     });
 }
 
+/// Gaussian means over the cells of `bits`, along lines and then along columns.
+Grid<Vec3> blurred_over(const Grid<Vec3>& values, const BitGrid& bits) {
+    const int reach = static_cast<int>(std::ceil(2.5 * RimBlur));
+    Grid<Vec3> lines(values.width, values.height), result = lines;
+    Grid<double> weight(values.width, values.height, 0);
+    const auto kernel = [](int i) { return std::exp(-0.5 * i * i / (RimBlur * RimBlur)); };
+    each_cell(values, [&](int x, int y) {
+        for (int i = -reach; i <= reach; ++i)
+            if (bits.inside(x + i, y) && bits.at(x + i, y) != 0)
+                lines.at(x, y) += values.at(x + i, y) * kernel(i), weight.at(x, y) += kernel(i);
+    });
+    each_cell(values, [&](int x, int y) {
+        double sum = 0;
+        for (int i = -reach; i <= reach; ++i)
+            if (bits.inside(x, y + i))
+                result.at(x, y) += lines.at(x, y + i) * kernel(i), sum += weight.at(x, y + i) * kernel(i);
+        if (sum > 0) result.at(x, y) /= sum;
+    });
+    return result;
+}
+
 }  // namespace
 
 void append_copy(const GaussianSet& scene, std::size_t row, const Vec3& at, const Quat& turn,
-                 const Vec3& gain, const Vec3& more, GaussianData& added) {
+                 const Vec3& gain, GaussianData& added) {
     const std::size_t to = added.size(), stride = added.sh_stride();
     added.resize(to + 1);
     const float* q = &scene.rotation()[row * 4];
@@ -89,38 +112,44 @@ void append_copy(const GaussianSet& scene, std::size_t row, const Vec3& at, cons
     for (std::size_t k = 0; k < stride; ++k) {
         const int channel = static_cast<int>(k % 3);
         const double value = scene.sh()[row * stride + k];
-        added.sh[to * stride + k] =
-            static_cast<float>(k < 3 ? sh_from_colour(colour_from_sh(value) * gain[channel] + more[channel])
-                                     : value * gain[channel]);
+        added.sh[to * stride + k] = static_cast<float>(
+            k < 3 ? sh_from_colour(colour_from_sh(value) * gain[channel]) : value * gain[channel]);
     }
 }
 
-Grid<Vec3> rim_correction(const Chart& chart, const BitGrid& hole, const PatchFill& fill) {
-    Grid<Vec3> correction(hole.width, hole.height);
-    if (!fill.found) return correction;
-    BitGrid rim(hole.width, hole.height, 0);
-    each_cell(hole, [&](int x, int y) {
-        if (hole.at(x, y) != 0 || chart.known.at(x, y) == 0) return;
-        Vec3 sum;
-        double count = 0;
-        each_neighbour(hole, x, y, 1, [&](int nx, int ny) {
-            if (hole.at(nx, ny) == 0) return;
-            const Shift shift = fill.shift.at(nx, ny);
-            const int sx = x + shift.x, sy = y + shift.y;
-            if (!hole.inside(sx, sy) || chart.known.at(sx, sy) == 0 || hole.at(sx, sy) != 0) return;
-            sum += chart.colour.at(x, y) - chart.colour.at(sx, sy);
-            count += 1;
+Grid<Vec3> rim_gain(const Chart& chart, const BitGrid& hole, const PatchFill& fill) {
+    Grid<Vec3> gain(hole.width, hole.height, Vec3(0));
+    BitGrid rim(hole.width, hole.height, 0), known = chart.known;
+    for (std::size_t i = 0; i < known.cells.size(); ++i)
+        if (hole.cells[i] != 0) known.cells[i] = 0;
+    if (fill.found) {
+        const auto blurred = blurred_over(chart.colour, known);
+        each_cell(hole, [&](int x, int y) {
+            if (known.at(x, y) == 0) return;
+            Vec3 sum;
+            double count = 0;
+            each_neighbour(hole, x, y, 1, [&](int nx, int ny) {
+                if (hole.at(nx, ny) == 0) return;
+                const Shift shift = fill.shift.at(nx, ny);
+                const int sx = x + shift.x, sy = y + shift.y;
+                if (!hole.inside(sx, sy) || known.at(sx, sy) == 0) return;
+                for (int c = 0; c < 3; ++c)
+                    sum[c] += std::log(std::max(blurred.at(x, y)[c], DarkestRim) /
+                                       std::max(blurred.at(sx, sy)[c], DarkestRim));
+                count += 1;
+            });
+            if (count > 0) rim.at(x, y) = 1, gain.at(x, y) = limited(sum / count, MostRimGain);
         });
-        if (count > 0) rim.at(x, y) = 1, correction.at(x, y) = limited(sum / count, MostCorrection);
-    });
-    for (int pass = 0; pass < RimSmoothings; ++pass) smooth_over(correction, rim);
-    fill_membrane(correction, hole, rim);
-    return correction;
+        for (int pass = 0; pass < RimSmoothings; ++pass) smooth_over(gain, rim);
+        fill_membrane(gain, hole, rim);
+    }
+    for (auto& value : gain.cells) value = {std::exp(value.x), std::exp(value.y), std::exp(value.z)};
+    return gain;
 }
 
 void lay_rows(const GaussianSet& scene, std::span<const SurfaceRow> rows, const Chart& chart,
-              const BitGrid& hole, const PatchFill& fill, const Grid<Vec3>& correction,
-              std::span<const Vec3> gain, GaussianData& added) {
+              const BitGrid& hole, const PatchFill& fill, const Grid<Vec3>& rim, std::span<const Vec3> gain,
+              GaussianData& added) {
     auto through = chart.through;
     const auto cover = [&](const SurfaceRow& row) {
         each_covered(chart, row,
@@ -135,7 +164,7 @@ void lay_rows(const GaussianSet& scene, std::span<const SurfaceRow> rows, const 
             const double rise = from.z - chart.height_at(from.x, from.y);
             const Quat turn = turn_between(chart.normal_at(from.x, from.y), chart.normal_at(px, py));
             row.at = chart.world(px, py, chart.height_at(px, py) + rise);
-            append_copy(scene, row.row, row.at, turn, gain[i], between_cells(correction, px, py), added);
+            append_copy(scene, row.row, row.at, turn, gain[i] * between_cells(rim, px, py), added);
             cover(row);
         }
     };
@@ -144,12 +173,12 @@ void lay_rows(const GaussianSet& scene, std::span<const SurfaceRow> rows, const 
             if (hole.at(x, y) != 0) copy_cell(x, y, fill.shift.at(x, y));
         });
     each_cell(hole, [&](int x, int y) {
-        bool rim = false;
-        each_neighbour(hole, x, y, 1, [&](int nx, int ny) { rim = rim || hole.at(nx, ny) != 0; });
+        bool beside = false;
+        each_neighbour(hole, x, y, 1, [&](int nx, int ny) { beside = beside || hole.at(nx, ny) != 0; });
         const bool inside = hole.at(x, y) != 0;
-        if (!inside && !(rim && chart.known.at(x, y) != 0)) return;
+        if (!inside && !(beside && chart.known.at(x, y) != 0)) return;
         if (1 - through.at(x, y) >= ThinShare * chart.usual_cover) return;
-        const Vec3 colour = inside ? fill.colour.at(x, y) + correction.at(x, y) : chart.colour.at(x, y);
+        const Vec3 colour = inside ? fill.colour.at(x, y) * rim.at(x, y) : chart.colour.at(x, y);
         const SurfaceRow row = fresh_row(chart, x + 0.5, y + 0.5, colour);
         append_fresh(row, added);
         cover(row);

@@ -27,9 +27,10 @@ constexpr double ClearSpread = 2.0, SlightSpread = 1.0;        // spreads of the
 constexpr double HueLimit = 0.10;        // difference of a channel's share of the brightness
 constexpr std::size_t LeastBeyond = 60;  // cells beyond the shadow to compare with
 constexpr double MostGain = 3.5;
-constexpr double GarbageDistance = 0.22;  // of a colour from all colours around
-constexpr double FitScale = 0.15;         // in logarithms, beyond which a cell counts little
-constexpr int GainRounds = 4;             // of the gain, each on what the one before left
+constexpr double DeepShadow = 0.9;    // in logarithms of brightness, that is filled anew and not lit
+constexpr double BrightShare = 0.97;  // of the rows of the surface beyond, that are darker than its brightest
+constexpr double FitScale = 0.15;     // in logarithms, beyond which a cell counts little
+constexpr int GainRounds = 4;         // of the gain, each on what the one before left
 
 struct Trend {
     double base = 0, along_x = 0, along_y = 0;
@@ -120,12 +121,9 @@ private:
 
 class Finder {
 public:
-    Finder(Chart& chart, std::span<SurfaceRow> rows, const BitGrid& hole, const Grid<double>& to_body,
-           double reach)
-        : chart_(chart), rows_(rows), hole_(hole), to_body_(to_body) {
-        BitGrid foot = hole;
-        for (std::size_t i = 0; i < foot.cells.size(); ++i)
-            if (to_body.cells[i] <= ContactCells) foot.cells[i] = 1;
+    Finder(Chart& chart, std::span<SurfaceRow> rows, const BitGrid& hole, BitGrid foot, double reach)
+        : chart_(chart), rows_(rows), hole_(hole) {
+        for (std::size_t i = 0; i < foot.cells.size(); ++i) foot.cells[i] |= hole.cells[i];
         away_ = distance_to(foot);
         surface_ = chart.known;
         std::vector<double> distances;
@@ -150,7 +148,7 @@ public:
     }
 
     Shade find() {
-        Shade shade{std::vector<Vec3>(chart_.own.size(), Vec3(1)), BitGrid(hole_.width, hole_.height, 0)};
+        Shade shade{std::vector<Vec3>(rows_.size(), Vec3(1)), BitGrid(hole_.width, hole_.height, 0)};
         if (beyond_.size() < LeastBeyond) return shade;
         Values colours;
         for (const auto cell : beyond_) colours.push_back(logarithms(chart_.colour.cells[cell]));
@@ -161,11 +159,13 @@ public:
             if (spread_ < CalmSpread) break;
         }
         const BitGrid shaded = connected();
+        find_brightest();
+        for (std::size_t k = 0; k < within_.size(); ++k)
+            if (shaded.cells[within_[k]] != 0 && dark_[k][3] < -DeepShadow) shade.deep.cells[within_[k]] = 1;
         for (int round = 0; round < GainRounds; ++round) {
             if (round > 0) measure(tones, along);
             lighten(shaded, shade.gain);
         }
-        find_garbage(shade);
         return shade;
     }
 
@@ -253,56 +253,60 @@ private:
         return shaded;
     }
 
+    /// Brightness that few rows of the surface beyond exceed: no row is lit more.
+    void find_brightest() {
+        std::vector<double> values;
+        for (const auto cell : beyond_)
+            for (const auto i :
+                 chart_.rows_in(static_cast<int>(cell % static_cast<std::size_t>(hole_.width)),
+                                static_cast<int>(cell / static_cast<std::size_t>(hole_.width))))
+                values.push_back(brightness(rows_[i].colour));
+        if (values.empty()) return;
+        const auto at = values.begin() +
+                        static_cast<std::ptrdiff_t>(BrightShare * static_cast<double>(values.size() - 1));
+        std::nth_element(values.begin(), at, values.end());
+        brightest_ = *at;
+    }
+
     /// Multiplies the rows' gains by what their cells still lack, and draws the surface with them.
     void lighten(const BitGrid& shaded, std::vector<Vec3>& gain) {
         Grid<Vec3> more(hole_.width, hole_.height, Vec3(0));
         for (std::size_t k = 0; k < within_.size(); ++k)
             if (shaded.cells[within_[k]] != 0)
                 more.cells[within_[k]] = {-dark_[k][0], -dark_[k][1], -dark_[k][2]};
-        for (std::size_t k = 0; k < chart_.own.size(); ++k) {
-            SurfaceRow& row = rows_[chart_.own[k]];
+        for (const auto i : chart_.own) {
+            SurfaceRow& row = rows_[i];
             const Vec3 at = chart_.local(row.at), lack = between_cells(more, at.x, at.y);
             if (lack == Vec3(0)) continue;
-            const Vec3 before = gain[k];
-            for (int c = 0; c < 3; ++c) gain[k][c] = std::clamp(before[c] * std::exp(lack[c]), 1.0, MostGain);
-            const double all = brightness(gain[k]);
+            const Vec3 before = gain[i], plain = row.colour / before;
+            Vec3 next;
+            for (int c = 0; c < 3; ++c) next[c] = std::clamp(before[c] * std::exp(lack[c]), 1.0, MostGain);
+            const double all = std::min(brightness(next), brightest_ / std::max(brightness(plain), Darkest));
             for (int c = 0; c < 3; ++c)
-                gain[k][c] = std::max(1.0, std::clamp(gain[k][c], all / TintLimit, all * TintLimit));
-            row.colour *= gain[k] / before;
+                next[c] = std::max(1.0, std::clamp(next[c], all / TintLimit, all * TintLimit));
+            row.colour = plain * next;
+            gain[i] = next;
         }
         draw_chart(chart_, rows_);
-    }
-
-    void find_garbage(Shade& shade) const {
-        for (std::size_t i = 0; i < shade.garbage.cells.size(); ++i) {
-            if (surface_.cells[i] == 0 || to_body_.cells[i] > ContactCells) continue;
-            double least = FarAway;
-            for (const auto cell : beyond_) {
-                const Vec3 d = chart_.colour.cells[i] - chart_.colour.cells[cell];
-                least = std::min(least, dot(d, d));
-            }
-            if (least > GarbageDistance * GarbageDistance) shade.garbage.cells[i] = 1;
-        }
     }
 
     Chart& chart_;
     std::span<SurfaceRow> rows_;
     const BitGrid& hole_;
-    const Grid<double>& to_body_;
     BitGrid surface_;
     Grid<double> away_;                         // from the hole and the foot, cells
     Grid<std::array<double, 4>> off_;           // of the surface's cells from their tones
     std::vector<std::size_t> within_, beyond_;  // cells that may be in the shadow; some of the others
     Grid<std::int32_t> place_;                  // of a cell in `within_`; -1 = not there
     Values dark_;                               // of the cells of `within_`, less the trend
-    double spread_ = 0;
+    double spread_ = 0, brightest_ = FarAway;
 };
 
 }  // namespace
 
-Shade find_shade(Chart& chart, std::span<SurfaceRow> rows, const BitGrid& hole, const Grid<double>& to_body,
+Shade find_shade(Chart& chart, std::span<SurfaceRow> rows, const BitGrid& hole, const BitGrid& foot,
                  double reach) {
-    return Finder(chart, rows, hole, to_body, reach).find();
+    return Finder(chart, rows, hole, foot, reach).find();
 }
 
 }  // namespace gse::heal
