@@ -1,0 +1,84 @@
+"""Things placed and removed in the real window: handles are dragged, with steps while Ctrl is held, numbers are
+typed, a labelled thing is deleted and its hole healed, an order removes it; each is undone."""
+import unittest
+
+from window import WindowTest
+
+
+class Place(WindowTest):
+    def start(self):
+        """The sample with its bear labelled."""
+        window = self.open()
+        window.click("start.sample")
+        window.wait(lambda s: s["splats"] > 0 and not s["busy"], "the sample did not open")
+        window.write("prompt.source", "bear")
+        window.key("ctrl+l")
+        window.wait(lambda s: s["labelled"] > 0 and not s["job"]["running"], "the bear is not labelled", 120)
+        return window
+
+    def type_number(self, window, name, text):
+        window.xdotool("keydown", "ctrl")
+        window.click(name)
+        window.xdotool("keyup", "ctrl")
+        window.key("ctrl+a")
+        window.xdotool("type", "--delay", "40", text)
+        window.key("Return")
+
+    def undo(self, window, stack):
+        window.click("viewport", 0.9, 0.2)  # no field has the keys
+        window.key("ctrl+z")
+        window.wait(lambda s: s["stack"] == stack, f"{stack} edits are not left", 20)
+
+    def test_handles_and_numbers_place_what_is_labelled(self):
+        window = self.start()
+        splats = window.state()["splats"]
+        window.click("tool.place")
+        window.wait_widget("gizmo.side")
+        window.picture("place_01_handles")
+        window.drag("gizmo.side", [(0.5, 0.5), (4, 0.5), (7, 0.5)])
+        window.wait(lambda s: s["stack"] == 1, "the thing was not moved", 20)
+        window.drag("gizmo.turn", [(0.5, 0.5), (2, 2), (4, 3)], keys=("ctrl",))
+        window.picture("place_02_dragged")
+        self.assertEqual(window.state()["stack"], 1)  # one step while nothing else is done
+        self.assertEqual(window.state()["splats"], splats)
+        self.undo(window, 0)
+
+        window.click("tab.Labels")
+        window.scroll_to("place.open", "panel.Labels")
+        if "place.move_right" not in window.widgets():
+            window.click("place.open")
+        window.scroll_to("place.resize", "panel.Labels")
+        self.type_number(window, "place.resize", "1.5")
+        window.wait(lambda s: s["stack"] == 1, "the typed size changed nothing", 20)
+        window.picture("place_03_typed")
+        self.undo(window, 0)
+        window.close()
+
+    def test_a_thing_is_deleted_and_its_hole_healed(self):
+        window = self.start()
+        splats = window.state()["splats"]
+        window.click("viewport", 0.9, 0.2)
+        window.key("ctrl+Delete")
+        window.wait(lambda s: s["stack"] == 1 and not s["job"]["running"], "nothing was deleted", 60)
+        window.picture("place_04_healed")
+        self.assertLess(window.state()["splats"], splats)
+        self.assertEqual(window.state()["labelled"], 0)
+        self.undo(window, 0)
+        window.wait(lambda s: s["splats"] == splats, "the thing did not come back", 20)
+
+        window.click("tab.Prompt")
+        window.write("prompt.sentence", "remove the bear")
+        window.wait_widget("prompt.edit", enabled=True)
+        window.picture("place_05_order")
+        window.click("prompt.edit")
+        window.wait(lambda s: s["result_waiting"] and not s["job"]["running"], "no result waits", 120)
+        window.picture("place_06_removed")
+        window.click("result.apply")
+        window.wait(lambda s: s["stack"] == 1, "the removal was not applied", 20)
+        self.assertLess(window.state()["splats"], splats)
+        self.undo(window, 0)
+        window.close()
+
+
+if __name__ == "__main__":
+    unittest.main()
