@@ -41,6 +41,7 @@ void file_menu(Context& context) {
     const std::string why = why_not_save(context);
     if (item(context, {"menu.open", "Open...", keys_of(context, Shortcut::Open)})) ask_open(context);
     if (item(context, {"menu.sample", "Open sample"})) open_sample(context);
+    if (item(context, {"menu.put_in", "Put in a scene...", "", why_not_put_in(context)})) ask_put_in(context);
     if (ImGui::BeginMenu("Open recent", !context.model.recent.empty())) {
         const auto& pictures = context.model.recent_pictures;
         for (std::size_t index = 0; index < context.model.recent.size(); ++index) {

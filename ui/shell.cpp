@@ -217,6 +217,7 @@ void Shell::request_quit() { state_->asked.quit = true; }
 void Shell::request_open(const std::vector<std::filesystem::path>& paths) {
     state_->asked.open.clear();
     for (const auto& path : paths) state_->asked.open.push_back(utf8_of(path));
+    state_->asked.dropped = true;
 }
 
 void Shell::write_widgets(const std::filesystem::path& path) const {
@@ -244,7 +245,12 @@ void Shell::answer_requests(Context& context) {
     if (std::exchange(state_->asked.quit, false)) quit(context);
     if (const auto leave = std::exchange(state_->asked.leave, {}); leave.act)
         with_unsaved_work(context, leave.what, leave.act);
-    if (const auto paths = std::exchange(state_->asked.open, {}); !paths.empty()) open_one_of(context, paths);
+    put_in_what_is_asked(context);
+    const bool dropped = std::exchange(state_->asked.dropped, false);
+    if (const auto paths = std::exchange(state_->asked.open, {}); !paths.empty()) {
+        if (dropped && can_be_put_in(context, paths)) ask_put_in_or_open(context, paths.front());
+        else open_one_of(context, paths);
+    }
     const auto& asked = context.model.question;
     if (asked.number == state_->asked.question_seen) return;
     state_->asked.question_seen = asked.number;

@@ -214,6 +214,8 @@ struct Asked {
         std::function<void()> act;    // empty = none
     } leave;                          // once more: an edit was discarded, other work may be left
     std::vector<std::string> open;    // paths to open one of, from outside; empty = none
+    bool dropped = false;             // they were dropped on the window
+    std::string put_in;               // scene to put into the open one; empty = none
     std::uint64_t question_seen = 0;  // number of the application's last question that was shown
 };
 

@@ -36,14 +36,6 @@ Scene load_upright(const std::filesystem::path& path, const std::string& up, con
     return scene;
 }
 
-/// Name of a file without its endings: "guitar" for "guitar.compressed.ply".
-std::string stem_of(const std::filesystem::path& path) {
-    const auto last = path.filename().empty() ? path.parent_path().filename() : path.filename();
-    const std::string name = last.string();
-    const auto dot = name.find('.', 1);
-    return dot == std::string::npos ? name : name.substr(0, dot);
-}
-
 void merge(const MergeOptions& options) {
     refuse_same_file(options.host, options.output);
     refuse_same_file(options.guest, options.output);
@@ -54,7 +46,7 @@ void merge(const MergeOptions& options) {
     wishes.turn = options.turn;
     if (options.scale > 0) wishes.scale = options.scale;
     const MergePlace place = merge_place(host, guest, wishes);
-    const std::string name = options.name.empty() ? stem_of(options.guest) : options.name;
+    const std::string name = options.name.empty() ? pipeline::name_of_thing(options.guest) : options.name;
     for (const std::string& note : place.notes) log::info("{}: {}", printable(name), note);
     if (host.info.antialiased != guest.info.antialiased)
         log::warning(

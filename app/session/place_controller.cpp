@@ -8,21 +8,28 @@
 #include <utility>
 
 #include "engine/base/error.h"
+#include "engine/base/log.h"
+#include "engine/pipeline/scene/scene_loading.h"
 #include "engine/scene/label_ops.h"
 #include "engine/scene/stack_edits.h"
+#include "engine/scene/transform/merge.h"
+#include "engine/scene/transform/merge_place.h"
 #include "ui/widgets/controls.h"
 
 namespace gse::app {
 
 namespace command = ui::command;
 
+bool PlaceController::free_stack() {
+    if (!workspace_.require_scene()) return false;
+    if (!workspace_.results && !workspace_.jobs->works()) return true;
+    workspace_.notices.toast(workspace_.results ? "Apply or discard the edit first."
+                                                : "The edit stack can be changed when the job is done.");
+    return false;
+}
+
 const NamedLabel* PlaceController::labelled() {
-    if (!workspace_.require_scene()) return nullptr;
-    if (workspace_.results || workspace_.jobs->works()) {
-        workspace_.notices.toast(workspace_.results ? "Apply or discard the edit first."
-                                                    : "The edit stack can be changed when the job is done.");
-        return nullptr;
-    }
+    if (!free_stack()) return nullptr;
     const NamedLabel* label = workspace_.active_label();
     if (label != nullptr && count_labelled(*label) > 0) return label;
     workspace_.notices.toast("Nothing is labelled.");
@@ -63,7 +70,7 @@ void PlaceController::heal(const DocumentState& from, std::shared_ptr<const std:
         if (error != nullptr) return workspace_.report_end(*error);
         if (workspace_.document.revision() == revision) take_healed(from, *healed, *rows, stays);
     };
-    workspace_.jobs->start_work(JobKind::Heal,
+    workspace_.jobs->start_work(JobKind::Place,
                                 {stays ? "Heal the place" : "Delete and heal", work, done, true});
 }
 
@@ -83,6 +90,29 @@ void PlaceController::take_healed(const DocumentState& from, const heal::Healed&
     workspace_.document.apply(node.name, with_stack(state(), std::move(stack)));
     workspace_.toast_step(fmt::format("{} splats are deleted, {} fill the hole.{}{}", ui::count_text(removed),
                                       ui::count_text(added), healed.open.empty() ? "" : " ", healed.open));
+}
+
+// Other scenes
+
+template <> void PlaceController::on(const command::PutIn& one) {
+    if (!free_stack()) return;
+    auto node = std::make_shared<EditNode>();
+    const std::string name = pipeline::name_of_thing(one.path);
+    auto work = [node, host = workspace_.scene(), state = state(), path = one.path, name,
+                 id = workspace_.next_edit_id++](const JobControl& control) {
+        control.report("reading the scene", 0, 0);
+        const Scene guest = pipeline::load_standing_scene(path);
+        const auto place = merge_place(host, guest);
+        for (const auto& note : place.notes) log::info("{}: {}", name, note);
+        *node = merge_of(state, guest, place.placement, name, id);
+    };
+    auto done = [this, node, name, revision = workspace_.document.revision()](const Error* error) {
+        if (error != nullptr) return workspace_.report_end(*error);
+        if (workspace_.document.revision() != revision) return;
+        workspace_.document.apply(node->name, with_edit(state(), *node, name, true));
+        workspace_.toast_step(fmt::format("\"{}\" is in the scene: drag its handles to place it.", name));
+    };
+    workspace_.jobs->start_work(JobKind::Place, {fmt::format("Put in {}", name), work, done, true});
 }
 
 // Placing

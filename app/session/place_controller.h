@@ -1,4 +1,4 @@
-// Labelled things that are deleted with their hole healed, or placed by hand.
+// Things that are put in, placed by hand, or deleted with their hole healed.
 #pragma once
 
 #include <cstdint>
@@ -27,6 +27,8 @@ private:
     };
     template <class C> void on(const C& command);
     const DocumentState& state() const { return workspace_.document.state(); }
+    /// False, and said, while the stack cannot be changed.
+    bool free_stack();
     /// The labelled rows; null, and said, where there are none or the stack cannot be changed.
     const NamedLabel* labelled();
     Vec3 front() const;

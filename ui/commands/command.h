@@ -189,6 +189,10 @@ struct UsePlacing {
 struct PlaceThing {
     edit::RearrangeSettings settings;
 };
+/// Puts another scene into the open one, labelled by its name.
+struct PutIn {
+    std::filesystem::path path;
+};
 /// Fills the hole where the thing stood that was just placed.
 struct HealPlace {};
 /// Shows the splats of a choice by property until they are dropped. Only UsePicked changes anything.
@@ -359,8 +363,8 @@ using LabelCommand =
                  command::Undo, command::Redo, command::GoTo, command::SetEditEnabled,
                  command::SetEditStrength, command::ExchangeVariation, command::DeleteEdit,
                  command::MoveEdit>;
-using PlaceCommand =
-    std::variant<command::HealLabelledSplats, command::UsePlacing, command::PlaceThing, command::HealPlace>;
+using PlaceCommand = std::variant<command::HealLabelledSplats, command::UsePlacing, command::PlaceThing,
+                                  command::HealPlace, command::PutIn>;
 using ViewCommand =
     std::variant<command::HideLabel, command::IsolateLabel, command::ShowHidden, command::SetCamera,
                  command::SetViewSettings, command::SetComparison, command::CompareWith, command::LookThrough,

@@ -319,6 +319,54 @@ void open_path(Context& context, const std::string& path) {
                       [&commands, path] { commands.push(command::Open{path_of(path)}); });
 }
 
+std::string why_not_put_in(const Context& context) {
+    return context.scene_open() ? context.model.cannot_edit : "Open a scene first";
+}
+
+bool can_be_put_in(const Context& context, const std::vector<std::string>& paths) {
+    if (!why_not_put_in(context).empty() || paths.size() != 1) return false;
+    const auto& path = paths.front();
+    return !has_extension(path, std::vector<std::string>{".png", ".gsep"}) && !only_cameras(path_of(path));
+}
+
+namespace {
+
+/// Its handles show where it stands.
+void put_in(Context& context, const std::string& path) {
+    context.commands.push(command::PutIn{path_of(path)});
+    if (context.state.viewport.tool != Tool::Place) set_tool(context, Tool::Place);
+}
+
+}  // namespace
+
+void ask_put_in_or_open(Context& context, const std::string& path) {
+    auto& question = context.state.question;
+    question.title = "Put it in, or open it?";
+    question.text = fmt::format("{} can be put into the open scene, or take its place.",
+                                utf8_of(path_of(path).filename()));
+    question.answers = {{"Put it in", false, [state = &context.state, path] { state->asked.put_in = path; }},
+                        {"Open it", false, [state = &context.state, path] { state->asked.open = {path}; }},
+                        {"Cancel", false, {}}};
+    question.pending = true;
+}
+
+void ask_put_in(Context& context) {
+    auto* state = &context.state;
+    context.state.files.ask(
+        {.title = "Put a scene into the open one",
+         .confirm = "Put it in",
+         .extensions = scene_extensions(),
+         .saves = false,
+         .folder_allowed = true,
+         .start = context.model.recent.empty() ? std::string() : context.model.recent.front(),
+         .answer = [state](const std::filesystem::path& path) { state->asked.put_in = utf8_of(path); }});
+}
+
+void put_in_what_is_asked(Context& context) {
+    const std::string path = std::exchange(context.state.asked.put_in, {});
+    if (!path.empty()) put_in(context, path);
+}
+
 void open_sample(Context& context) {
     auto& commands = context.commands;
     with_unsaved_work(context, "The sample is to be opened.",

@@ -52,6 +52,16 @@ void ask_lost_scene(Context& context);
 void open_path(Context& context, const std::string& path);
 /// Opens the path; of several, asks which.
 void open_one_of(Context& context, const std::vector<std::string>& paths);
+/// True for one file that may be a scene, while another scene is open.
+bool can_be_put_in(const Context& context, const std::vector<std::string>& paths);
+/// Reason why no scene can be put into the open one; empty = one can.
+std::string why_not_put_in(const Context& context);
+/// Asks whether a scene is put into the open one, or opened in its place.
+void ask_put_in_or_open(Context& context, const std::string& path);
+/// Puts in the scene of the last answer, if there is one. Once per frame.
+void put_in_what_is_asked(Context& context);
+/// Asks for a scene that is put into the open one.
+void ask_put_in(Context& context);
 void open_sample(Context& context);
 void save(Context& context);
 /// Saves under another name. Calls `then` (may be empty) once it is saved.

@@ -31,7 +31,7 @@ struct ApplicationOptions {
 enum class JobKind : std::uint8_t {
     Other,   // checks of models
     CutOut,  // a thing in a box
-    Heal,    // a hole that deleted splats leave
+    Place,   // holes healed, other scenes put in
     Search,  // looks for words
     Vote,    // votes of the last search's views once more
     Edit     // search and loop

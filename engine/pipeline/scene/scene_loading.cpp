@@ -98,6 +98,13 @@ std::string surroundings_note(const SceneStatistics& statistics) {
                                    : "haze and sky");
 }
 
+std::string name_of_thing(const std::filesystem::path& path) {
+    const auto last = path.filename().empty() ? path.parent_path().filename() : path.filename();
+    const std::string name = last.string();
+    const auto dot = name.find('.', 1);
+    return dot == std::string::npos ? name : name.substr(0, dot);
+}
+
 Scene load_standing_scene(const std::filesystem::path& path, const std::string& up,
                           const ReadingOptions& options) {
     Scene scene = load_scene(path, options);

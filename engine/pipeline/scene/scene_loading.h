@@ -47,6 +47,9 @@ std::string up_note(const SceneInfo& info, const std::optional<UpGuess>& guess);
 /// Sentence on haze and sky far around the scene; empty = there is neither.
 std::string surroundings_note(const SceneStatistics& statistics);
 
+/// Name of the thing in a scene's file, without its endings: "guitar" for "guitar.compressed.ply".
+std::string name_of_thing(const std::filesystem::path& path);
+
 /// A scene for pictures from around it. Up is guessed where neither its file nor cameras beside it say it.
 /// Logs a warning where the guess is not sure and `up` is "auto". Throws Error.
 Scene load_standing_scene(const std::filesystem::path& path, const std::string& up = "auto",

@@ -382,12 +382,31 @@ DOCTEST_TEST_CASE("unsaved work is asked about before it goes") {
     DOCTEST_CHECK(harness.application.calls[1] == "quit");
     harness.shell.request_open({"/tmp/x.ply"});
     harness.frame(3);
+    harness.click("question.1");  // it takes the place of the open one
+    harness.frame(3);
     DOCTEST_CHECK(harness.asks("question.1", "open /tmp/x.ply"));
     harness.application.model().unsaved = false;
     harness.application.calls.clear();
     harness.shell.request_open({"/tmp/y.ply"});
     harness.frame(3);
+    harness.click("question.1");
+    harness.frame(3);
     DOCTEST_CHECK(harness.application.asked("open /tmp/y.ply"));
+}
+
+DOCTEST_TEST_CASE("a scene that is dropped on another one can be put into it, with its handles shown") {
+    Harness harness({Wide, High, 1, Situation::Scene, false});
+    harness.application.model().unsaved = true;
+    harness.shell.request_open({"/tmp/guitar.ply"});
+    harness.frame(3);
+    harness.click("question.0");
+    harness.frame(3);
+    DOCTEST_CHECK(harness.application.asked("put_in /tmp/guitar.ply"));
+    DOCTEST_CHECK_FALSE(harness.application.asked("open"));
+    DOCTEST_CHECK(harness.shell.state().viewport.tool == ui::Tool::Place);
+    harness.shell.request_open({"/tmp/work.gsep"});  // a project is no thing
+    harness.frame(3);
+    DOCTEST_CHECK(harness.asks("question.1", "open /tmp/work.gsep"));
 }
 
 DOCTEST_TEST_CASE("of several files that are dropped, the artist says which is opened") {
