@@ -18,7 +18,6 @@
 #include "engine/pipeline/scene/scene_loading.h"
 #include "engine/pipeline/scene/scene_tools.h"
 #include "engine/scene/stack_edits.h"
-#include "engine/scene/transform/transform_edits.h"
 
 namespace gse::app {
 namespace {
@@ -56,19 +55,6 @@ Label written_label(const NamedLabel& label) {
     return make_label(label.name, std::move(weight), Middle);
 }
 
-/// The state with the edits of a rearrangement.
-DocumentState rearranged(DocumentState state, std::span<const std::uint8_t> rows,
-                         std::span<const std::uint8_t> of_other, const edit::Rearrangement& places) {
-    std::vector<PlacedRows> parts{{rows, places.thing}};
-    if (places.anchor) parts.push_back({of_other, *places.anchor});
-    const EditNode copies = copies_of(state, rows, places.copies, next_edit_id(state) + 1);
-    const EditNode move = transform_of(state, parts, next_edit_id(state));
-    auto stack = state.stack;
-    stack.push_back(move);
-    state = with_stack(state, std::move(stack));
-    return places.copies.empty() ? state : with_edit(state, copies, "copies", false);
-}
-
 void transform(const TransformOptions& options) {
     refuse_same_file(options.input, options.output);
     Scene scene = load_standing_scene(options.input, options.up, options.reading);
@@ -91,7 +77,8 @@ void transform(const TransformOptions& options) {
         edit::rearrangement(options.change, thing, options.other.empty() ? nullptr : &other, others);
     if (places.leaves_place && !others.empty())
         log::info("what the thing hid at its old place is as it was: nothing is filled in");
-    state = rearranged(std::move(state), rows, of_other, places);
+    state = with_edit(state, edit::rearrangement_edit(state, rows, of_other, places, next_edit_id(state)),
+                      "copies", false);
     scene.gaussians = state.current;
     scene.extra = current_columns(state);
     scene.labels = {};

@@ -9,6 +9,7 @@
 #include "engine/base/error.h"
 #include "engine/edit/placement/free_place.h"
 #include "engine/edit/words/change_words.h"
+#include "engine/scene/transform/transform_edits.h"
 
 namespace gse::edit {
 namespace {
@@ -258,6 +259,22 @@ Rearrangement rearrangement(const RearrangeSettings& settings, const ThingFrame&
     if (!settings.change.empty()) arranger.apply(placement_change(settings.change));
     arranger.apply(settings);
     return arranger.result(settings.copies);
+}
+
+EditNode rearrangement_edit(const DocumentState& state, std::span<const std::uint8_t> rows,
+                            std::span<const std::uint8_t> of_anchor, const Rearrangement& places,
+                            std::uint64_t id) {
+    std::vector<PlacedRows> parts{{rows, places.thing}};
+    if (places.anchor) parts.push_back({of_anchor, *places.anchor});
+    EditNode node = transform_of(state, parts, id);
+    if (places.copies.empty()) return node;
+    const EditNode copies = copies_of(state, rows, places.copies, id);
+    SceneDelta delta = *node.delta;
+    delta.added = copies.delta->added;
+    delta.added_rows = copies.delta->added_rows;
+    node.name = copies.name;
+    node.delta = std::make_shared<const SceneDelta>(std::move(delta));
+    return node;
 }
 
 }  // namespace gse::edit

@@ -9,6 +9,7 @@
 #include "engine/edit/placement/region_frame.h"
 #include "engine/edit/placement/upright_bounds.h"
 #include "engine/edit/words/rearrange_settings.h"
+#include "engine/scene/document.h"
 #include "engine/scene/transform/affine.h"
 
 namespace gse::edit {
@@ -51,5 +52,12 @@ struct Rearrangement {
 /// (InvalidArgument) for what cannot be done.
 Rearrangement rearrangement(const RearrangeSettings& settings, const ThingFrame& thing,
                             const ThingFrame* anchor = nullptr, std::span<const Vec3> others = {});
+
+/// Edit for the stack that does a rearrangement: rows of the thing and of the other one change, copies are
+/// added. `rows` and `of_anchor` mark rows of `current` [N]; the latter may be empty where there is no other
+/// thing. with_edit() labels the copies.
+EditNode rearrangement_edit(const DocumentState& state, std::span<const std::uint8_t> rows,
+                            std::span<const std::uint8_t> of_anchor, const Rearrangement& places,
+                            std::uint64_t id);
 
 }  // namespace gse::edit

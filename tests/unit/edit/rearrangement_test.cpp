@@ -385,6 +385,34 @@ DOCTEST_TEST_CASE("rows of a thing follow words: from the label to the moved row
     DOCTEST_CHECK(std::abs(leans.low.y) < Close);
 }
 
+DOCTEST_TEST_CASE("a rearrangement is one edit of the stack, and its switch takes all of it back") {
+    test::BoxRows rows;
+    rows.box(-0.3, 0.3, 0, 1, -0.2, 0.2, 50, true).box(2, 3, 0, 1, -0.2, 0.2, 40, false);
+    Scene scene;
+    scene.gaussians = rows.set();
+    const DocumentState state = initial_state(scene, {});
+    std::vector<std::uint8_t> of_other(90, 0);
+    std::fill(of_other.begin() + 50, of_other.end(), std::uint8_t{1});
+    Rearrangement places;
+    places.thing = Affine::move_by({2, 0, 0});
+    places.anchor = Affine::move_by({-2, 0, 0});
+    places.copies = {Affine::move_by({0, 0, 5})};
+    EditNode node = rearrangement_edit(state, rows.bits, of_other, places, 4);
+    DOCTEST_CHECK(node.delta->changed.size() == 90);
+    DOCTEST_CHECK(node.delta->added.size() == 50);
+    const DocumentState after = with_stack(state, {node});
+    DOCTEST_REQUIRE(after.current.size() == 140);
+    const auto x = [](const GaussianSet& set, std::size_t row) { return set.position()[row * 3]; };
+    DOCTEST_CHECK(x(after.current, 0) == doctest::Approx(x(state.current, 0) + 2));
+    DOCTEST_CHECK(x(after.current, 89) == doctest::Approx(x(state.current, 89) - 2));
+    DOCTEST_CHECK(x(after.current, 90) == x(state.current, 0));
+    node.enabled = false;
+    DOCTEST_CHECK(with_stack(state, {node}).current.shares_all_with(state.current));
+    places.copies.clear();
+    places.anchor.reset();
+    DOCTEST_CHECK(rearrangement_edit(state, rows.bits, {}, places, 4).delta->added.empty());
+}
+
 DOCTEST_TEST_CASE("a thing from a table is put on the floor beside the table, not below it") {
     test::BoxRows rows;
     rows.box(-4, 4, -0.01, 0, -4, 4, 9000, false);  // the floor
