@@ -320,7 +320,7 @@ void open_path(Context& context, const std::string& path) {
 }
 
 std::string why_not_put_in(const Context& context) {
-    return context.scene_open() ? context.model.cannot_edit : "Open a scene first";
+    return why_not_work(context);
 }
 
 bool can_be_put_in(const Context& context, const std::vector<std::string>& paths) {
