@@ -26,6 +26,7 @@ constexpr double HidingShare =
     0.5;  // of the thing's size: parts of it that are farther hide nothing for long
 constexpr double ShadowReach = 0.45;     // of the thing's size
 constexpr int FootRim = 2;               // cells around a foot that nothing saw, in which colours are mixed
+constexpr int MixedRim = 3;              // cells around a foot that nothing is copied from
 constexpr double LargestCleared = 2.0;   // cells, standard deviation of a row that is taken out of a hole
 constexpr double LeastGain = 1.02;       // of a row that is lit again
 constexpr double LeastOpenShare = 0.02;  // of the thing's size squared: open area worth a sentence
@@ -124,24 +125,28 @@ private:
     void heal(bool whole_thing) {
         gain_.assign(rows_.size(), Vec3(1));
         find_surfaces();
-        std::vector<BitGrid> near;
-        for (const auto& chart : charts_) near.push_back(near_cells(chart));
+        std::vector<BitGrid> under, near;
+        for (const auto& chart : charts_) {
+            under.push_back(cells_under(chart));
+            near.push_back(grown(under.back(), static_cast<int>(std::ceil(reach_ / chart.cell)) + 2));
+        }
         for (std::size_t k = 0; k < charts_.size(); ++k) {
             step("holes", static_cast<int>(k), static_cast<int>(charts_.size()));
             Chart& chart = charts_[k];
             const BitGrid border = borders(charts_, near, k);
             BitGrid foot(chart.height.width, chart.height.height, 0);
             if (whole_thing) foot = clear_foot(chart);
-            Hole hole = find_hole(chart, near[k], border);
+            const bool stands = std::find(foot.cells.begin(), foot.cells.end(), 1) != foot.cells.end();
+            Hole hole = find_hole(chart, near[k], stands ? foot : under[k], border);
             drop_behind(chart, rows_, body_, hole.cells);
             drop_seams(hole.cells, foot);
-            heal_surface(chart, std::move(hole), foot, whole_thing && settings_.shadow);
+            heal_surface(chart, std::move(hole), foot, stands && settings_.shadow);
         }
         say_what_is_open();
     }
 
-    /// Cells that the thing may have hidden: those under it, seen along the normal, and a little around them.
-    BitGrid near_cells(const Chart& chart) const {
+    /// Cells under the thing, seen along the normal.
+    BitGrid cells_under(const Chart& chart) const {
         BitGrid under(chart.height.width, chart.height.height, 0);
         for (const auto& point : body_.points) {
             const Vec3 at = chart.local(point);
@@ -149,7 +154,7 @@ private:
             if (under.inside(x, y) && std::abs(at.z - chart.height.at(x, y)) < HidingShare * body_.size)
                 under.at(x, y) = 1;
         }
-        return grown(under, static_cast<int>(std::ceil(reach_ / chart.cell)) + 2);
+        return under;
     }
 
     /// Removes what is left of the thing where it stood, and the surface there if no picture can have shown
@@ -169,8 +174,7 @@ private:
 
     void heal_surface(Chart& chart, Hole hole, const BitGrid& foot, bool shadows) {
         const std::size_t before = healed_.added.size();
-        const bool stands = std::find(foot.cells.begin(), foot.cells.end(), 1) != foot.cells.end();
-        if (shadows && stands) light_again(chart, hole.cells, foot);
+        if (shadows) light_again(chart, hole.cells, foot);
         HealedSurface surface{chart.origin, chart.normal, chart.cell};
         std::size_t cells = 0;
         for (const auto bit : hole.cells.cells) cells += bit;
@@ -181,7 +185,8 @@ private:
             for (std::size_t i = 0; i < known.cells.size(); ++i)
                 if (hole.cells.cells[i] != 0) known.cells[i] = 0;
             step("texture", 0, 1);
-            const auto texture = fill_by_patches(chart.colour, known, hole.cells, settings_.seed);
+            const auto texture =
+                fill_by_patches(chart.colour, known, hole.cells, grown(foot, MixedRim), settings_.seed);
             surface.copied = texture.found;
             lay_rows(input_.scene, rows_, chart, hole.cells, texture, rim_gain(chart, hole.cells, texture),
                      gain_, healed_.added);

@@ -10,7 +10,8 @@ namespace gse::heal {
 namespace {
 
 constexpr int Orientations = 8;
-constexpr int LeastOrientations = 2;   // with cover on both sides, of a cell that is filled
+// Orientations with cover on both sides, of a cell that is filled: where the thing was, and elsewhere.
+constexpr int CoreOrientations = 2, LeastOrientations = 4;
 constexpr int Passes = 4;              // each takes the cells filled before as covered
 constexpr int SolidNeighbours = 3;     // known ones of the eight, of a cell that ends a ray
 constexpr std::size_t LeastCells = 4;  // of a hole
@@ -196,7 +197,7 @@ void drop_seams(BitGrid& cells, const BitGrid& foot) {
         if (wide.cells[i] == 0 && foot.cells[i] == 0) cells.cells[i] = 0;
 }
 
-Hole find_hole(const Chart& chart, const BitGrid& near, const BitGrid& border) {
+Hole find_hole(const Chart& chart, const BitGrid& near, const BitGrid& core, const BitGrid& border) {
     Hole hole{BitGrid(chart.known.width, chart.known.height, 0)};
     BitGrid ends = ends_of(chart, border);
     BitGrid partly(chart.known.width, chart.known.height, 0);
@@ -209,7 +210,8 @@ Hole find_hole(const Chart& chart, const BitGrid& near, const BitGrid& border) {
             if (border.at(x, y) == BeyondBorder) return;
             const int bounded = rays.bounded(x, y);
             partly.at(x, y) = bounded > 0 ? 1 : 0;
-            if (bounded >= LeastOrientations) hole.cells.at(x, y) = 1, ++found;
+            if (bounded >= (core.at(x, y) != 0 ? CoreOrientations : LeastOrientations))
+                hole.cells.at(x, y) = 1, ++found;
         });
         if (found == 0) break;
         for (std::size_t i = 0; i < ends.cells.size(); ++i) ends.cells[i] |= hole.cells.cells[i];

@@ -17,9 +17,10 @@ struct Hole {
     std::size_t open = 0;  // cells that may have been surface but that nothing bounds on enough sides
 };
 
-/// Uncovered cells of `near` with covered ones or a border on opposite sides, in several directions. So a
-/// table's edge goes on straight, and nothing is added beyond it. Specks are left out.
-Hole find_hole(const Chart& chart, const BitGrid& near, const BitGrid& border);
+/// Uncovered cells of `near` with covered ones or a border on opposite sides: in two of eight orientations
+/// where `core` says that the thing was there, in four elsewhere. So a table's edge goes on straight, and
+/// nothing is added beyond it. Specks are left out.
+Hole find_hole(const Chart& chart, const BitGrid& near, const BitGrid& core, const BitGrid& border);
 
 /// Drops holes that other rows mostly hide from the thing, as the floor under the table that it stands on.
 void drop_behind(const Chart& chart, std::span<const SurfaceRow> rows, const Body& body, BitGrid& cells);
