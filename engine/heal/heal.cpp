@@ -179,7 +179,7 @@ private:
         std::size_t cells = 0;
         for (const auto bit : hole.cells.cells) cells += bit;
         if (cells > 0) {
-            clear_cells(chart, hole.cells, LargestCleared * chart.cell);
+            clear_hole(chart, hole.cells);
             fill_heights(chart, hole.cells);
             BitGrid known = chart.known;
             for (std::size_t i = 0; i < known.cells.size(); ++i)
@@ -212,12 +212,24 @@ private:
         if (chart.own.size() < before) draw_chart(chart, rows_);
     }
 
+    /// Removes the rows in a hole, and adds the cells to it that only they had covered.
+    void clear_hole(Chart& chart, BitGrid& hole) {
+        for (bool more = true; more;) {
+            const BitGrid before = chart.known;
+            clear_cells(chart, hole, LargestCleared * chart.cell);
+            more = false;
+            for (std::size_t i = 0; i < hole.cells.size(); ++i)
+                if (hole.cells[i] == 0 && before.cells[i] != 0 && chart.known.cells[i] == 0)
+                    hole.cells[i] = 1, more = true;
+        }
+    }
+
     /// Replaces the rows in the shadow by lit copies. Cells in deep shadow become part of the hole.
     void light_again(Chart& chart, BitGrid& hole, const BitGrid& foot) {
         const auto shade = find_shade(chart, rows_, hole, foot, ShadowReach * body_.size / chart.cell);
         for (std::size_t i = 0; i < hole.cells.size(); ++i)
             if (shade.deep.cells[i] != 0) hole.cells[i] = 1;
-        clear_cells(chart, hole, LargestCleared * chart.cell);
+        clear_hole(chart, hole);
         for (const auto i : chart.own) {
             const Vec3& gain = gain_[i] = shade.gain[i];
             if (std::max({gain.x, gain.y, gain.z}) < LeastGain) continue;

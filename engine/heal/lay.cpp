@@ -11,6 +11,7 @@ namespace gse::heal {
 namespace {
 
 constexpr double LargestCopy = 3.5;  // cells, standard deviation of a row that is copied
+constexpr float LeastShown = 0.1F;   // of a row that is copied: what others hide would come to light
 constexpr double MostRimGain = 0.5;  // of a channel at the rim, in logarithms
 constexpr double DarkestRim = 0.03;  // channel value that logarithms start from
 constexpr double RimBlur = 2.5;      // standard deviation
@@ -158,7 +159,7 @@ void lay_rows(const GaussianSet& scene, std::span<const SurfaceRow> rows, const 
     const auto copy_cell = [&](int x, int y, Shift shift) {
         for (const auto i : chart.rows_in(x + shift.x, y + shift.y)) {
             SurfaceRow row = rows[i];
-            if (row.longest() > LargestCopy * chart.cell) continue;
+            if (row.longest() > LargestCopy * chart.cell || chart.shown[i] < LeastShown) continue;
             const Vec3 from = chart.local(row.at);
             const double px = from.x - shift.x, py = from.y - shift.y;
             const double rise = from.z - chart.height_at(from.x, from.y);
