@@ -24,10 +24,13 @@ constexpr double Tolerance = 0.02;  // of the thing's size, of rows from their p
 constexpr std::size_t MostSurfaces = 5;
 constexpr double HidingShare =
     0.5;  // of the thing's size: parts of it that are farther hide nothing for long
-constexpr double ShadowReach = 0.45;     // of the thing's size
-constexpr int FootRim = 2;               // cells around a foot that nothing saw, in which colours are mixed
-constexpr int MixedRim = 3;              // cells around a foot that nothing is copied from
-constexpr double LargestCleared = 2.0;   // cells, standard deviation of a row that is taken out of a hole
+constexpr double ShadowReach = 0.45;    // of the thing's size
+constexpr int FootRim = 2;              // cells around a foot that nothing saw, in which colours are mixed
+constexpr int MixedRim = 3;             // cells around a foot that nothing is copied from
+constexpr double LargestCleared = 2.0;  // cells, standard deviation of a row that is taken out of a hole
+constexpr double LeastAround = 0.6, LeastAroundSteep = 0.8;  // of the cells around a hole or foot, that show
+                                                             // a level surface, and another one
+constexpr double LevelNormal = 0.7;      // cosine between up and the normal of a surface with a shadow
 constexpr double LeastGain = 1.02;       // of a row that is lit again
 constexpr double LeastOpenShare = 0.02;  // of the thing's size squared: open area worth a sentence
 
@@ -135,12 +138,13 @@ private:
             Chart& chart = charts_[k];
             const BitGrid border = borders(charts_, near, k);
             BitGrid foot(chart.height.width, chart.height.height, 0);
-            if (whole_thing) foot = clear_foot(chart);
+            if (whole_thing) foot = clear_foot(chart, border);
             const bool stands = std::find(foot.cells.begin(), foot.cells.end(), 1) != foot.cells.end();
             Hole hole = find_hole(chart, near[k], stands ? foot : under[k], border);
-            drop_behind(chart, rows_, body_, hole.cells);
+            drop_shown(chart, rows_, healed_.removed, body_, hole.cells);
             drop_seams(hole.cells, foot);
-            heal_surface(chart, std::move(hole), foot, stands && settings_.shadow);
+            drop_loose(chart, border, hole);
+            heal_surface(chart, std::move(hole), foot, stands && level(chart) && settings_.shadow);
         }
         say_what_is_open();
     }
@@ -157,10 +161,29 @@ private:
         return under;
     }
 
+    bool level(const Chart& chart) const { return dot(chart.normal, up_) > LevelNormal; }
+    double least_around(const Chart& chart) const { return level(chart) ? LeastAround : LeastAroundSteep; }
+
+    /// Leaves holes open that the surface does not show around.
+    void drop_loose(const Chart& chart, const BitGrid& border, Hole& hole) {
+        std::vector<std::size_t> sizes;
+        const auto groups = groups_of(hole.cells, sizes);
+        for (int group = 1; group < static_cast<int>(sizes.size()); ++group) {
+            BitGrid one(groups.width, groups.height, 0);
+            for (std::size_t i = 0; i < one.cells.size(); ++i)
+                one.cells[i] = groups.cells[i] == group ? 1 : 0;
+            if (known_around(chart, one, border) >= least_around(chart)) continue;
+            for (std::size_t i = 0; i < one.cells.size(); ++i)
+                if (one.cells[i] != 0) hole.cells.cells[i] = 0, ++hole.open;
+        }
+    }
+
     /// Removes what is left of the thing where it stood, and the surface there if no picture can have shown
     /// it.
-    BitGrid clear_foot(Chart& chart) {
+    BitGrid clear_foot(Chart& chart, const BitGrid& border) {
         BitGrid foot = foot_cells(chart, body_);
+        if (known_around(chart, foot, border) < least_around(chart))
+            return BitGrid(foot.width, foot.height, 0);
         const bool garbage = foot_is_garbage(chart, foot, rows_);
         if (garbage) foot = grown(foot, FootRim);
         each_remain(chart, foot, rows_, taken_, body_, garbage, [&](std::size_t i) {

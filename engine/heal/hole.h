@@ -22,8 +22,10 @@ struct Hole {
 /// nothing is added beyond it. Specks are left out.
 Hole find_hole(const Chart& chart, const BitGrid& near, const BitGrid& core, const BitGrid& border);
 
-/// Drops holes that other rows mostly hide from the thing, as the floor under the table that it stands on.
-void drop_behind(const Chart& chart, std::span<const SurfaceRow> rows, const Body& body, BitGrid& cells);
+/// Drops holes before which or close behind which lies something else: the floor under the table that the
+/// thing stands on, or a gap above a lower surface. Rows with removed[row] != 0 do not count.
+void drop_shown(const Chart& chart, std::span<const SurfaceRow> rows, std::span<const std::uint8_t> removed,
+                const Body& body, BitGrid& cells);
 
 /// Drops lines of cells, as along an edge that rows cover in part, but for those at the thing's foot.
 void drop_seams(BitGrid& cells, const BitGrid& foot);
