@@ -26,6 +26,7 @@ constexpr double LeastAddedChange = 0.1;  // what is added may look like what is
 constexpr double MostSpilled = 0.02;      // soft edges of splats reach out of the masks
 constexpr double MostOldLeft = 0.25;      // right edits leave nothing
 constexpr double LeastNewShown = 0.15;    // what comes may be smaller
+constexpr double MostGone = 0.9;          // what carries a thing and lies around it is more than the rest
 constexpr double LeastSeen = 0.25;        // what is on one side is seen from about half of the views
 constexpr double MostOnThing = 0.5;       // what stands beside hides the thing from two sides only
 constexpr double LeastLikeness = 0.15;  // what keeps the old thing's colour scores half of what another does
@@ -178,6 +179,13 @@ Verdict fault_of_addition(const StepFigures& figures) {
                  "give it a colour that differs from what is behind it"};
 }
 
+Verdict fault_of_removal(const StepFigures& figures) {
+    if (figures.mode != edit::EditMode::Remove || figures.gone <= MostGone) return {};
+    return Fault{
+        fmt::format("{:.0f} % of the scene is gone with the {}", Percent * figures.gone, figures.thing),
+        BetterLabel};
+}
+
 Verdict fault_of_replacement(const StepFigures& figures) {
     if (figures.mode != edit::EditMode::Replace) return {};
     if (figures.old_left > MostOldLeft)
@@ -240,6 +248,8 @@ StepFigures measure_step(EditJob& job) {
     figures.spilled = share(shares.spilled, shares.outside);
     figures.old_left = share(shares.old_left, shares.thing);
     figures.new_shown = share(shares.new_shown, shares.thing);
+    const auto rows = static_cast<double>(job.scene().gaussians.size());
+    figures.gone = std::max(0.0, 1 - share(static_cast<double>(job.result().set.size()), rows));
     figures.seen = share(shares.seen, shares.views);
     figures.beside = is_beside(sentence);
     figures.on_thing = share(shares.on_thing, shares.thing);
@@ -250,8 +260,8 @@ StepFigures measure_step(EditJob& job) {
 
 StepJudgement judge_step(StepFigures figures) {
     StepJudgement judgement{std::move(figures), {}, {}};
-    for (const auto check : {fault_of_rows, fault_of_amount, fault_of_addition, fault_of_replacement,
-                             fault_of_surroundings, fault_of_meaning})
+    for (const auto check : {fault_of_rows, fault_of_amount, fault_of_addition, fault_of_removal,
+                             fault_of_replacement, fault_of_surroundings, fault_of_meaning})
         if (auto fault = check(judgement.figures)) {
             judgement.reason = std::move(fault->reason);
             judgement.remedy = std::move(fault->remedy);
@@ -277,6 +287,7 @@ nlohmann::ordered_json judgement_to_json(const StepJudgement& judgement) {
     json["changed_rows_outside"] = figures.changed_rows;
     if (figures.mode == edit::EditMode::Replace)
         json["old_left"] = figures.old_left, json["new_shown"] = figures.new_shown;
+    if (figures.mode == edit::EditMode::Remove) json["gone"] = figures.gone;
     if (figures.mode == edit::EditMode::Add) json["seen"] = figures.seen, json["on_thing"] = figures.on_thing;
     if (figures.mode != edit::EditMode::Modify) json["new_splats"] = figures.added;
     return json;

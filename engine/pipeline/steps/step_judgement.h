@@ -24,6 +24,7 @@ struct StepFigures {
     double spilled = 0;              // pixels outside the masks that changed clearly
     double old_left = 0;             // replace: pixels of the old thing that mainly show splats of it
     double new_shown = 0;            // replace: pixels of the new thing, as a share of those of the old one
+    double gone = 0;                 // remove: splats of the scene, without those that came
     double seen = 0;                 // add: views that show the new thing
     bool beside = false;             // add: the sentence puts it to a side of the thing
     double on_thing = 0;             // add: pixels of the new thing that showed the thing before

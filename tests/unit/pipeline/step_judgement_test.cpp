@@ -71,10 +71,13 @@ DOCTEST_TEST_CASE("judgement of a step: each way of failing has its reason, and 
     DOCTEST_CHECK(contains(judge_step(smeared).reason, "on the bear, not beside it"));
     DOCTEST_CHECK(contains(reason(EditMode::Replace, &StepFigures::old_left, 0.6), "60 % of the bear"));
     DOCTEST_CHECK(contains(reason(EditMode::Replace, &StepFigures::new_shown, 0.01), "hardly any cat"));
+    DOCTEST_CHECK(contains(reason(EditMode::Remove, &StepFigures::gone, 0.95), "95 % of the scene is gone"));
+    DOCTEST_CHECK(reason(EditMode::Remove, &StepFigures::gone, 0.7).empty());
 }
 
 DOCTEST_TEST_CASE("judgement of a step: figures of other kinds of change do not count") {
     DOCTEST_CHECK(reason(EditMode::Modify, &StepFigures::seen, 0).empty());
+    DOCTEST_CHECK(reason(EditMode::Replace, &StepFigures::gone, 1).empty());
     DOCTEST_CHECK(reason(EditMode::Replace, &StepFigures::seen, 0).empty());
     DOCTEST_CHECK(reason(EditMode::Add, &StepFigures::old_left, 1).empty());
     DOCTEST_CHECK(reason(EditMode::Add, &StepFigures::new_shown, 0).empty());
