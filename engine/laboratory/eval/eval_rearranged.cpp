@@ -21,6 +21,8 @@ using Json = nlohmann::ordered_json;
 using Bits = std::vector<std::uint8_t>;
 
 constexpr int Side = 192;                     // of a held-out picture, pixels
+constexpr double Elevation = 0.35;            // radians, between those of an edit's views
+constexpr double FromAfar = 0.55;             // zoom from which places beside the thing are seen
 constexpr double LeftShare = 0.1;             // of a pixel that remains of a thing may make up unseen
 constexpr double HoleDifference = 4.0 / 255;  // between truth and plain deletion: it must be filled
 constexpr double FarAway = 1;                 // sizes of the thing from its foot: no hole is there
@@ -42,9 +44,10 @@ public:
         : edit_(edit), scene_(scene), job_(job), tools_(tools), thing_(rows_of(scene, synth::Part::Object)),
           label_(*job.located().label.bits), things_(scene.scene.gaussians.filtered(thing_)),
           axes_(front_axes(edit.source)), extent_(extent_of(things_, axes_)) {
-        for (const auto& view :
-             make_setting(edit, job.recipe().request.plain(), tools.held_out_views).held_out.views)
-            cameras_.push_back(view.camera.resized(Side, Side));
+        const double zoom = edit.asked.things == 0 ? 1 : FromAfar;
+        for (int i = 0; i < tools.held_out_views; ++i)
+            cameras_.push_back(synth::scene_camera(
+                scene, 2 * std::numbers::pi * (i + 0.5) / tools.held_out_views, Elevation, zoom, Side, Side));
     }
 
     Json figures() {
