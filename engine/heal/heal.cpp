@@ -52,12 +52,12 @@ public:
         for (std::size_t row = 0; row < input_.thing.size(); ++row)
             if (input_.thing[row] != 0) healed_.removed[row] = 1, any_ = true;
         if (!any_) throw Error(ErrorCode::InvalidArgument, "no splat is labelled", "select the thing first");
-        const auto thing = surface_rows(
-            input_.scene, usable_, [&](std::size_t row, const Vec3&) { return healed_.removed[row] != 0; });
-        body_ = body_of(thing);
+        thing_ = surface_rows(input_.scene, usable_,
+                              [&](std::size_t row, const Vec3&) { return healed_.removed[row] != 0; });
+        body_ = body_of(thing_);
         if (body_.empty()) return std::move(healed_);
         look_around();
-        if (settings_.held_parts) take_held(thing);
+        if (settings_.held_parts) take_held();
         reach_ = settings_.reach * body_.size;
         heal(settings_.shadow);
         return std::move(healed_);
@@ -88,9 +88,9 @@ private:
         });
     }
 
-    void take_held(std::span<const SurfaceRow> thing) {
+    void take_held() {
         step("held parts", 0, 1);
-        const auto held = held_parts(thing, rows_, body_, Margin * body_.size, up_);
+        const auto held = held_parts(thing_, rows_, body_, Margin * body_.size, up_);
         std::vector<SurfaceRow> rest;
         for (std::size_t i = 0; i < rows_.size(); ++i) {
             if (held[i] == 0) {
@@ -101,6 +101,20 @@ private:
             ++healed_.carried;
         }
         rows_.swap(rest);
+    }
+
+    /// Removes what the label left out, as far as no surface is made of it.
+    void take_remnants() {
+        std::vector<SurfaceRow> loose;
+        std::vector<std::size_t> place;
+        for (std::size_t i = 0; i < rows_.size(); ++i)
+            if (taken_[i] == 0) loose.push_back(rows_[i]), place.push_back(i);
+        const auto left = remnants(thing_, loose, body_, Margin * body_.size);
+        for (std::size_t k = 0; k < left.size(); ++k) {
+            if (left[k] == 0) continue;
+            healed_.removed[loose[k].row] = 1;
+            ++healed_.cleared;
+        }
     }
 
     /// Charts of the surfaces around, the one with most evidence first.
@@ -128,6 +142,7 @@ private:
     void heal(bool whole_thing) {
         gain_.assign(rows_.size(), Vec3(1));
         find_surfaces();
+        if (whole_thing) take_remnants();
         std::vector<BitGrid> under, near;
         for (const auto& chart : charts_) {
             under.push_back(cells_under(chart));
@@ -280,10 +295,10 @@ private:
     bool any_ = false;
     std::vector<std::uint8_t> usable_;
     Body body_;
-    double reach_ = 0;  // world units
-    std::vector<SurfaceRow> rows_;
-    std::vector<std::uint8_t> taken_;  // rows that belong to a surface
-    std::vector<Vec3> gain_;           // of the rows' colours, that lights them again
+    double reach_ = 0;                      // world units
+    std::vector<SurfaceRow> thing_, rows_;  // the thing; rows around it that stay
+    std::vector<std::uint8_t> taken_;       // rows that belong to a surface
+    std::vector<Vec3> gain_;                // of the rows' colours, that lights them again
     std::vector<Chart> charts_;
     Healed healed_;
 };
