@@ -25,7 +25,7 @@ constexpr double Darkest = 0.02;          // channel value that logarithms start
 constexpr double ClearlyDarker = 0.13, SlightlyDarker = 0.04;  // in logarithms of brightness
 constexpr double ClearSpread = 2.0, SlightSpread = 1.0;        // spreads of the surface beyond
 constexpr double HueLimit = 0.10;        // difference of a channel's share of the brightness
-constexpr std::size_t LeastBeyond = 60;  // cells beyond the shadow to compare with
+constexpr std::size_t LeastBeyond = 25;  // cells beyond the shadow to compare with
 constexpr double MostGain = 3.5;
 constexpr double DeepShadow = 0.9;    // in logarithms of brightness, that is filled anew and not lit
 constexpr double BrightShare = 0.97;  // of the rows of the surface beyond, that are darker than its brightest

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "engine/base/error.h"
+#include "engine/base/random.h"
 #include "engine/evaluate/metrics.h"
 #include "engine/heal/heal.h"
 #include "engine/math/sh.h"
@@ -337,6 +339,44 @@ DOCTEST_TEST_CASE("a thing in the air leaves nothing to heal") {
     DOCTEST_CHECK(healed.added.size() == 0);
     DOCTEST_CHECK(healed.surfaces.empty());
     DOCTEST_CHECK(!healed.open.empty());
+}
+
+DOCTEST_TEST_CASE("odd scenes and labels are survived") {
+    Random random(7);
+    const auto odd = [&] {
+        const float values[] = {0,
+                                1e-20F,
+                                1e20F,
+                                std::numeric_limits<float>::infinity(),
+                                std::numeric_limits<float>::quiet_NaN(),
+                                -1e6F};
+        return values[random.below(6)];
+    };
+    for (int round = 0; round < 40; ++round) {
+        const Builder whole = floor_with_ball(round % 3 == 0 ? -1 : 0.22);
+        GaussianData data;
+        std::vector<std::uint8_t> thing;
+        const std::size_t count = round % 5 == 0 ? random.below(20) + 1 : whole.data.size();
+        for (std::size_t row = 0; row < count; ++row) {
+            data.append_row(whole.data, row);
+            thing.push_back(round % 4 == 1   ? 1
+                            : round % 4 == 2 ? static_cast<std::uint8_t>(random.below(2))
+                                             : whole.thing[row]);
+        }
+        thing[0] = 1;
+        for (int i = 0; i < 30; ++i) {
+            std::vector<float>* arrays[] = {&data.position, &data.log_scale, &data.rotation,
+                                            &data.opacity_logit, &data.sh};
+            auto& array = *arrays[random.below(5)];
+            array[random.below(array.size())] = odd();
+        }
+        const GaussianSet set(data);
+        const auto healed = heal::remove_and_heal({set, thing, {0, 1, 0}});
+        DOCTEST_CHECK(healed.removed.size() == set.size());
+        for (const float value : healed.added.position) DOCTEST_CHECK(std::isfinite(value));
+        const auto brushed = heal::heal_region({set, thing, {0, 1, 0}}, {0, 0, 0}, 0.2);
+        DOCTEST_CHECK(brushed.removed.size() == set.size());
+    }
 }
 
 DOCTEST_TEST_CASE("bad input gets a clear sentence") {
