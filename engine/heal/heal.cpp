@@ -18,9 +18,10 @@
 namespace gse::heal {
 namespace {
 
-constexpr double Margin = 1.0;      // of the thing's size, that is looked at around it
-constexpr double Band = 0.6;        // of the thing's size, in which surfaces are looked for
-constexpr double Tolerance = 0.02;  // of the thing's size, of rows from their plane
+constexpr double Margin = 1.0;              // of the thing's size, that is looked at around it
+constexpr double Band = 0.6;                // of the thing's size, in which surfaces are looked for
+constexpr double RoughestTolerance = 0.08;  // that is tried where no plane was found
+constexpr double Tolerance = 0.02;          // of the thing's size, of rows from their plane
 constexpr std::size_t MostSurfaces = 5;
 constexpr double HidingShare =
     0.5;  // of the thing's size: parts of it that are farther hide nothing for long
@@ -117,19 +118,24 @@ private:
         }
     }
 
-    /// Charts of the surfaces around, the one with most evidence first.
+    /// Charts of the surfaces around, the one with most evidence first. Where nothing is flat enough, planes
+    /// may be rougher.
     void find_surfaces() {
         Random random = Random::stream(settings_.seed, 1);
         taken_.assign(rows_.size(), 0);
         auto samples = plane_samples(rows_, body_, Band * body_.size);
         double total = 0;
         for (const auto& sample : samples) total += sample.weight;
+        double tolerance = Tolerance * body_.size;
         for (std::size_t tries = 0; tries < 2 * MostSurfaces && charts_.size() < MostSurfaces; ++tries) {
             step("surfaces", static_cast<int>(tries), 2 * static_cast<int>(MostSurfaces));
-            const double tolerance = Tolerance * body_.size;
             const auto plane = find_plane(samples, total, tolerance, body_, random);
+            auto chart = plane ? make_chart(rows_, taken_, *plane, tolerance, body_, up_) : std::nullopt;
+            if (!chart && charts_.empty() && tolerance < RoughestTolerance * body_.size) {
+                tolerance *= 2;
+                continue;
+            }
             if (!plane) break;
-            auto chart = make_chart(rows_, taken_, *plane, tolerance, body_, up_);
             if (chart)
                 for (const auto i : chart->own) taken_[i] = 1;
             std::erase_if(samples, [&](const PlaneSample& sample) {
