@@ -270,11 +270,16 @@ void draw_chart(Chart& chart, std::span<const SurfaceRow> rows) {
     auto next = chart.cell_first;
     for (std::size_t k = 0; k < chart.own.size(); ++k) chart.cell_rows[next[place[k]]++] = chart.own[k];
     std::sort(order.begin(), order.end());
-    for (const auto& [above, i] : order)
+    chart.shown.assign(rows.size(), 0);
+    for (const auto& [above, i] : order) {
+        double shown = 0, all = 1e-9;
         each_covered(chart, rows[i], [&, colour = rows[i].colour](std::size_t cell, double opacity) {
             chart.colour.cells[cell] += colour * (chart.through.cells[cell] * opacity);
+            shown += chart.through.cells[cell] * opacity, all += opacity;
             chart.through.cells[cell] *= 1 - opacity;
         });
+        chart.shown[i] = static_cast<float>(shown / all);
+    }
     std::vector<double> covers;
     for (std::size_t c = 0; c < cells; ++c) {
         const double cover = 1 - chart.through.cells[c];

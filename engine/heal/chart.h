@@ -33,6 +33,7 @@ struct Chart {
     BitGrid known;                          // cells that own rows cover
     double usual_cover = 0;                 // median over the cells with own rows
     std::vector<std::uint32_t> own;         // indices of the surface's rows, ascending
+    std::vector<float> shown;               // [rows] share of an own row that shows from straight above
     std::vector<std::uint32_t> cell_first;  // [cells + 1] where a cell begins in `cell_rows`
     std::vector<std::uint32_t> cell_rows;   // indices of own rows by the cell that holds their middle
 

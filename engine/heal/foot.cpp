@@ -15,14 +15,16 @@ constexpr double RemainShare = 0.08;   // height of remains over the surface, an
 constexpr double LargestRemain = 0.2;  // of the thing's size, standard deviation
 constexpr int ClosingCells = 2;
 constexpr std::size_t LeastFoot = 4;             // cells
-constexpr int NearestRing = 3, WidestRing = 30;  // cells around the foot whose colours are compared
+constexpr int NearestRing = 3, WidestRing = 16;  // cells around the foot whose colours are compared
+constexpr double AroundCells = 3.5;              // from a hole, that must show the surface
 constexpr std::size_t MostRing = 1500;
 constexpr std::array Lights{1.0, 1.25, 1.6, 2.0};  // factors by which a shaded colour may be too dark
 constexpr double Unlike = 0.15;                    // distance of a colour from all colours around
 constexpr double GarbageShare = 0.25;              // of the foot's known cells
-constexpr double LeastDensity = 0.5;  // of rows in the foot over those around; above its inverse, too
-constexpr double LargestSize = 1.5;   // of the rows in the foot over those around
-constexpr double LeastLight = 0.4, MostLight = 1.15;  // of the foot over that around
+constexpr double LeastKnown = 0.3;                 // of the foot's cells, that there is a surface to judge
+constexpr double LeastDensity = 0.7;  // of rows in the foot over those around; above its inverse, too
+constexpr double LargestSize = 1.5;   // of the rows in the foot over those around; below its inverse, too
+constexpr double LeastLight = 0.45, MostLight = 1.1;  // of the foot over that around
 constexpr double MostHue = 0.06;                      // difference of the channels' shares
 
 BitGrid shrunk(const BitGrid& bits, int cells) {
@@ -139,13 +141,25 @@ bool foot_is_garbage(const Chart& chart, const BitGrid& foot, std::span<const Su
     };
     const Look under = look_of(chart, rows, [&](std::size_t i) { return foot.cells[i] != 0; });
     const Look around = look_of(chart, rows, in_ring);
-    if (under.cells == 0 || around.cells == 0) return false;
+    const auto cells = static_cast<double>(std::count(foot.cells.begin(), foot.cells.end(), 1));
+    if (static_cast<double>(under.cells) < LeastKnown * cells || around.cells == 0) return false;
     const double density = under.density / around.density, light = under.light / around.light;
     if (density < LeastDensity || density > 1 / LeastDensity) return true;
-    if (under.size > LargestSize * around.size) return true;
+    if (under.size > LargestSize * around.size || under.size * LargestSize < around.size) return true;
     if (light < LeastLight || light > MostLight) return true;
     if (length(under.share - around.share) > MostHue) return true;
     return unlike_share(chart, foot, in_ring) > GarbageShare;
+}
+
+double known_around(const Chart& chart, const BitGrid& bits, const BitGrid& border) {
+    const auto away = distance_to(bits);
+    double known = 0, all = 0;
+    for (std::size_t i = 0; i < bits.cells.size(); ++i) {
+        if (bits.cells[i] != 0 || away.cells[i] > AroundCells) continue;
+        all += 1;
+        if (chart.known.cells[i] != 0 || border.cells[i] != 0) known += 1;
+    }
+    return all > 0 ? known / all : 0;
 }
 
 void each_remain(const Chart& chart, const BitGrid& foot, std::span<const SurfaceRow> rows,

@@ -24,9 +24,13 @@ constexpr double Tolerance = 0.02;  // of the thing's size, of rows from their p
 constexpr std::size_t MostSurfaces = 5;
 constexpr double HidingShare =
     0.5;  // of the thing's size: parts of it that are farther hide nothing for long
-constexpr double ShadowReach = 0.45;     // of the thing's size
-constexpr int FootRim = 2;               // cells around a foot that nothing saw, in which colours are mixed
-constexpr double LargestCleared = 2.0;   // cells, standard deviation of a row that is taken out of a hole
+constexpr double ShadowReach = 0.45;    // of the thing's size
+constexpr int FootRim = 2;              // cells around a foot that nothing saw, in which colours are mixed
+constexpr int MixedRim = 3;             // cells around a foot that nothing is copied from
+constexpr double LargestCleared = 2.0;  // cells, standard deviation of a row that is taken out of a hole
+constexpr double LeastAround = 0.6, LeastAroundSteep = 0.8;  // of the cells around a hole or foot, that show
+                                                             // a level surface, and another one
+constexpr double LevelNormal = 0.7;      // cosine between up and the normal of a surface with a shadow
 constexpr double LeastGain = 1.02;       // of a row that is lit again
 constexpr double LeastOpenShare = 0.02;  // of the thing's size squared: open area worth a sentence
 
@@ -124,24 +128,29 @@ private:
     void heal(bool whole_thing) {
         gain_.assign(rows_.size(), Vec3(1));
         find_surfaces();
-        std::vector<BitGrid> near;
-        for (const auto& chart : charts_) near.push_back(near_cells(chart));
+        std::vector<BitGrid> under, near;
+        for (const auto& chart : charts_) {
+            under.push_back(cells_under(chart));
+            near.push_back(grown(under.back(), static_cast<int>(std::ceil(reach_ / chart.cell)) + 2));
+        }
         for (std::size_t k = 0; k < charts_.size(); ++k) {
             step("holes", static_cast<int>(k), static_cast<int>(charts_.size()));
             Chart& chart = charts_[k];
             const BitGrid border = borders(charts_, near, k);
             BitGrid foot(chart.height.width, chart.height.height, 0);
-            if (whole_thing) foot = clear_foot(chart);
-            Hole hole = find_hole(chart, near[k], border);
-            drop_behind(chart, rows_, body_, hole.cells);
+            if (whole_thing) foot = clear_foot(chart, border);
+            const bool stands = std::find(foot.cells.begin(), foot.cells.end(), 1) != foot.cells.end();
+            Hole hole = find_hole(chart, near[k], stands ? foot : under[k], border);
+            drop_shown(chart, rows_, healed_.removed, body_, hole.cells);
             drop_seams(hole.cells, foot);
-            heal_surface(chart, std::move(hole), foot, whole_thing && settings_.shadow);
+            drop_loose(chart, border, hole);
+            heal_surface(chart, std::move(hole), foot, stands && level(chart) && settings_.shadow);
         }
         say_what_is_open();
     }
 
-    /// Cells that the thing may have hidden: those under it, seen along the normal, and a little around them.
-    BitGrid near_cells(const Chart& chart) const {
+    /// Cells under the thing, seen along the normal.
+    BitGrid cells_under(const Chart& chart) const {
         BitGrid under(chart.height.width, chart.height.height, 0);
         for (const auto& point : body_.points) {
             const Vec3 at = chart.local(point);
@@ -149,13 +158,32 @@ private:
             if (under.inside(x, y) && std::abs(at.z - chart.height.at(x, y)) < HidingShare * body_.size)
                 under.at(x, y) = 1;
         }
-        return grown(under, static_cast<int>(std::ceil(reach_ / chart.cell)) + 2);
+        return under;
+    }
+
+    bool level(const Chart& chart) const { return dot(chart.normal, up_) > LevelNormal; }
+    double least_around(const Chart& chart) const { return level(chart) ? LeastAround : LeastAroundSteep; }
+
+    /// Leaves holes open that the surface does not show around.
+    void drop_loose(const Chart& chart, const BitGrid& border, Hole& hole) {
+        std::vector<std::size_t> sizes;
+        const auto groups = groups_of(hole.cells, sizes);
+        for (int group = 1; group < static_cast<int>(sizes.size()); ++group) {
+            BitGrid one(groups.width, groups.height, 0);
+            for (std::size_t i = 0; i < one.cells.size(); ++i)
+                one.cells[i] = groups.cells[i] == group ? 1 : 0;
+            if (known_around(chart, one, border) >= least_around(chart)) continue;
+            for (std::size_t i = 0; i < one.cells.size(); ++i)
+                if (one.cells[i] != 0) hole.cells.cells[i] = 0, ++hole.open;
+        }
     }
 
     /// Removes what is left of the thing where it stood, and the surface there if no picture can have shown
     /// it.
-    BitGrid clear_foot(Chart& chart) {
+    BitGrid clear_foot(Chart& chart, const BitGrid& border) {
         BitGrid foot = foot_cells(chart, body_);
+        if (known_around(chart, foot, border) < least_around(chart))
+            return BitGrid(foot.width, foot.height, 0);
         const bool garbage = foot_is_garbage(chart, foot, rows_);
         if (garbage) foot = grown(foot, FootRim);
         each_remain(chart, foot, rows_, taken_, body_, garbage, [&](std::size_t i) {
@@ -169,19 +197,19 @@ private:
 
     void heal_surface(Chart& chart, Hole hole, const BitGrid& foot, bool shadows) {
         const std::size_t before = healed_.added.size();
-        const bool stands = std::find(foot.cells.begin(), foot.cells.end(), 1) != foot.cells.end();
-        if (shadows && stands) light_again(chart, hole.cells, foot);
+        if (shadows) light_again(chart, hole.cells, foot);
         HealedSurface surface{chart.origin, chart.normal, chart.cell};
         std::size_t cells = 0;
         for (const auto bit : hole.cells.cells) cells += bit;
         if (cells > 0) {
-            clear_cells(chart, hole.cells, LargestCleared * chart.cell);
+            clear_hole(chart, hole.cells);
             fill_heights(chart, hole.cells);
             BitGrid known = chart.known;
             for (std::size_t i = 0; i < known.cells.size(); ++i)
                 if (hole.cells.cells[i] != 0) known.cells[i] = 0;
             step("texture", 0, 1);
-            const auto texture = fill_by_patches(chart.colour, known, hole.cells, settings_.seed);
+            const auto texture =
+                fill_by_patches(chart.colour, known, hole.cells, grown(foot, MixedRim), settings_.seed);
             surface.copied = texture.found;
             lay_rows(input_.scene, rows_, chart, hole.cells, texture, rim_gain(chart, hole.cells, texture),
                      gain_, healed_.added);
@@ -207,12 +235,24 @@ private:
         if (chart.own.size() < before) draw_chart(chart, rows_);
     }
 
+    /// Removes the rows in a hole, and adds the cells to it that only they had covered.
+    void clear_hole(Chart& chart, BitGrid& hole) {
+        for (bool more = true; more;) {
+            const BitGrid before = chart.known;
+            clear_cells(chart, hole, LargestCleared * chart.cell);
+            more = false;
+            for (std::size_t i = 0; i < hole.cells.size(); ++i)
+                if (hole.cells[i] == 0 && before.cells[i] != 0 && chart.known.cells[i] == 0)
+                    hole.cells[i] = 1, more = true;
+        }
+    }
+
     /// Replaces the rows in the shadow by lit copies. Cells in deep shadow become part of the hole.
     void light_again(Chart& chart, BitGrid& hole, const BitGrid& foot) {
         const auto shade = find_shade(chart, rows_, hole, foot, ShadowReach * body_.size / chart.cell);
         for (std::size_t i = 0; i < hole.cells.size(); ++i)
             if (shade.deep.cells[i] != 0) hole.cells[i] = 1;
-        clear_cells(chart, hole, LargestCleared * chart.cell);
+        clear_hole(chart, hole);
         for (const auto i : chart.own) {
             const Vec3& gain = gain_[i] = shade.gain[i];
             if (std::max({gain.x, gain.y, gain.z}) < LeastGain) continue;

@@ -15,7 +15,7 @@ namespace gse::heal {
 struct HealSettings {
     bool held_parts = true;
     bool shadow = true;
-    double reach = 0.06;
+    double reach = 0.12;
     std::uint64_t seed = 1;
 
     template <class Self, class F> static void visit_fields(Self& self, F&& f) {

@@ -10,13 +10,16 @@ namespace gse::heal {
 namespace {
 
 constexpr int Orientations = 8;
-constexpr int LeastOrientations = 2;   // with cover on both sides, of a cell that is filled
+// Orientations with cover on both sides, of a cell that is filled: where the thing was, and elsewhere.
+constexpr int CoreOrientations = 2, LeastOrientations = 4;
 constexpr int Passes = 4;              // each takes the cells filled before as covered
 constexpr int SolidNeighbours = 3;     // known ones of the eight, of a cell that ends a ray
 constexpr std::size_t LeastCells = 4;  // of a hole
 constexpr double BorderWidth = 0.75;   // cells to either side of where two surfaces cut each other
 constexpr double MostAligned = 0.9;    // cosine between the normals of surfaces that cut each other
-constexpr double BehindShare = 0.6;    // of a hole, that other rows between it and the thing cover
+constexpr double ShownShare = 0.6;     // of a hole, that other rows before it or close behind it cover
+constexpr double BehindDepth = 0.12;   // of the thing's size
+constexpr double BehindOpacity = 0.5;  // of rows behind it that are a surface
 constexpr double FarSide = 0.3;        // cells beyond the cut, from which nothing is filled
 constexpr std::uint8_t BeyondBorder = 2;
 constexpr double BorderProbe = 1.5;  // cells above or below the cut, where the other surface must be
@@ -131,28 +134,36 @@ BitGrid borders(std::span<const Chart> charts, std::span<const BitGrid> near, st
     return border;
 }
 
-void drop_behind(const Chart& chart, std::span<const SurfaceRow> rows, const Body& body, BitGrid& cells) {
+void drop_shown(const Chart& chart, std::span<const SurfaceRow> rows, std::span<const std::uint8_t> removed,
+                const Body& body, BitGrid& cells) {
     std::vector<double> heights;
     for (const auto& point : body.points) heights.push_back(chart.local(point).z);
     const auto low = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 20);
     std::nth_element(heights.begin(), low, heights.end());
     const double first = std::max(3 * chart.cell, 1.5 * chart.tolerance);
-    if (*low < first) return;
-    BitGrid covered(cells.width, cells.height, 0);
+    BitGrid before(cells.width, cells.height, 0), behind = before;
     for (const auto& row : rows) {
+        if (removed[row.row] != 0) continue;
         const Vec3 at = chart.local(row.at);
         const double above = at.z - chart.height_at(at.x, at.y);
         if (above > first && above < *low + chart.cell)
-            each_covered(chart, row, [&](std::size_t cell, double) { covered.cells[cell] = 1; });
+            each_covered(chart, row, [&](std::size_t cell, double) { before.cells[cell] = 1; });
+        if (above < -first && above > -BehindDepth * body.size)
+            each_covered(chart, row, [&](std::size_t cell, double opacity) {
+                if (opacity > BehindOpacity) behind.cells[cell] = 1;
+            });
     }
     std::vector<std::size_t> sizes;
     const auto groups = groups_of(cells, sizes);
-    std::vector<std::size_t> hidden(sizes.size(), 0);
-    for (std::size_t i = 0; i < cells.cells.size(); ++i)
-        if (covered.cells[i] != 0) ++hidden[static_cast<std::size_t>(groups.cells[i])];
+    std::vector<std::size_t> hidden(sizes.size(), 0), floored(sizes.size(), 0);
+    for (std::size_t i = 0; i < cells.cells.size(); ++i) {
+        hidden[static_cast<std::size_t>(groups.cells[i])] += before.cells[i];
+        floored[static_cast<std::size_t>(groups.cells[i])] += behind.cells[i];
+    }
     for (std::size_t i = 0; i < cells.cells.size(); ++i) {
         const auto group = static_cast<std::size_t>(groups.cells[i]);
-        if (static_cast<double>(hidden[group]) > BehindShare * static_cast<double>(sizes[group]))
+        if (static_cast<double>(std::max(hidden[group], floored[group])) >
+            ShownShare * static_cast<double>(sizes[group]))
             cells.cells[i] = 0;
     }
 }
@@ -196,7 +207,7 @@ void drop_seams(BitGrid& cells, const BitGrid& foot) {
         if (wide.cells[i] == 0 && foot.cells[i] == 0) cells.cells[i] = 0;
 }
 
-Hole find_hole(const Chart& chart, const BitGrid& near, const BitGrid& border) {
+Hole find_hole(const Chart& chart, const BitGrid& near, const BitGrid& core, const BitGrid& border) {
     Hole hole{BitGrid(chart.known.width, chart.known.height, 0)};
     BitGrid ends = ends_of(chart, border);
     BitGrid partly(chart.known.width, chart.known.height, 0);
@@ -209,7 +220,8 @@ Hole find_hole(const Chart& chart, const BitGrid& near, const BitGrid& border) {
             if (border.at(x, y) == BeyondBorder) return;
             const int bounded = rays.bounded(x, y);
             partly.at(x, y) = bounded > 0 ? 1 : 0;
-            if (bounded >= LeastOrientations) hole.cells.at(x, y) = 1, ++found;
+            if (bounded >= (core.at(x, y) != 0 ? CoreOrientations : LeastOrientations))
+                hole.cells.at(x, y) = 1, ++found;
         });
         if (found == 0) break;
         for (std::size_t i = 0; i < ends.cells.size(); ++i) ends.cells[i] |= hole.cells.cells[i];

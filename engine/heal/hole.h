@@ -17,12 +17,15 @@ struct Hole {
     std::size_t open = 0;  // cells that may have been surface but that nothing bounds on enough sides
 };
 
-/// Uncovered cells of `near` with covered ones or a border on opposite sides, in several directions. So a
-/// table's edge goes on straight, and nothing is added beyond it. Specks are left out.
-Hole find_hole(const Chart& chart, const BitGrid& near, const BitGrid& border);
+/// Uncovered cells of `near` with covered ones or a border on opposite sides: in two of eight orientations
+/// where `core` says that the thing was there, in four elsewhere. So a table's edge goes on straight, and
+/// nothing is added beyond it. Specks are left out.
+Hole find_hole(const Chart& chart, const BitGrid& near, const BitGrid& core, const BitGrid& border);
 
-/// Drops holes that other rows mostly hide from the thing, as the floor under the table that it stands on.
-void drop_behind(const Chart& chart, std::span<const SurfaceRow> rows, const Body& body, BitGrid& cells);
+/// Drops holes before which or close behind which lies something else: the floor under the table that the
+/// thing stands on, or a gap above a lower surface. Rows with removed[row] != 0 do not count.
+void drop_shown(const Chart& chart, std::span<const SurfaceRow> rows, std::span<const std::uint8_t> removed,
+                const Body& body, BitGrid& cells);
 
 /// Drops lines of cells, as along an edge that rows cover in part, but for those at the thing's foot.
 void drop_seams(BitGrid& cells, const BitGrid& foot);

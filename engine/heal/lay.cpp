@@ -11,6 +11,7 @@ namespace gse::heal {
 namespace {
 
 constexpr double LargestCopy = 3.5;  // cells, standard deviation of a row that is copied
+constexpr float LeastShown = 0.1F;   // of a row that is copied: what others hide would come to light
 constexpr double MostRimGain = 0.5;  // of a channel at the rim, in logarithms
 constexpr double DarkestRim = 0.03;  // channel value that logarithms start from
 constexpr double RimBlur = 2.5;      // standard deviation
@@ -148,8 +149,8 @@ Grid<Vec3> rim_gain(const Chart& chart, const BitGrid& hole, const PatchFill& fi
 }
 
 void lay_rows(const GaussianSet& scene, std::span<const SurfaceRow> rows, const Chart& chart,
-              const BitGrid& hole, const PatchFill& fill, const Grid<Vec3>& rim, std::span<const Vec3> gain,
-              GaussianData& added) {
+              const BitGrid& hole, const PatchFill& fill, const Grid<Vec3>& rim_gains,
+              std::span<const Vec3> gain, GaussianData& added) {
     auto through = chart.through;
     const auto cover = [&](const SurfaceRow& row) {
         each_covered(chart, row,
@@ -158,13 +159,13 @@ void lay_rows(const GaussianSet& scene, std::span<const SurfaceRow> rows, const 
     const auto copy_cell = [&](int x, int y, Shift shift) {
         for (const auto i : chart.rows_in(x + shift.x, y + shift.y)) {
             SurfaceRow row = rows[i];
-            if (row.longest() > LargestCopy * chart.cell) continue;
+            if (row.longest() > LargestCopy * chart.cell || chart.shown[i] < LeastShown) continue;
             const Vec3 from = chart.local(row.at);
             const double px = from.x - shift.x, py = from.y - shift.y;
             const double rise = from.z - chart.height_at(from.x, from.y);
             const Quat turn = turn_between(chart.normal_at(from.x, from.y), chart.normal_at(px, py));
             row.at = chart.world(px, py, chart.height_at(px, py) + rise);
-            append_copy(scene, row.row, row.at, turn, gain[i] * between_cells(rim, px, py), added);
+            append_copy(scene, row.row, row.at, turn, gain[i] * between_cells(rim_gains, px, py), added);
             cover(row);
         }
     };
@@ -172,13 +173,14 @@ void lay_rows(const GaussianSet& scene, std::span<const SurfaceRow> rows, const 
         each_cell(hole, [&](int x, int y) {
             if (hole.at(x, y) != 0) copy_cell(x, y, fill.shift.at(x, y));
         });
+    // Rows below the surface close what is thin, and gaps between copies and the rim.
     each_cell(hole, [&](int x, int y) {
-        bool beside = false;
-        each_neighbour(hole, x, y, 1, [&](int nx, int ny) { beside = beside || hole.at(nx, ny) != 0; });
         const bool inside = hole.at(x, y) != 0;
-        if (!inside && !(beside && chart.known.at(x, y) != 0)) return;
-        if (1 - through.at(x, y) >= ThinShare * chart.usual_cover) return;
-        const Vec3 colour = inside ? fill.colour.at(x, y) * rim.at(x, y) : chart.colour.at(x, y);
+        bool rim = false;
+        each_neighbour(hole, x, y, 1, [&](int nx, int ny) { rim = rim || (hole.at(nx, ny) != 0) != inside; });
+        if (!inside && !(rim && chart.known.at(x, y) != 0)) return;
+        if (!rim && 1 - through.at(x, y) >= ThinShare * chart.usual_cover) return;
+        const Vec3 colour = inside ? fill.colour.at(x, y) * rim_gains.at(x, y) : chart.colour.at(x, y);
         const SurfaceRow row = fresh_row(chart, x + 0.5, y + 0.5, colour);
         append_fresh(row, added);
         cover(row);

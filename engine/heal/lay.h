@@ -15,8 +15,8 @@ Grid<Vec3> rim_gain(const Chart& chart, const BitGrid& hole, const PatchFill& fi
 /// turned with the surface. `gain`: factors of the rows' colours. Cells that stay thin get a row of the
 /// fill's colour.
 void lay_rows(const GaussianSet& scene, std::span<const SurfaceRow> rows, const Chart& chart,
-              const BitGrid& hole, const PatchFill& fill, const Grid<Vec3>& rim, std::span<const Vec3> gain,
-              GaussianData& added);
+              const BitGrid& hole, const PatchFill& fill, const Grid<Vec3>& rim_gains,
+              std::span<const Vec3> gain, GaussianData& added);
 
 /// Appends a copy of a scene's row at another place, turned by `turn`, with its colours times `gain`.
 void append_copy(const GaussianSet& scene, std::size_t row, const Vec3& at, const Quat& turn,

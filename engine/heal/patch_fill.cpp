@@ -35,6 +35,7 @@ struct Level {
     Grid<State> state;
     Grid<Shift> shift;
     Grid<double> cost, trust;
+    BitGrid avoid;                   // cells that are copied only if there are too few others
     BitGrid source;                  // cells whose whole patch may be copied
     std::vector<std::size_t> holes;  // in raster order
     std::vector<std::size_t> sources;
@@ -48,21 +49,26 @@ BitGrid bits_of(const Grid<State>& state, State wanted) {
     return bits;
 }
 
-/// Lists holes and sources. False where there is not enough to copy from with patches of this reach.
-bool prepare(Level& level, int reach) {
-    level.reach = reach;
+void list_sources(Level& level, bool avoiding) {
     level.source = BitGrid(level.state.width, level.state.height, 0);
     level.holes.clear();
     level.sources.clear();
     each_cell(level.state, [&](int x, int y) {
         const std::size_t cell = level.state.index(x, y);
         if (level.state.cells[cell] == State::Hole) level.holes.push_back(cell);
-        if (level.state.cells[cell] != State::Known) return;
+        if (level.state.cells[cell] != State::Known || (avoiding && level.avoid.cells[cell] != 0)) return;
         bool whole = true;
-        each_neighbour(level.state, x, y, reach,
+        each_neighbour(level.state, x, y, level.reach,
                        [&](int nx, int ny) { whole = whole && level.state.at(nx, ny) != State::Hole; });
         if (whole) level.source.cells[cell] = 1, level.sources.push_back(cell);
     });
+}
+
+/// Lists holes and sources. False where there is not enough to copy from with patches of this reach.
+bool prepare(Level& level, int reach) {
+    level.reach = reach;
+    list_sources(level, true);
+    if (level.sources.size() < LeastSources) list_sources(level, false);
     level.shift = Grid<Shift>(level.state.width, level.state.height);
     level.cost = Grid<double>(level.state.width, level.state.height, 0);
     level.trust = distance_to(bits_of(level.state, State::Known));
@@ -76,6 +82,8 @@ Level halved(const Level& fine) {
     Level level;
     level.colour = Grid<Vec3>(width, height);
     level.state = Grid<State>(width, height, State::Void);
+    level.avoid = BitGrid(width, height, 0);
+    each_cell(fine.avoid, [&](int x, int y) { level.avoid.at(x / 2, y / 2) |= fine.avoid.at(x, y); });
     each_cell(level.state, [&](int x, int y) {
         Vec3 sum;
         int known = 0, hole = 0;
@@ -305,9 +313,11 @@ private:
     Level& level_;
 };
 
-std::vector<Level> pyramid(const Grid<Vec3>& colour, const BitGrid& known, const BitGrid& hole) {
+std::vector<Level> pyramid(const Grid<Vec3>& colour, const BitGrid& known, const BitGrid& hole,
+                           const BitGrid& avoid) {
     std::vector<Level> levels(1);
     levels[0].colour = colour;
+    levels[0].avoid = avoid;
     levels[0].state = Grid<State>(known.width, known.height, State::Void);
     for (std::size_t i = 0; i < known.cells.size(); ++i)
         levels[0].state.cells[i] = hole.cells[i] != 0    ? State::Hole
@@ -331,8 +341,8 @@ std::vector<Level> pyramid(const Grid<Vec3>& colour, const BitGrid& known, const
 }  // namespace
 
 PatchFill fill_by_patches(const Grid<Vec3>& colour, const BitGrid& known, const BitGrid& hole,
-                          std::uint64_t seed) {
-    auto levels = pyramid(colour, known, hole);
+                          const BitGrid& avoid, std::uint64_t seed) {
+    auto levels = pyramid(colour, known, hole, avoid);
     PatchFill fill;
     if (!prepare(levels[0], WideReach)) {
         levels.resize(1);

@@ -21,9 +21,10 @@ struct PatchFill {
     Grid<Vec3> colour;   // the hole's cells have those that they are copied from
 };
 
-/// Shifts for the cells of `hole`. Sources are cells of `known`. Cells that are neither are void, as beyond
-/// the edge of a table; an edge is continued like edges elsewhere. Equal seeds give equal results.
+/// Shifts for the cells of `hole`. Sources are cells of `known`, but for those of `avoid` if others suffice.
+/// Cells that are neither are void, as beyond the edge of a table; an edge is continued like edges elsewhere.
+/// Equal seeds give equal results.
 PatchFill fill_by_patches(const Grid<Vec3>& colour, const BitGrid& known, const BitGrid& hole,
-                          std::uint64_t seed);
+                          const BitGrid& avoid, std::uint64_t seed);
 
 }  // namespace gse::heal

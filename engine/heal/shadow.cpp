@@ -268,12 +268,30 @@ private:
         brightest_ = *at;
     }
 
+    /// Goes on with the values of shaded cells into cells beside them that nothing covers.
+    void spread(Grid<Vec3>& more, BitGrid set) const {
+        for (int pass = 0; pass < 2; ++pass) {
+            const auto values = more;
+            const BitGrid before = set;
+            each_cell(set, [&](int x, int y) {
+                if (before.at(x, y) != 0 || surface_.at(x, y) != 0) return;
+                Vec3 sum;
+                double count = 0;
+                each_neighbour(before, x, y, 1, [&](int nx, int ny) {
+                    if (before.at(nx, ny) != 0) sum += values.at(nx, ny), count += 1;
+                });
+                if (count > 0) more.at(x, y) = sum / count, set.at(x, y) = 1;
+            });
+        }
+    }
+
     /// Multiplies the rows' gains by what their cells still lack, and draws the surface with them.
     void lighten(const BitGrid& shaded, std::vector<Vec3>& gain) {
         Grid<Vec3> more(hole_.width, hole_.height, Vec3(0));
         for (std::size_t k = 0; k < within_.size(); ++k)
             if (shaded.cells[within_[k]] != 0)
                 more.cells[within_[k]] = {-dark_[k][0], -dark_[k][1], -dark_[k][2]};
+        spread(more, shaded);
         for (const auto i : chart_.own) {
             SurfaceRow& row = rows_[i];
             const Vec3 at = chart_.local(row.at), lack = between_cells(more, at.x, at.y);

@@ -103,16 +103,20 @@ DOCTEST_TEST_CASE("a hole in a floor is closed on the floor, and nothing else ch
 
 DOCTEST_TEST_CASE("stripes go on through the hole") {
     const auto healed = floor_with_ball(0.22).heal();
-    std::size_t right = 0;
+    std::size_t right = 0, away = 0;
     for (std::size_t row = 0; row < healed.added.size(); ++row) {
+        const double into = std::fmod(place(healed.added, row).x + 10, 0.2);
+        if (std::min(into, 0.2 - into) < Spacing) continue;  // colours are mixed at a stripe's border
+        ++away;
         const Vec3 wanted = striped(place(healed.added, row));
         const Vec3 colour{colour_from_sh(healed.added.sh[row * 3]),
                           colour_from_sh(healed.added.sh[row * 3 + 1]),
                           colour_from_sh(healed.added.sh[row * 3 + 2])};
         right += length(colour - wanted) < 0.2 ? 1U : 0U;
     }
-    constexpr double MostRight = 0.85;  // borders of stripes fall between rows
-    DOCTEST_CHECK(static_cast<double>(right) > MostRight * static_cast<double>(healed.added.size()));
+    constexpr double MostRight = 0.95;
+    DOCTEST_CHECK(away > 20);
+    DOCTEST_CHECK(static_cast<double>(right) > MostRight * static_cast<double>(away));
 }
 
 DOCTEST_TEST_CASE("equal inputs give equal results") {

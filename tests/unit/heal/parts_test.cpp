@@ -78,7 +78,7 @@ DOCTEST_TEST_CASE("a periodic texture is completed without an error") {
             if (std::abs(x - 24) < 7 && std::abs(y - 22) < 6) hole.at(x, y) = 1, known.at(x, y) = 0;
             else colour.at(x, y) = truth.at(x, y);
         });
-        const auto fill = fill_by_patches(colour, known, hole, 5);
+        const auto fill = fill_by_patches(colour, known, hole, BitGrid(48, 44, 0), 5);
         DOCTEST_REQUIRE(fill.found);
         std::size_t wrong = 0, cells = 0;
         each_cell(hole, [&](int x, int y) {
@@ -97,7 +97,7 @@ DOCTEST_TEST_CASE("with nothing to copy from, the colours of the rim are mixed")
     Grid<Vec3> colour(6, 6, Vec3{0.5, 0.4, 0.3});
     BitGrid known(6, 6, 0), hole(6, 6, 1);
     known.at(0, 0) = 1, hole.at(0, 0) = 0;
-    const auto fill = fill_by_patches(colour, known, hole, 1);
+    const auto fill = fill_by_patches(colour, known, hole, BitGrid(6, 6, 0), 1);
     DOCTEST_CHECK(!fill.found);
     DOCTEST_CHECK(length(fill.colour.at(3, 3) - Vec3{0.5, 0.4, 0.3}) < 1e-6);
 }
