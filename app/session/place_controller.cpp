@@ -147,18 +147,36 @@ std::optional<Ball> ball_under(const ui::ScreenRegion& stroke, const Image& dept
     return ball;
 }
 
+/// Ball around the marked rows; nothing where none is.
+std::optional<Ball> ball_around(const GaussianSet& set, const std::vector<std::uint8_t>& rows) {
+    const auto position = set.position();
+    const auto at = [&](std::size_t row) {
+        return Vec3{position[3 * row], position[3 * row + 1], position[3 * row + 2]};
+    };
+    Vec3 sum;
+    std::size_t count = 0;
+    for (std::size_t row = 0; row < rows.size(); ++row)
+        if (rows[row] != 0) sum = sum + at(row), ++count;
+    if (count == 0) return std::nullopt;
+    Ball ball{sum * (1.0 / static_cast<double>(count)), 0};
+    for (std::size_t row = 0; row < rows.size(); ++row)
+        if (rows[row] != 0) ball.radius = std::max(ball.radius, length(at(row) - ball.centre));
+    return ball;
+}
+
 }  // namespace
 
 template <> void PlaceController::on(const command::HealStroke& one) {
     const auto depth = view_.depth();
     if (!free_stack() || one.region.circles.empty()) return;
     const Camera camera = view_.shown_camera();
-    const auto ball = depth ? ball_under(one.region, *depth, camera) : std::nullopt;
-    if (!ball) return workspace_.notices.toast("Nothing is seen there that could be healed.");
     PickOptions options;
     options.depth = depth.get();
     auto rows = std::make_shared<const std::vector<std::uint8_t>>(
         rows_in_area(view_.seen_document(), camera, screen_area(one.region), options));
+    auto ball = ball_around(state().current, *rows);
+    if (!ball && depth) ball = ball_under(one.region, *depth, camera);
+    if (!ball) return workspace_.notices.toast("Nothing is seen there that could be healed.");
     start_healing(
         "Heal", state(), rows, false,
         [set = state().current, rows, up = state().info.up, ball = *ball](const JobControl& control) {

@@ -140,7 +140,6 @@ DOCTEST_TEST_CASE("a brush heals what it is painted over, without a label, as on
     Session session;
     session.open_bear();
     auto& app = session.app;
-    DOCTEST_REQUIRE(session.until([&] { return app.model().viewport_depth != nullptr; }));
     const auto before = app.document().state().current;
     const auto at = app.document().position();
     ui::ScreenRegion stroke;
