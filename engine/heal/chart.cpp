@@ -35,9 +35,10 @@ bool lies_along(const SurfaceRow& row, const Vec3& normal) {
 
 /// Distance between neighbouring rows on the plane: from the area that the four nearest of a row share.
 double spacing_of(std::span<const Vec3> places) {
-    constexpr std::size_t Asked = 300, Nearest = 4;
+    constexpr std::size_t MostAsked = 300, LeastAsked = 20, Nearest = 4, MostWork = 6'000'000;
     std::vector<double> spacing, squared(places.size());
-    const std::size_t count = std::min(Asked, places.size());
+    const std::size_t asked = std::clamp(MostWork / places.size(), LeastAsked, MostAsked);
+    const std::size_t count = std::min(asked, places.size());
     for (std::size_t i = 0; i < count; ++i) {
         const Vec3& at = places[i * places.size() / count];
         for (std::size_t k = 0; k < places.size(); ++k) squared[k] = dot(places[k] - at, places[k] - at);

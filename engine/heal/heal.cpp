@@ -18,9 +18,10 @@
 namespace gse::heal {
 namespace {
 
-constexpr double Margin = 1.0;      // of the thing's size, that is looked at around it
-constexpr double Band = 0.6;        // of the thing's size, in which surfaces are looked for
-constexpr double Tolerance = 0.02;  // of the thing's size, of rows from their plane
+constexpr double Margin = 1.0;              // of the thing's size, that is looked at around it
+constexpr double Band = 0.6;                // of the thing's size, in which surfaces are looked for
+constexpr double RoughestTolerance = 0.08;  // that is tried where no plane was found
+constexpr double Tolerance = 0.02;          // of the thing's size, of rows from their plane
 constexpr std::size_t MostSurfaces = 5;
 constexpr double HidingShare =
     0.5;  // of the thing's size: parts of it that are farther hide nothing for long
@@ -52,12 +53,12 @@ public:
         for (std::size_t row = 0; row < input_.thing.size(); ++row)
             if (input_.thing[row] != 0) healed_.removed[row] = 1, any_ = true;
         if (!any_) throw Error(ErrorCode::InvalidArgument, "no splat is labelled", "select the thing first");
-        const auto thing = surface_rows(
-            input_.scene, usable_, [&](std::size_t row, const Vec3&) { return healed_.removed[row] != 0; });
-        body_ = body_of(thing);
+        thing_ = surface_rows(input_.scene, usable_,
+                              [&](std::size_t row, const Vec3&) { return healed_.removed[row] != 0; });
+        body_ = body_of(thing_);
         if (body_.empty()) return std::move(healed_);
         look_around();
-        if (settings_.held_parts) take_held(thing);
+        if (settings_.held_parts) take_held();
         reach_ = settings_.reach * body_.size;
         heal(settings_.shadow);
         return std::move(healed_);
@@ -88,9 +89,9 @@ private:
         });
     }
 
-    void take_held(std::span<const SurfaceRow> thing) {
+    void take_held() {
         step("held parts", 0, 1);
-        const auto held = held_parts(thing, rows_, body_, Margin * body_.size, up_);
+        const auto held = held_parts(thing_, rows_, body_, Margin * body_.size, up_);
         std::vector<SurfaceRow> rest;
         for (std::size_t i = 0; i < rows_.size(); ++i) {
             if (held[i] == 0) {
@@ -103,19 +104,38 @@ private:
         rows_.swap(rest);
     }
 
-    /// Charts of the surfaces around, the one with most evidence first.
+    /// Removes what the label left out, as far as no surface is made of it.
+    void take_remnants() {
+        std::vector<SurfaceRow> loose;
+        std::vector<std::size_t> place;
+        for (std::size_t i = 0; i < rows_.size(); ++i)
+            if (taken_[i] == 0) loose.push_back(rows_[i]), place.push_back(i);
+        const auto left = remnants(thing_, loose, body_, Margin * body_.size);
+        for (std::size_t k = 0; k < left.size(); ++k) {
+            if (left[k] == 0) continue;
+            healed_.removed[loose[k].row] = 1;
+            ++healed_.cleared;
+        }
+    }
+
+    /// Charts of the surfaces around, the one with most evidence first. Where nothing is flat enough, planes
+    /// may be rougher.
     void find_surfaces() {
         Random random = Random::stream(settings_.seed, 1);
         taken_.assign(rows_.size(), 0);
         auto samples = plane_samples(rows_, body_, Band * body_.size);
         double total = 0;
         for (const auto& sample : samples) total += sample.weight;
+        double tolerance = Tolerance * body_.size;
         for (std::size_t tries = 0; tries < 2 * MostSurfaces && charts_.size() < MostSurfaces; ++tries) {
             step("surfaces", static_cast<int>(tries), 2 * static_cast<int>(MostSurfaces));
-            const double tolerance = Tolerance * body_.size;
             const auto plane = find_plane(samples, total, tolerance, body_, random);
+            auto chart = plane ? make_chart(rows_, taken_, *plane, tolerance, body_, up_) : std::nullopt;
+            if (!chart && charts_.empty() && tolerance < RoughestTolerance * body_.size) {
+                tolerance *= 2;
+                continue;
+            }
             if (!plane) break;
-            auto chart = make_chart(rows_, taken_, *plane, tolerance, body_, up_);
             if (chart)
                 for (const auto i : chart->own) taken_[i] = 1;
             std::erase_if(samples, [&](const PlaneSample& sample) {
@@ -128,6 +148,7 @@ private:
     void heal(bool whole_thing) {
         gain_.assign(rows_.size(), Vec3(1));
         find_surfaces();
+        if (whole_thing) take_remnants();
         std::vector<BitGrid> under, near;
         for (const auto& chart : charts_) {
             under.push_back(cells_under(chart));
@@ -280,10 +301,10 @@ private:
     bool any_ = false;
     std::vector<std::uint8_t> usable_;
     Body body_;
-    double reach_ = 0;  // world units
-    std::vector<SurfaceRow> rows_;
-    std::vector<std::uint8_t> taken_;  // rows that belong to a surface
-    std::vector<Vec3> gain_;           // of the rows' colours, that lights them again
+    double reach_ = 0;                      // world units
+    std::vector<SurfaceRow> thing_, rows_;  // the thing; rows around it that stay
+    std::vector<std::uint8_t> taken_;       // rows that belong to a surface
+    std::vector<Vec3> gain_;                // of the rows' colours, that lights them again
     std::vector<Chart> charts_;
     Healed healed_;
 };

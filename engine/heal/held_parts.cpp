@@ -7,13 +7,16 @@
 namespace gse::heal {
 namespace {
 
-constexpr double Cells = 44;         // along the diagonal of the thing
-constexpr double SplatReach = 1.5;   // standard deviations of a row that fill cells
-constexpr int MostProbes = 24;       // along an axis of a row
-constexpr int Touch = 2;             // cells between a part and the thing that it hangs on
-constexpr double LowCells = 2.5;     // cells above the thing's foot that count as its ground
-constexpr double CrumbShare = 0.01;  // of the thing's weight: such a part goes even near the ground
-constexpr double FootShare = 0.02;   // of the thing's points that may lie below its foot
+constexpr double Cells = 44;          // along the diagonal of the thing
+constexpr double SplatReach = 1.5;    // standard deviations of a row that fill cells
+constexpr int MostProbes = 24;        // along an axis of a row
+constexpr int Touch = 2;              // cells between a part and the thing that it hangs on
+constexpr double LowCells = 2.5;      // cells above the thing's foot that count as its ground
+constexpr double CrumbShare = 0.01;   // of the thing's weight: such a part goes even near the ground
+constexpr int CloseCells = 5;         // cells from the thing that are its close surroundings
+constexpr double CloseShare = 0.9;    // of a remnant's cells that lie there
+constexpr double RemnantShare = 0.1;  // of the thing's weight, that a remnant has at most
+constexpr double FootShare = 0.02;    // of the thing's points that may lie below its foot
 
 class Space {
 public:
@@ -133,34 +136,71 @@ double foot_of(const Body& body, const Vec3& up) {
     return *at;
 }
 
+/// Parts of some rows in the space around a thing.
+struct Parts {
+    Space space;
+    std::vector<Part> parts;
+    std::vector<int> of_cell;
+
+    Parts(std::span<const SurfaceRow> thing, std::span<const SurfaceRow> rest, const Body& body,
+          double margin)
+        : space(body, margin) {
+        for (const auto& row : thing)
+            space.each_filled(row, [&](std::size_t cell) { space[cell] |= ThingBit; });
+        for (const auto& row : rest)
+            space.each_filled(row, [&](std::size_t cell) { space[cell] |= RestBit; });
+        of_cell = parts_of(space, parts);
+    }
+    std::size_t number(const SurfaceRow& row) const {
+        const std::size_t cell = space.find(row.at);
+        return cell == Space::Nowhere ? std::size_t{0} : static_cast<std::size_t>(of_cell[cell]);
+    }
+};
+
 }  // namespace
 
 std::vector<std::uint8_t> held_parts(std::span<const SurfaceRow> thing, std::span<const SurfaceRow> rest,
                                      const Body& body, double margin, const Vec3& up) {
     std::vector<std::uint8_t> held(rest.size(), 0);
-    Space space(body, margin);
-    for (const auto& row : thing) space.each_filled(row, [&](std::size_t cell) { space[cell] |= ThingBit; });
-    for (const auto& row : rest) space.each_filled(row, [&](std::size_t cell) { space[cell] |= RestBit; });
-    std::vector<Part> parts;
-    const auto part = parts_of(space, parts);
-    const auto number = [&](const SurfaceRow& row) {
-        const std::size_t cell = space.find(row.at);
-        return cell == Space::Nowhere ? std::size_t{0} : static_cast<std::size_t>(part[cell]);
-    };
+    Parts all(thing, rest, body, margin);
     for (const auto& row : rest) {
-        Part& one = parts[number(row)];
+        Part& one = all.parts[all.number(row)];
         one.weight += row.weight;
         one.lowest = std::min(one.lowest, dot(row.at, up));
     }
-    const double ground = foot_of(body, up) + LowCells * space.side();
+    const double ground = foot_of(body, up) + LowCells * all.space.side();
     for (std::size_t i = 0; i < rest.size(); ++i) {
-        const std::size_t which = number(rest[i]);
+        const std::size_t which = all.number(rest[i]);
         if (which == 0) continue;
-        const Part& one = parts[which];
+        const Part& one = all.parts[which];
         if (!one.touches || one.goes_on || one.weight > body.weight) continue;
         if (one.lowest > ground || one.weight < CrumbShare * body.weight) held[i] = 1;
     }
     return held;
+}
+
+std::vector<std::uint8_t> remnants(std::span<const SurfaceRow> thing, std::span<const SurfaceRow> loose,
+                                   const Body& body, double margin) {
+    Parts all(thing, loose, body, margin);
+    std::vector<std::size_t> cells(all.parts.size(), 0), close(all.parts.size(), 0);
+    for (std::size_t cell = 0; cell < all.of_cell.size(); ++cell) {
+        const auto which = static_cast<std::size_t>(all.of_cell[cell]);
+        if (which == 0 || !all.parts[which].touches || all.parts[which].goes_on) continue;
+        bool border = false, near = false;
+        all.space.each_around(cell, CloseCells, border,
+                              [&](std::size_t other) { near = near || (all.space[other] & ThingBit) != 0; });
+        ++cells[which];
+        close[which] += near ? 1U : 0U;
+    }
+    for (const auto& row : loose) all.parts[all.number(row)].weight += row.weight;
+    std::vector<std::uint8_t> left(loose.size(), 0);
+    for (std::size_t i = 0; i < loose.size(); ++i) {
+        const std::size_t which = all.number(loose[i]);
+        const Part& one = all.parts[which];
+        if (which == 0 || !one.touches || one.goes_on || one.weight > RemnantShare * body.weight) continue;
+        if (static_cast<double>(close[which]) >= CloseShare * static_cast<double>(cells[which])) left[i] = 1;
+    }
+    return left;
 }
 
 }  // namespace gse::heal

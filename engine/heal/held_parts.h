@@ -15,4 +15,9 @@ namespace gse::heal {
 std::vector<std::uint8_t> held_parts(std::span<const SurfaceRow> thing, std::span<const SurfaceRow> rest,
                                      const Body& body, double margin, const Vec3& up);
 
+/// Byte per row of `loose`, which belong to no surface: 1 for small parts that touch the thing and lie within
+/// its close surroundings, as a label leaves them out.
+std::vector<std::uint8_t> remnants(std::span<const SurfaceRow> thing, std::span<const SurfaceRow> loose,
+                                   const Body& body, double margin);
+
 }  // namespace gse::heal

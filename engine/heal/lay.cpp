@@ -74,25 +74,23 @@ void smooth_over(Grid<Vec3>& values, const BitGrid& bits) {
     });
 }
 
-/// Gaussian means over the cells of `bits`, along lines and then along columns.
-Grid<Vec3> blurred_over(const Grid<Vec3>& values, const BitGrid& bits) {
+/// Logarithm of the colours around a place over those around where the shift copies from, over cells that are
+/// known at both, so that a texture is compared with itself.
+Vec3 colour_step(const Grid<Vec3>& colour, const BitGrid& known, int x, int y, Shift shift) {
     const int reach = static_cast<int>(std::ceil(2.5 * RimBlur));
-    Grid<Vec3> lines(values.width, values.height), result = lines;
-    Grid<double> weight(values.width, values.height, 0);
-    const auto kernel = [](int i) { return std::exp(-0.5 * i * i / (RimBlur * RimBlur)); };
-    each_cell(values, [&](int x, int y) {
-        for (int i = -reach; i <= reach; ++i)
-            if (bits.inside(x + i, y) && bits.at(x + i, y) != 0)
-                lines.at(x, y) += values.at(x + i, y) * kernel(i), weight.at(x, y) += kernel(i);
-    });
-    each_cell(values, [&](int x, int y) {
-        double sum = 0;
-        for (int i = -reach; i <= reach; ++i)
-            if (bits.inside(x, y + i))
-                result.at(x, y) += lines.at(x, y + i) * kernel(i), sum += weight.at(x, y + i) * kernel(i);
-        if (sum > 0) result.at(x, y) /= sum;
-    });
-    return result;
+    Vec3 here, there;
+    for (int dy = -reach; dy <= reach; ++dy)
+        for (int dx = -reach; dx <= reach; ++dx) {
+            const int ax = x + dx, ay = y + dy, bx = ax + shift.x, by = ay + shift.y;
+            if (!known.inside(ax, ay) || !known.inside(bx, by)) continue;
+            if (known.at(ax, ay) == 0 || known.at(bx, by) == 0) continue;
+            const double w = std::exp(-0.5 * (dx * dx + dy * dy) / (RimBlur * RimBlur));
+            here += colour.at(ax, ay) * w, there += colour.at(bx, by) * w;
+        }
+    Vec3 step;
+    for (int c = 0; c < 3; ++c)
+        step[c] = std::log(std::max(here[c], DarkestRim) / std::max(there[c], DarkestRim));
+    return step;
 }
 
 }  // namespace
@@ -124,19 +122,13 @@ Grid<Vec3> rim_gain(const Chart& chart, const BitGrid& hole, const PatchFill& fi
     for (std::size_t i = 0; i < known.cells.size(); ++i)
         if (hole.cells[i] != 0) known.cells[i] = 0;
     if (fill.found) {
-        const auto blurred = blurred_over(chart.colour, known);
         each_cell(hole, [&](int x, int y) {
             if (known.at(x, y) == 0) return;
             Vec3 sum;
             double count = 0;
             each_neighbour(hole, x, y, 1, [&](int nx, int ny) {
                 if (hole.at(nx, ny) == 0) return;
-                const Shift shift = fill.shift.at(nx, ny);
-                const int sx = x + shift.x, sy = y + shift.y;
-                if (!hole.inside(sx, sy) || known.at(sx, sy) == 0) return;
-                for (int c = 0; c < 3; ++c)
-                    sum[c] += std::log(std::max(blurred.at(x, y)[c], DarkestRim) /
-                                       std::max(blurred.at(sx, sy)[c], DarkestRim));
+                sum += colour_step(chart.colour, known, x, y, fill.shift.at(nx, ny));
                 count += 1;
             });
             if (count > 0) rim.at(x, y) = 1, gain.at(x, y) = limited(sum / count, MostRimGain);

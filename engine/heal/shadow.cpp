@@ -24,10 +24,12 @@ constexpr double TintLimit = 1.15;        // of a channel's gain over that of th
 constexpr double Darkest = 0.02;          // channel value that logarithms start from
 constexpr double ClearlyDarker = 0.13, SlightlyDarker = 0.04;  // in logarithms of brightness
 constexpr double ClearSpread = 2.0, SlightSpread = 1.0;        // spreads of the surface beyond
-constexpr double HueLimit = 0.10;        // difference of a channel's share of the brightness
-constexpr std::size_t LeastBeyond = 60;  // cells beyond the shadow to compare with
-constexpr double MostGain = 3.5;
+constexpr double HueLimit = 0.08, HueSlack = 0.2;  // difference of a channel from brightness, in logarithms:
+                                                   // at least, and for each of darkness
+constexpr std::size_t LeastBeyond = 25;            // cells beyond the shadow to compare with
+constexpr double MostGain = 2.6;
 constexpr double DeepShadow = 0.9;    // in logarithms of brightness, that is filled anew and not lit
+constexpr double LargestLit = 4;      // cells, standard deviation of a row that is lit
 constexpr double BrightShare = 0.97;  // of the rows of the surface beyond, that are darker than its brightest
 constexpr double FitScale = 0.15;     // in logarithms, beyond which a cell counts little
 constexpr int GainRounds = 4;         // of the gain, each on what the one before left
@@ -226,7 +228,7 @@ private:
         const auto& dark = dark_[static_cast<std::size_t>(place_.cells[cell])];
         if (dark[3] > -limit) return false;
         for (std::size_t c = 0; c < 3; ++c)
-            if (std::abs(dark[c] - dark[3]) > HueLimit + 0.35 * std::abs(dark[3])) return false;
+            if (std::abs(dark[c] - dark[3]) > HueLimit + HueSlack * std::abs(dark[3])) return false;
         return true;
     }
 
@@ -295,7 +297,7 @@ private:
         for (const auto i : chart_.own) {
             SurfaceRow& row = rows_[i];
             const Vec3 at = chart_.local(row.at), lack = between_cells(more, at.x, at.y);
-            if (lack == Vec3(0)) continue;
+            if (lack == Vec3(0) || row.longest() > LargestLit * chart_.cell) continue;
             const Vec3 before = gain[i], plain = row.colour / before;
             Vec3 next;
             for (int c = 0; c < 3; ++c) next[c] = std::clamp(before[c] * std::exp(lack[c]), 1.0, MostGain);

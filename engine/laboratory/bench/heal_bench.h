@@ -19,6 +19,7 @@ struct HealBenchParameters {
     int capture_views = 60;
     int views = 6;
     int size = 256;
+    double missed = 0;
 
     template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         f("kinds", self.kinds, "Kinds of scenes, or all.");
@@ -29,6 +30,7 @@ struct HealBenchParameters {
           "Views that the scan was made from; what none shows is missing.", Range{4, 1000});
         f("views", self.views, "Other views that the figures are of.", Range{1, 100});
         f("size", self.size, "Side of the pictures, pixels.", Range{32, 2048});
+        f("missed", self.missed, "Share of the thing, in patches, that the label misses.", Range{0, 0.5});
     }
 };
 

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "engine/base/error.h"
+#include "engine/base/random.h"
 #include "engine/evaluate/metrics.h"
 #include "engine/heal/heal.h"
 #include "engine/math/sh.h"
@@ -236,6 +238,88 @@ DOCTEST_TEST_CASE("a shadow is lit again, and dark marks stay") {
             DOCTEST_CHECK(healed.removed[row] == 0);
 }
 
+DOCTEST_TEST_CASE("a patch that the label left out goes with the thing, and what stands against it stays") {
+    Builder scene = floor_with_ball(0.22);
+    const auto missed = [&](std::size_t row) {
+        return scene.thing[row] != 0 && length(place(scene.data, row) - Vec3{0.2, 0.3, 0}) < 0.12;
+    };
+    std::vector<std::size_t> patch;
+    for (std::size_t row = 0; row < scene.thing.size(); ++row)
+        if (missed(row)) patch.push_back(row);
+    for (const auto row : patch) scene.thing[row] = 0;
+    DOCTEST_REQUIRE(patch.size() > 10);
+    const std::size_t neighbour = scene.thing.size();
+    scene.ball({-0.44, 0.2, 0}, 0.2, 200, {0.1, 0.1, 0.8}, false);
+    const auto healed = scene.heal();
+    for (const auto row : patch) DOCTEST_CHECK(healed.removed[row] == 1);
+    for (std::size_t row = neighbour; row < scene.thing.size(); ++row)
+        DOCTEST_CHECK(healed.removed[row] == 0);
+}
+
+DOCTEST_TEST_CASE("what no picture showed under a thing is replaced") {
+    Builder scene;
+    scene.sheet(Spacing, level, {0, 1, 0}, striped, [](const Vec3& p) { return length(p) > 0.24; });
+    const std::size_t garbage = scene.thing.size();
+    scene.sheet(
+        3 * Spacing, level, {0, 1, 0},
+        [](const Vec3&) {
+            return Vec3{0.02, 0.05, 0.02};
+        },
+        [](const Vec3& p) { return length(p) < 0.24; });
+    const std::size_t end = scene.thing.size();
+    for (int i = 0; i < 8; ++i)  // a box that stands on the floor with its whole base
+        scene.sheet(
+            Spacing,
+            [i](double u, double v) {
+                return Vec3{0.22 * u, 0.02 + 0.04 * i, 0.22 * v};
+            },
+            {0, 1, 0},
+            [](const Vec3&) {
+                return Vec3{0.9, 0.1, 0.1};
+            },
+            [](const Vec3& p) { return std::hypot(p.x, p.z) < 0.2; });
+    std::fill(scene.thing.begin() + static_cast<std::ptrdiff_t>(end), scene.thing.end(), 1);
+    const auto healed = scene.heal();
+    DOCTEST_REQUIRE(end > garbage);
+    for (std::size_t row = garbage; row < end; ++row) DOCTEST_CHECK(healed.removed[row] == 1);
+    double darkest = 1;
+    for (std::size_t row = 0; row < healed.added.size(); ++row)
+        darkest = std::min(darkest, colour_from_sh(healed.added.sh[row * 3 + 1]));
+    DOCTEST_CHECK(healed.added.size() > 60);
+    DOCTEST_CHECK(darkest > 0.2);
+}
+
+DOCTEST_TEST_CASE("the floor under a table is left alone") {
+    Builder scene;
+    const auto beside = [](const Vec3& p) { return std::max(std::abs(p.x), std::abs(p.z)) > 0.35; };
+    scene.sheet(
+        Spacing,
+        [](double u, double v) {
+            return Vec3{u, -0.25, v};
+        },
+        {0, 1, 0}, striped, beside);
+    scene.sheet(
+        Spacing,
+        [](double u, double v) {
+            return Vec3{0.4 * u, 0, 0.4 * v};
+        },
+        {0, 1, 0}, striped, [](const Vec3&) { return true; });
+    scene.ball({0, BallRadius, 0}, BallRadius, 300, {0.9, 0.1, 0.1}, true);
+    const auto healed = scene.heal();
+    for (std::size_t row = 0; row < healed.added.size(); ++row)
+        DOCTEST_CHECK(place(healed.added, row).y > -0.1);
+}
+
+DOCTEST_TEST_CASE("a surface that does not show around the hole is left open") {
+    Builder scene;
+    scene.sheet(Spacing, level, {0, 1, 0}, striped, [](const Vec3& p) {
+        return length(p) > 0.22 && std::abs(std::atan2(p.z, p.x)) < 1.0 && length(p) < 0.8;
+    });
+    scene.ball({0, BallRadius, 0}, BallRadius, 300, {0.9, 0.1, 0.1}, true);
+    const auto healed = scene.heal();
+    DOCTEST_CHECK(healed.added.size() < 20);
+}
+
 DOCTEST_TEST_CASE("a brush closes the hole inside a ball alone") {
     Builder scene;
     scene.sheet(Spacing, level, {0, 1, 0}, striped, [](const Vec3& p) {
@@ -255,6 +339,44 @@ DOCTEST_TEST_CASE("a thing in the air leaves nothing to heal") {
     DOCTEST_CHECK(healed.added.size() == 0);
     DOCTEST_CHECK(healed.surfaces.empty());
     DOCTEST_CHECK(!healed.open.empty());
+}
+
+DOCTEST_TEST_CASE("odd scenes and labels are survived") {
+    Random random(7);
+    const auto odd = [&] {
+        const float values[] = {0,
+                                1e-20F,
+                                1e20F,
+                                std::numeric_limits<float>::infinity(),
+                                std::numeric_limits<float>::quiet_NaN(),
+                                -1e6F};
+        return values[random.below(6)];
+    };
+    for (int round = 0; round < 40; ++round) {
+        const Builder whole = floor_with_ball(round % 3 == 0 ? -1 : 0.22);
+        GaussianData data;
+        std::vector<std::uint8_t> thing;
+        const std::size_t count = round % 5 == 0 ? random.below(20) + 1 : whole.data.size();
+        for (std::size_t row = 0; row < count; ++row) {
+            data.append_row(whole.data, row);
+            thing.push_back(round % 4 == 1   ? 1
+                            : round % 4 == 2 ? static_cast<std::uint8_t>(random.below(2))
+                                             : whole.thing[row]);
+        }
+        thing[0] = 1;
+        for (int i = 0; i < 30; ++i) {
+            std::vector<float>* arrays[] = {&data.position, &data.log_scale, &data.rotation,
+                                            &data.opacity_logit, &data.sh};
+            auto& array = *arrays[random.below(5)];
+            array[random.below(array.size())] = odd();
+        }
+        const GaussianSet set(data);
+        const auto healed = heal::remove_and_heal({set, thing, {0, 1, 0}});
+        DOCTEST_CHECK(healed.removed.size() == set.size());
+        for (const float value : healed.added.position) DOCTEST_CHECK(std::isfinite(value));
+        const auto brushed = heal::heal_region({set, thing, {0, 1, 0}}, {0, 0, 0}, 0.2);
+        DOCTEST_CHECK(brushed.removed.size() == set.size());
+    }
 }
 
 DOCTEST_TEST_CASE("bad input gets a clear sentence") {
