@@ -12,6 +12,7 @@
 #include "engine/evaluate/metrics.h"
 #include "engine/laboratory/eval/eval_compound.h"
 #include "engine/laboratory/eval/eval_figures.h"
+#include "engine/laboratory/eval/eval_rearranged.h"
 #include "engine/laboratory/eval/eval_scenes.h"
 #include "engine/laboratory/eval/eval_sheet.h"
 #include "engine/laboratory/eval/eval_suite.h"
@@ -166,22 +167,24 @@ private:
     pipeline::EditRecipe recipe(const EvalCase& edit) const {
         pipeline::EditRecipe recipe = run_.settings;
         recipe.request.mode = run_.parameters.mode == "auto" ? "auto" : edit::mode_name(right_mode(edit));
-        if (edit.kind == "compound") recipe.request.mode = "auto";
+        if (edit.kind == "compound" || is_rearranged(edit.kind)) recipe.request.mode = "auto";
         recipe.request.source = edit.word;
         recipe.request.prompt = edit.prompt;
         recipe.request.target = run_.parameters.oracle_views ? edit.target_word : std::string();
         return recipe;
     }
 
-    /// A case with several changes; a failure becomes its "error".
-    Json evaluate_compound(std::size_t index) {
+    /// A case that is measured apart: with several changes, or one in which nothing is drawn. A failure
+    /// becomes its "error".
+    Json evaluate_apart(std::size_t index) {
         const EvalCase& edit = suite_[index];
         Json entry = case_json(edit, index);
         pipeline::StageTimes times;
-        times.begin("compound");
+        times.begin(edit.kind);
         try {
             const CompoundTools with{tools(), model_, sheets_, run_.parameters.held_out_views};
-            entry.update(compound_figures(edit, recipe(edit), with, quiet()));
+            const auto figures = edit.kind == "compound" ? compound_figures : rearranged_figures;
+            entry.update(figures(edit, recipe(edit), with, quiet()));
         } catch (const Error& error) {
             if (error.code() == ErrorCode::Cancelled) throw;
             entry["error"] = error.message();
@@ -196,7 +199,7 @@ private:
     /// One case with its ablations; a failure becomes its "error".
     Json evaluate_case(std::size_t index, Json& ablated) {
         const EvalCase& edit = suite_[index];
-        if (edit.kind == "compound") return evaluate_compound(index);
+        if (edit.kind == "compound" || is_rearranged(edit.kind)) return evaluate_apart(index);
         Json entry = case_json(edit, index);
         const auto recipe = this->recipe(edit);
         EvalSetting setting = make_setting(edit, recipe.request, run_.parameters.held_out_views);

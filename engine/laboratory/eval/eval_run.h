@@ -31,8 +31,9 @@ struct EvalParameters {
         f("seed", self.seed, "Seed of the suite: which edits, and the scenes' shapes.");
         f("edits", self.edits, "Synthetic edits with ground truth.", Range{0, 10000});
         f("kinds", self.kinds,
-          "Kinds of edits, in turn: recolour material add ground replace; dye = colours that the bundled "
-          "model does not look for; compound = two or three changes in one sentence.");
+          "Kinds of edits, in turn: recolour material add ground replace. Others are \"dye\" (colours that "
+          "the bundled model does not look for) and \"compound\" (two or three changes in one sentence). "
+          "Nothing is drawn for \"remove\", \"resize\", \"move\", \"rotate\" and \"duplicate\".");
         f("drawn_words", self.drawn_words,
           "Name added and replacing objects by words that the bundled model draws and does not look for.");
         f("mode", self.mode,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <set>
 
 #include "engine/base/check.h"
@@ -235,6 +236,52 @@ EvalCase make_compound(std::uint64_t number, std::set<std::string>& used, Random
     return {Compound, source, target, synth::full_caption(target).text, source.object, {}};
 }
 
+/// Sentence with "{}" in the place of the object, and what it asks for.
+struct PlaceSentence {
+    const char *kind, *text;
+    AskedPlace asked;
+};
+
+const std::vector<PlaceSentence>& place_sentences() {
+    static const std::vector<PlaceSentence> list{
+        {"remove", "remove the {}", {.things = 0}},
+        {"remove", "remove the {}", {.things = 0, .scanned = true}},
+        {"resize", "make the {} bigger", {.size = 1.3}},
+        {"resize", "make the {} smaller", {.size = 1 / 1.3}},
+        {"resize", "the {} is twice its size", {.size = 2}},
+        {"move", "move the {} to the left", {.right = -1}},
+        {"move", "move the {} right 1 m", {.right = 1, .distance = 1}},
+        {"move", "push the {} back", {.forward = -1}},
+        {"rotate", "rotate the {} by 90 degrees", {.degrees = 90}},
+        {"rotate", "turn the {} 45 degrees clockwise", {.degrees = -45}},
+        {"rotate", "turn the {} around", {.degrees = 180}},
+        {"duplicate", "two {}s", {.things = 2}},
+        {"duplicate", "add another {}", {.things = 2}},
+        {"duplicate", "three {}s", {.things = 3}},
+    };
+    return list;
+}
+
+/// A thing on a ground in a held-out combination, and a sentence of the kind, in turn.
+EvalCase make_rearranged(const std::string& kind, std::uint64_t number, std::set<std::string>& used,
+                         Random random) {
+    std::vector<Combination> list;
+    for_each_spec({}, [&](const SceneSpec& spec) {
+        if (synth::held_out(spec) && spec.accessory.empty()) list.push_back({spec, spec});
+    });
+    SceneSpec spec = choose(std::move(list), used, random).source;
+    spec.seed = random.next();
+    spec.ground = pick(synth::ground_words(), random);
+    std::vector<PlaceSentence> sentences;
+    for (const auto& sentence : place_sentences())
+        if (kind == sentence.kind) sentences.push_back(sentence);
+    const auto& sentence = sentences[number % sentences.size()];
+    EvalCase edit{kind, spec, spec, sentence.text, spec.object, {}};
+    edit.prompt.replace(edit.prompt.find("{}"), 2, spec.object);
+    edit.asked = sentence.asked;
+    return edit;
+}
+
 std::string list_of(const std::vector<std::string>& words) {
     std::string list;
     for (const auto& word : words) list += (list.empty() ? "" : ", ") + word;
@@ -248,21 +295,33 @@ const std::vector<std::string>& eval_kinds() {
     return kinds;
 }
 
+const std::vector<std::string>& rearranged_kinds() {
+    static const std::vector<std::string> kinds{"remove", "resize", "move", "rotate", "duplicate"};
+    return kinds;
+}
+
+bool is_rearranged(const std::string& kind) {
+    const auto& kinds = rearranged_kinds();
+    return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
+}
+
 std::vector<EvalCase> make_suite(std::uint64_t seed, int count, const std::vector<std::string>& kinds,
                                  bool drawn_words) {
     auto known = eval_kinds();
     for (const char* kind : {ColourRemap, Compound}) known.emplace_back(kind);  // only where asked for
+    known.insert(known.end(), rearranged_kinds().begin(), rearranged_kinds().end());
     for (const auto& kind : kinds)
         if (std::find(known.begin(), known.end(), kind) == known.end())
             throw Error(ErrorCode::InvalidArgument, "there is no kind of edit named \"" + kind + "\"",
                         "use " + list_of(known));
     if (kinds.empty())
         throw Error(ErrorCode::InvalidArgument, "no kind of edit is named", "use " + list_of(known));
-    constexpr std::uint64_t OfWhatStays = 40000, OfReplacements = 50000, OfDyes = 60000,
-                            OfCompounds = 70000;  // random streams
+    constexpr std::uint64_t OfWhatStays = 40000, OfReplacements = 50000, OfDyes = 60000, OfCompounds = 70000,
+                            OfRearranged = 80000;  // random streams
     std::vector<EvalCase> suite;
-    std::set<std::string> used, used_to_replace, used_to_dye, used_in_compounds;
-    std::uint64_t others = 0, replacements = 0, dyes = 0, compounds = 0;
+    std::set<std::string> used, used_to_replace, used_to_dye, used_in_compounds, used_to_rearrange;
+    std::uint64_t others = 0, replacements = 0, dyes = 0, compounds = 0, rearranged = 0;
+    std::map<std::string, std::uint64_t> of_kind;
     for (int i = 0; i < count; ++i) {
         const auto& kind = kinds[static_cast<std::size_t>(i) % kinds.size()];
         if (kind == "replace")
@@ -274,7 +333,10 @@ std::vector<EvalCase> make_suite(std::uint64_t seed, int count, const std::vecto
             const auto number = compounds++;
             suite.push_back(
                 make_compound(number, used_in_compounds, Random::stream(seed, OfCompounds + number)));
-        } else
+        } else if (is_rearranged(kind))
+            suite.push_back(make_rearranged(kind, of_kind[kind]++, used_to_rearrange,
+                                            Random::stream(seed, OfRearranged + rearranged++)));
+        else
             suite.push_back(make_case(kind, drawn_words, used, Random::stream(seed, OfWhatStays + others++)));
     }
     return suite;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/laboratory/eval/eval_compound_summary.h"
+#include "engine/laboratory/eval/eval_rearranged_summary.h"
 
 namespace gse::bench {
 namespace {
@@ -382,6 +383,9 @@ Json eval_summary(const Json& report) {
     const Json compounds = compound_summary(edits);
     for (const auto& [name, value] : compounds.items())
         summary[name] = figure(value, name == "compound_lost_splats" ? Goal{"==", 0} : Goal{});
+    const Json rearranged = rearranged_summary(edits);
+    for (const auto& [name, value] : rearranged.items())
+        summary[name] = figure(value, name.ends_with("_rows_changed_outside") ? Goal{"==", 0} : Goal{});
     summary["added_means"] = added_means(edits);
     const Json table = ablation_means(report);
     if (!table.empty()) add_order(table, summary);
@@ -396,6 +400,7 @@ std::string eval_table(const Json& report) {
         "#", "kind", "wIoU", "IoU", "mIoU", "mF", "L1 red.", "PSNR in", "out", "leak", "drift", "CLIP", "s");
     for (const auto& edit : report["edits"]) text += edit_line(edit);
     text += compound_lines(report["edits"]);
+    text += rearranged_lines(report["edits"]);
     text += added_lines(report["summary"]["added_means"]);
     text += ablation_lines(report["summary"]["ablation_means"]);
     text += scene_lines(report["scenes"]);

@@ -32,15 +32,13 @@ enum Stream : std::uint64_t {
     SampleStream = 500
 };
 
+/// Rows of a share of the budget.
+int share_of(const SceneSpec& spec, double share) {
+    return static_cast<int>(share * std::clamp(spec.gaussian_budget, SmallestBudget, LargestBudget));
+}
+
 /// Half a turn about z: model space (y up) to world space (y down); the front stays at -z.
 Vec3 to_world(const Vec3& model) { return {-model.x, -model.y, model.z}; }
-
-/// Turn and size of the object (and its accessory) in the scene.
-struct Pose {
-    Mat3 turn = Mat3::identity();
-    double size = 1;
-    Vec3 shift{};
-};
 
 /// Streams of what differs between variants of a scene.
 Random own_stream(const SceneSpec& spec, std::uint64_t index) {
@@ -50,15 +48,15 @@ Random own_stream(const SceneSpec& spec, std::uint64_t index) {
 /// The first that a pose is drawn with.
 double turn_of(Random& random, const SceneSpec& spec) { return random.uniform(-0.22, 0.22) + spec.heading; }
 
-Pose make_pose(Random random, const SceneSpec& spec) {
-    Pose pose;
+Placing make_pose(Random random, const SceneSpec& spec) {
+    Placing pose;
     pose.turn = rotation_y(turn_of(random, spec));
     pose.size = random.uniform(0.93, 1.05) * spec.size;
     pose.shift = {random.uniform(-0.04, 0.04), 0, random.uniform(-0.04, 0.04)};
     return pose;
 }
 
-void place(std::vector<SurfacePoint>& points, const Pose& pose) {
+void place(std::vector<SurfacePoint>& points, const Placing& pose) {
     for (auto& point : points) {
         point.position = pose.turn * point.position * pose.size + pose.shift;
         point.normal = pose.turn * point.normal;
@@ -112,6 +110,22 @@ private:
     GaussianData data_;
 };
 
+std::uint64_t object_index(const SceneSpec& spec) {
+    return word_index(object_words(), more_object_words(), spec.object);
+}
+
+/// Samples of the object in its own space.
+std::vector<SurfacePoint> object_points(const SceneSpec& spec, const Model& model) {
+    return sample_surface(model.shapes, {}, share_of(spec, ObjectShare),
+                          Random::stream(spec.seed, SampleStream + object_index(spec)));
+}
+
+GroundSample ground_of(const SceneSpec& spec, std::span<const SurfacePoint> object, const Light& light) {
+    const std::uint64_t index = word_index(ground_words(), more_ground_words(), spec.ground);
+    return make_ground(spec.ground, share_of(spec, GroundShare), object, light,
+                       Random::stream(spec.seed, GroundStream + index));
+}
+
 LabelSet labels_of(const std::vector<Part>& parts) {
     LabelSet set;
     constexpr std::pair<const char*, Part> Names[] = {
@@ -150,22 +164,15 @@ SynthScene generate(const SceneSpec& spec) {
     SynthScene result;
     result.spec = spec;
     const auto stream = [&](std::uint64_t index) { return Random::stream(spec.seed, index); };
-    const auto share = [&](double fraction) {
-        return static_cast<int>(fraction * std::clamp(spec.gaussian_budget, SmallestBudget, LargestBudget));
-    };
-    const std::uint64_t object_index = word_index(object_words(), more_object_words(), spec.object);
     const Light light = make_light(stream(LightStream));
-    const Pose pose = make_pose(own_stream(spec, PoseStream), spec);
-    const Model model = make_object(spec.object, own_stream(spec, ObjectStream + object_index));
+    const Placing pose = make_pose(own_stream(spec, PoseStream), spec);
+    const Model model = make_object(spec.object, own_stream(spec, ObjectStream + object_index(spec)));
     const Material material = make_material(spec.material, own_stream(spec, TextureStream));
 
-    const auto own =
-        sample_surface(model.shapes, {}, share(ObjectShare), stream(SampleStream + object_index));
+    const auto own = object_points(spec, model);
     auto placed = own;
     place(placed, pose);
-    const GroundSample ground =
-        make_ground(spec.ground, share(GroundShare), placed, light,
-                    stream(GroundStream + word_index(ground_words(), more_ground_words(), spec.ground)));
+    const GroundSample ground = ground_of(spec, placed, light);
     Writer writer(result);
     writer.add(ground.points, ground.colours, Part::Ground, stream(OpacityStream));
     writer.add(placed, colours_of(own, placed, model.shapes, material, light), Part::Object,
@@ -174,8 +181,8 @@ SynthScene generate(const SceneSpec& spec) {
         const std::uint64_t index = word_index(accessory_words(), more_accessory_words(), spec.accessory);
         const auto shapes = make_accessory(spec.accessory, model.anchor, stream(AccessoryStream + index));
         const Material dye = make_material(accessory_material(spec), stream(AccessoryStream + 50));
-        const auto own_worn =
-            sample_surface(shapes, model.shapes, share(AccessoryShare), stream(SampleStream + 50 + index));
+        const auto own_worn = sample_surface(shapes, model.shapes, share_of(spec, AccessoryShare),
+                                             stream(SampleStream + 50 + index));
         auto worn = own_worn;
         place(worn, pose);
         writer.add(worn, colours_of(own_worn, worn, shapes, dye, light), Part::Accessory,
@@ -190,13 +197,30 @@ SynthScene generate(const SceneSpec& spec) {
     return result;
 }
 
+GaussianSet ground_under(const SceneSpec& spec, std::span<const Placing> places) {
+    const Light light = make_light(Random::stream(spec.seed, LightStream));
+    const Model model = make_object(spec.object, own_stream(spec, ObjectStream + object_index(spec)));
+    const Placing pose = make_pose(own_stream(spec, PoseStream), spec);
+    auto own = object_points(spec, model);
+    place(own, pose);
+    std::vector<SurfacePoint> things;
+    for (const auto& there : places)
+        for (auto point : own) {
+            point.position = to_world(there(to_world(point.position)));
+            point.spacing *= there.size;
+            things.push_back(point);
+        }
+    const GroundSample ground = ground_of(spec, things, light);
+    SynthScene scene;
+    Writer writer(scene);
+    writer.add(ground.points, ground.colours, Part::Ground, Random::stream(spec.seed, OpacityStream));
+    return GaussianSet(writer.take());
+}
+
 std::vector<std::uint8_t> head_rows(const SynthScene& scene) {
     const auto& spec = scene.spec;
-    const std::uint64_t index = word_index(object_words(), more_object_words(), spec.object);
-    const Model model = make_object(spec.object, own_stream(spec, ObjectStream + index));
-    const int budget = std::clamp(spec.gaussian_budget, SmallestBudget, LargestBudget);
-    const auto points = sample_surface(model.shapes, {}, static_cast<int>(ObjectShare * budget),
-                                       Random::stream(spec.seed, SampleStream + index));
+    const Model model = make_object(spec.object, own_stream(spec, ObjectStream + object_index(spec)));
+    const auto points = object_points(spec, model);
     const auto& [top, neck] = std::pair{model.anchor.top, model.anchor.neck};
     const Vec3 middle{top.x, 0.5 * (top.y + neck.y), top.z};
     const double reach = std::max(top.y - neck.y, 2 * model.anchor.head_radius);

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "engine/base/random.h"
+#include "engine/laboratory/synth/placing.h"
 #include "engine/scene/scene.h"
 
 namespace gse::synth {
@@ -64,6 +66,10 @@ const std::vector<std::string>& drawn_vocabulary();
 /// accessory away leaves the other rows bit-identical; another material or colour changes nothing but
 /// colours. Row order: ground, object, accessory. Throws Error for a word that is not in the lists.
 SynthScene generate(const SceneSpec& spec);
+
+/// Ground of a spec's scene with the shadows of its object at some places: maps of the scene's space. Without
+/// any it is the ground alone. Rows are those of generate(), but for their colours.
+GaussianSet ground_under(const SceneSpec& spec, std::span<const Placing> places);
 
 /// True for about a tenth of all combinations of object, material and accessory: kept out of training.
 bool held_out(const SceneSpec& spec);

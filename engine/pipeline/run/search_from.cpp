@@ -75,6 +75,10 @@ Located locate_part(RunContext& workplace, Located located, const JobControl& co
     const auto rows = edit::labelled_part(part, workplace.drawn(), located.within, located.views.orbit.up);
     result = edit::part_of_finding(question(workplace, located.recipe, located.views, nullptr),
                                    workplace.painter().rasterizer(), std::move(result), rows, part);
+    if (request.is_rearranged()) {  // the thing was looked for to change its look
+        result.mode = *request.mode;
+        result.reason = "as asked";
+    }
     log::info("\"{}\" is told by the shape of \"{}\": {} splats", part, request.part_of(),
               std::count(rows.begin(), rows.end(), std::uint8_t{1}));
     return located;

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <set>
 #include <string>
@@ -153,6 +154,28 @@ DOCTEST_TEST_CASE("the bundled model changes a head that it has no word for, and
         else bluer += (changed[2] - changed[0]) - (old[2] - old[0]);
     }
     DOCTEST_CHECK(bluer > 0);
+}
+
+DOCTEST_TEST_CASE("a head that the shape tells is resized, and nothing of the body changes") {
+    const auto made = figure("bear", 700);
+    auto recipe = part_recipe("head", "scale the head of the bear 2", "head");
+    recipe.request.mode = "transform";
+    recipe.request.change = "scale 2";
+    EditJob job(recipe, EditJobInput{made.scene, {}, load_recipe_model({})}, JobControl{});
+    job.locate();
+    DOCTEST_REQUIRE(job.found());
+    DOCTEST_CHECK(job.located().mode == edit::EditMode::Transform);
+    job.run();
+    const auto &before = made.scene.gaussians, &after = job.result().set;
+    const auto& head = *job.located().label.bits;
+    constexpr double Rounding = 1e-5;  // of logarithms of a size, kept as float
+    for (std::size_t row = 0; row < head.size(); ++row) {
+        const auto now = job.result().base_to_new[row];
+        DOCTEST_REQUIRE(now >= 0);
+        const double grown =
+            after.log_scale()[static_cast<std::size_t>(now) * 3] - before.log_scale()[row * 3];
+        DOCTEST_REQUIRE(std::abs(grown - (head[row] != 0 ? std::log(2.0) : 0)) < Rounding);
+    }
 }
 
 DOCTEST_TEST_CASE(
