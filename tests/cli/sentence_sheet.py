@@ -126,12 +126,12 @@ def suite():
     return result
 
 
-def run_one(program, folder, sentence, options):
+def run_one(program, folder, sentence, options, scene=BEAR):
     """Runs an edit; keeps what it said beside its folder."""
     log = folder.with_suffix(".json")
     if not log.exists():
         process = subprocess.run(
-            [program, "-q", "edit", str(BEAR), "--source", "bear", "--prompt", sentence, "--out",
+            [program, "-q", "edit", str(scene), "--source", "bear", "--prompt", sentence, "--out",
              str(folder), "--turntable-size", str(SIDE), "--turntable-frames", "2", *options],
             capture_output=True, text=True, errors="replace")
         log.write_text(json.dumps({"exit_code": process.returncode, "said": process.stderr.strip(),

@@ -264,16 +264,17 @@ private:
                             step_.thing.noun, EditMode::Add};
     }
 
-    /// The scene around a thing as it is, in words: "a bear wearing a hat on the grass".
+    /// A thing of the scene as it is, in words: "a red bear on the grass". What is worn stands alone ("a blue
+    /// hat"), a ground comes with what stands on it.
     std::string description_around(const std::string& noun) const {
         const auto* thing = thing_named(scene_, noun);
-        const SceneThing* wearer = nullptr;
-        if (thing != nullptr && thing->is_worn)
-            for (const auto& other : scene_.things)
-                if (!other.is_worn && !other.is_ground) wearer = wearer != nullptr ? wearer : &other;
-        if (wearer == nullptr) return phrase_of(described_thing(noun)) + standing_on(scene_, noun);
-        return phrase_of(described_thing(wearer->noun)) + " wearing " + phrase_of(described_thing(noun)) +
-               standing_on(scene_, noun);
+        if (thing != nullptr && thing->is_worn) return phrase_of(described_thing(noun));
+        if (thing == nullptr || !thing->is_ground)
+            return phrase_of(described_thing(noun)) + standing_on(scene_, noun);
+        for (const auto& other : scene_.things)
+            if (!other.is_worn && !other.is_ground)
+                return phrase_of(described_thing(other.noun)) + standing_on(scene_, other.noun);
+        return phrase_of(described_thing(noun));
     }
 
     /// An order about the subject, in an edit that draws nothing. Nothing where the subject is not one thing.
