@@ -43,6 +43,8 @@ void draw_tools(Context& context) {
                 with_key(context, "Cut out: label the thing in a box, all its sides", Shortcut::CutOut));
     tool_button("tool.place", Icon::Place, Tool::Place,
                 with_key(context, "Move, turn and resize what is labelled", Shortcut::Place));
+    tool_button("tool.heal", Icon::Heal, Tool::Heal,
+                with_key(context, "Heal brush: paint over a hole or a blemish", Shortcut::HealBrush));
     gap(context);
     const bool front = context.view.front_only;
     if (icon_button(context,

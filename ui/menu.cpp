@@ -115,6 +115,9 @@ void select_menu(Context& context) {
     if (item(context, {"menu.place", "Move, turn, resize", keys_of(context, Shortcut::Place), open,
                        tool == Tool::Place}))
         set_tool(context, Tool::Place);
+    if (item(context, {"menu.heal_brush", "Heal brush", keys_of(context, Shortcut::HealBrush), open,
+                       tool == Tool::Heal}))
+        set_tool(context, Tool::Heal);
     if (item(context, {"menu.front", "Front only", keys_of(context, Shortcut::FrontOnly), "",
                        context.view.front_only})) {
         context.view.front_only = !context.view.front_only;

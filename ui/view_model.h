@@ -56,7 +56,7 @@ constexpr std::array<const char*, 10> DisplayModeNames{"Beauty",    "Centres", "
                                                        "Depth",     "Opacity", "Labels", "Label weight",
                                                        "Attention", "Changed"};
 
-enum class Tool { Orbit, Brush, Rectangle, Lasso, CutOut, PickColour, Place };
+enum class Tool { Orbit, Brush, Rectangle, Lasso, CutOut, PickColour, Place, Heal };
 enum class SetOperation { Add, Remove, Intersect, Replace };
 enum class Comparison { None, Wipe, Original };
 

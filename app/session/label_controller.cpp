@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "app/session/state/located_label.h"
+#include "app/session/state/screen_area.h"
 #include "engine/language/grammar.h"
 #include "engine/pipeline/models/segmenters.h"
 #include "engine/pipeline/run/views.h"
@@ -25,10 +26,6 @@ namespace command = ui::command;
 
 // Splats: of more, a label is decided when its threshold is let go.
 constexpr std::size_t MostDecidedWhileDragging = 200000;
-
-ScreenArea screen_area(const ui::ScreenRegion& region) {
-    return {region.polygon, region.circles, region.radius_px};
-}
 
 LabelOperation operation_of(ui::SetOperation operation) {
     switch (operation) {

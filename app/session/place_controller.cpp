@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <memory>
 #include <utility>
 
+#include "app/session/state/screen_area.h"
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/pipeline/scene/scene_loading.h"
@@ -58,38 +61,127 @@ template <> void PlaceController::on(const command::HealPlace&) {
 /// Heals the hole of `rows` in that state. `stays`: they are elsewhere by now, and not deleted.
 void PlaceController::heal(const DocumentState& from, std::shared_ptr<const std::vector<std::uint8_t>> rows,
                            bool stays) {
-    auto healed = std::make_shared<heal::Healed>();
-    auto work = [healed, set = from.current, rows, up = from.info.up, stays](const JobControl& control) {
-        control.report("healing the hole", 0, 0);
-        heal::HealSettings settings;
-        settings.held_parts = !stays;
-        *healed = heal::remove_and_heal({set, *rows, up, control}, settings);
-    };
-    auto done = [this, from, healed, rows, stays,
-                 revision = workspace_.document.revision()](const Error* error) {
-        if (error != nullptr) return workspace_.report_end(*error);
-        if (workspace_.document.revision() == revision) take_healed(from, *healed, *rows, stays);
-    };
-    workspace_.jobs->start_work(JobKind::Place,
-                                {stays ? "Heal the place" : "Delete and heal", work, done, true});
+    start_healing(stays ? "Heal the place" : "Delete and heal", from, rows, stays,
+                  [set = from.current, rows, up = from.info.up, stays](const JobControl& control) {
+                      heal::HealSettings settings;
+                      settings.held_parts = !stays;
+                      return heal::remove_and_heal({set, *rows, up, control}, settings);
+                  });
 }
 
-void PlaceController::take_healed(const DocumentState& from, const heal::Healed& healed,
-                                  const std::vector<std::uint8_t>& rows, bool stays) {
+void PlaceController::start_healing(const std::string& title, const DocumentState& from,
+                                    std::shared_ptr<const std::vector<std::uint8_t>> rows, bool stays,
+                                    std::function<heal::Healed(const JobControl&)> healing) {
+    auto healed = std::make_shared<heal::Healed>();
+    auto work = [healed, healing = std::move(healing)](const JobControl& control) {
+        control.report("healing the hole", 0, 0);
+        *healed = healing(control);
+    };
+    auto done = [this, title, from, healed, rows, stays,
+                 revision = workspace_.document.revision()](const Error* error) {
+        if (error != nullptr) return workspace_.report_end(*error);
+        if (workspace_.document.revision() == revision)
+            take_healed(title, from, *healed, stays ? rows : nullptr);
+    };
+    workspace_.jobs->start_work(JobKind::Place, {title, work, done, true});
+}
+
+void PlaceController::take_healed(const std::string& title, const DocumentState& from,
+                                  const heal::Healed& healed,
+                                  const std::shared_ptr<const std::vector<std::uint8_t>>& stays) {
     auto gone = healed.removed;
     for (std::size_t row = 0; row < gone.size(); ++row)
-        if (stays && rows[row] != 0) gone[row] = 0;
+        if (stays && (*stays)[row] != 0) gone[row] = 0;
     EditNode node = exchange_of(from, gone, healed.added, workspace_.next_edit_id++);
     const auto removed = node.delta->removed.size(), added = node.delta->added.size();
     if (removed == gone.size() && added == 0)
         return workspace_.notices.toast("That is every splat; an empty scene cannot be kept.");
     if (removed + added == 0) return workspace_.notices.toast("There is no hole to heal.");
-    node.name = stays ? "Heal the place" : "Delete and heal";
+    node.name = title;
     auto stack = state().stack;
     stack.push_back(node);
     workspace_.document.apply(node.name, with_stack(state(), std::move(stack)));
     workspace_.toast_step(fmt::format("{} splats are deleted, {} fill the hole.{}{}", ui::count_text(removed),
                                       ui::count_text(added), healed.open.empty() ? "" : " ", healed.open));
+}
+
+namespace {
+
+/// Ball of the world.
+struct Ball {
+    Vec3 centre;
+    double radius = 0;
+};
+
+/// Depth of the picture at a point of it, or at the nearest of the points around; nothing where none has one.
+std::optional<double> depth_near(const Image& depth, const Camera& camera, double x, double y, double reach) {
+    constexpr std::array<std::array<double, 2>, 9> Around{
+        {{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}, {0.7, 0.7}, {-0.7, 0.7}, {0.7, -0.7}, {-0.7, -0.7}}};
+    for (const auto& [right, down] : Around) {
+        const auto px = static_cast<int>((x + right * reach) / camera.width * depth.width),
+                   py = static_cast<int>((y + down * reach) / camera.height * depth.height);
+        if (px < 0 || py < 0 || px >= depth.width || py >= depth.height) continue;
+        const double value = depth.at(px, py, 0);
+        if (std::isfinite(value) && value > 0) return value;
+    }
+    return std::nullopt;
+}
+
+/// Ball around the surface under a stroke; nothing where the picture shows none.
+std::optional<Ball> ball_under(const ui::ScreenRegion& stroke, const Image& depth, const Camera& camera) {
+    constexpr double Beyond = 1.5;  // of the brush's radius, where a hole's rim is looked for
+    std::vector<Ball> dabs;
+    Vec3 sum;
+    for (const auto& [x, y] : stroke.circles) {
+        const auto z = depth_near(depth, camera, x, y, Beyond * stroke.radius_px);
+        if (!z) continue;
+        const Vec3 seen{(x - camera.cx) / camera.fx * *z, (y - camera.cy) / camera.fy * *z, *z};
+        const Vec3 at = camera.rotation.transposed() * (seen - camera.translation);
+        dabs.push_back({at, stroke.radius_px * *z / camera.fx});
+        sum = sum + at;
+    }
+    if (dabs.empty()) return std::nullopt;
+    Ball ball{sum * (1.0 / static_cast<double>(dabs.size())), 0};
+    for (const auto& dab : dabs)
+        ball.radius = std::max(ball.radius, length(dab.centre - ball.centre) + dab.radius);
+    return ball;
+}
+
+/// Ball around the marked rows; nothing where none is.
+std::optional<Ball> ball_around(const GaussianSet& set, const std::vector<std::uint8_t>& rows) {
+    const auto position = set.position();
+    const auto at = [&](std::size_t row) {
+        return Vec3{position[3 * row], position[3 * row + 1], position[3 * row + 2]};
+    };
+    Vec3 sum;
+    std::size_t count = 0;
+    for (std::size_t row = 0; row < rows.size(); ++row)
+        if (rows[row] != 0) sum = sum + at(row), ++count;
+    if (count == 0) return std::nullopt;
+    Ball ball{sum * (1.0 / static_cast<double>(count)), 0};
+    for (std::size_t row = 0; row < rows.size(); ++row)
+        if (rows[row] != 0) ball.radius = std::max(ball.radius, length(at(row) - ball.centre));
+    return ball;
+}
+
+}  // namespace
+
+template <> void PlaceController::on(const command::HealStroke& one) {
+    const auto depth = view_.depth();
+    if (!free_stack() || one.region.circles.empty()) return;
+    const Camera camera = view_.shown_camera();
+    PickOptions options;
+    options.depth = depth.get();
+    auto rows = std::make_shared<const std::vector<std::uint8_t>>(
+        rows_in_area(view_.seen_document(), camera, screen_area(one.region), options));
+    auto ball = ball_around(state().current, *rows);
+    if (!ball && depth) ball = ball_under(one.region, *depth, camera);
+    if (!ball) return workspace_.notices.toast("Nothing is seen there that could be healed.");
+    start_healing(
+        "Heal", state(), rows, false,
+        [set = state().current, rows, up = state().info.up, ball = *ball](const JobControl& control) {
+            return heal::heal_region({set, *rows, up, control}, ball.centre, ball.radius);
+        });
 }
 
 // Other scenes

@@ -2,7 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "app/session/edit/placing.h"
 #include "app/session/state/workspace.h"
@@ -33,8 +37,12 @@ private:
     const NamedLabel* labelled();
     Vec3 front() const;
     void heal(const DocumentState& from, std::shared_ptr<const std::vector<std::uint8_t>> rows, bool stays);
-    void take_healed(const DocumentState& from, const heal::Healed& healed,
-                     const std::vector<std::uint8_t>& rows, bool stays);
+    void start_healing(const std::string& title, const DocumentState& from,
+                       std::shared_ptr<const std::vector<std::uint8_t>> rows, bool stays,
+                       std::function<heal::Healed(const JobControl&)> healing);
+    /// `stays`: rows that are not deleted; null = none.
+    void take_healed(const std::string& title, const DocumentState& from, const heal::Healed& healed,
+                     const std::shared_ptr<const std::vector<std::uint8_t>>& stays);
 
     Workspace& workspace_;
     ViewController& view_;

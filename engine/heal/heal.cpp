@@ -50,18 +50,16 @@ public:
     }
 
     Healed remove() {
-        for (std::size_t row = 0; row < input_.thing.size(); ++row)
-            if (input_.thing[row] != 0) healed_.removed[row] = 1, any_ = true;
-        if (!any_) throw Error(ErrorCode::InvalidArgument, "no splat is labelled", "select the thing first");
-        thing_ = surface_rows(input_.scene, usable_,
-                              [&](std::size_t row, const Vec3&) { return healed_.removed[row] != 0; });
-        body_ = body_of(thing_);
-        if (body_.empty()) return std::move(healed_);
-        look_around();
+        if (!begin()) return std::move(healed_);
         if (settings_.held_parts) take_held();
         reach_ = settings_.reach * body_.size;
         heal(settings_.shadow);
         return std::move(healed_);
+    }
+
+    std::vector<std::uint8_t> held() {
+        if (begin()) take_held();
+        return std::move(healed_.removed);
     }
 
     Healed fill(const Vec3& centre, double radius) {
@@ -77,6 +75,19 @@ public:
     }
 
 private:
+    /// Takes the thing's rows and looks around them. False where nothing of the thing can be seen.
+    bool begin() {
+        for (std::size_t row = 0; row < input_.thing.size(); ++row)
+            if (input_.thing[row] != 0) healed_.removed[row] = 1, any_ = true;
+        if (!any_) throw Error(ErrorCode::InvalidArgument, "no splat is labelled", "select the thing first");
+        thing_ = surface_rows(input_.scene, usable_,
+                              [&](std::size_t row, const Vec3&) { return healed_.removed[row] != 0; });
+        body_ = body_of(thing_);
+        if (body_.empty()) return false;
+        look_around();
+        return true;
+    }
+
     void step(const char* stage, int at, int total) {
         if (input_.control.stop_requested()) throw Error(ErrorCode::Cancelled, "healing was stopped");
         input_.control.report(stage, at, total);
@@ -313,6 +324,11 @@ private:
 
 Healed remove_and_heal(const HealInput& input, const HealSettings& settings) {
     return Healer(input, settings).remove();
+}
+
+std::vector<std::uint8_t> with_held_parts(const HealInput& input) {
+    const HealSettings settings;
+    return Healer(input, settings).held();
 }
 
 Healed heal_region(const HealInput& input, const Vec3& centre, double radius, const HealSettings& settings) {

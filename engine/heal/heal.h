@@ -58,6 +58,10 @@ struct Healed {
 /// zero, and when stopped.
 Healed remove_and_heal(const HealInput& input, const HealSettings& settings = {});
 
+/// The rows of `thing` with those that only it held, which move as it does: [N] 0 or 1. Throws Error as
+/// above.
+std::vector<std::uint8_t> with_held_parts(const HealInput& input);
+
 /// Removes the rows of `thing`, which may be none, and fills the holes of the surfaces inside a ball. Throws
 /// Error as above.
 Healed heal_region(const HealInput& input, const Vec3& centre, double radius,

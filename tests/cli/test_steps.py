@@ -40,18 +40,18 @@ class Steps(ProgramTest):
         self.assertEqual(self.info(self.out / "scene.ply")["splats"], report["steps"][1]["report"]["splats"])
 
     def test_a_step_that_cannot_be_done_stops_all_of_them(self):
-        process = self.edit("make the bear golden and move it to the left")
+        process = self.edit("make the bear golden and make it smile")
         self.assertEqual(process.returncode, 2)
         self.assertIn("step 2 of 2", process.stderr)
         self.assertIn("--partly", process.stderr)
         self.assertFalse(self.out.exists())
 
     def test_a_part_is_done_where_that_is_asked_for(self):
-        process = self.edit("make the bear golden and move it to the left", "--partly")
+        process = self.edit("make the bear golden and make it smile", "--partly")
         self.assertEqual(process.returncode, 3, process.stderr)
         report = self.report()
         self.assertEqual([step["done"] for step in report["steps"]], [True, False])
-        self.assertIn("not moved", report["steps"][1]["reason"])
+        self.assertIn("poses", report["steps"][1]["reason"])
 
     def test_a_word_that_the_model_does_not_know_stops_before_the_first_step(self):
         sentence = "make the bear blue and put a unicorn beside it"
@@ -152,6 +152,43 @@ class Steps(ProgramTest):
         self.assertEqual(report["labelled"], report["splats_before"])
         recipe = json.loads((self.out / "recipe.json").read_text())
         self.assertTrue(recipe["request"]["whole_scene"])
+
+    def test_what_is_removed_is_gone_and_its_place_is_healed(self):
+        process = self.edit("remove the bear")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        report = self.report()
+        self.assertEqual(report["mode"], "remove")
+        self.assertGreaterEqual(report["removed"], report["labelled"])
+        self.assertEqual(report["changed_outside_label"], 0)
+        self.assertEqual(self.info(self.out / "scene.ply")["splats"], report["splats"])
+        plain = run("-q", "edit", "--recipe", self.out / "recipe.json", "--no-heal",
+                    "--out", self.folder / "plain")
+        self.assertEqual(plain.returncode, 0, plain.stderr)
+        deleted = json.loads((self.folder / "plain/report.json").read_text())
+        self.assertEqual((deleted["added"], deleted["removed"]), (0, deleted["labelled"]))
+
+    def test_what_is_moved_keeps_its_splats(self):
+        process = self.edit("make the bear blue and twice as big", "--quality", "draft")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        bigger = self.report()["steps"][1]["report"]
+        self.assertEqual(bigger["mode"], "transform")
+        self.assertGreaterEqual(bigger["splats"], bigger["labelled"])
+        self.assertEqual(bigger["changed_outside_label"], 0)
+        process = self.edit("two bears")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        report = self.report()
+        self.assertGreaterEqual(report["added"], report["labelled"])
+
+    def test_a_change_of_place_needs_to_be_said(self):
+        scene = ASSETS / "scenes/bear/scene.ply"
+        for arguments, word in [((), "nothing says how"), (("--change", "sideways"), "no change of place"),
+                                (("--change", "swap with"), "another thing"),
+                                (("--change", "bigger", "--anchor", "statue"), "no other thing")]:
+            process = run("-q", "edit", scene, "--source", "bear", "--mode", "transform", *arguments,
+                          "--out", self.folder / "none")
+            self.assertEqual(process.returncode, 2, arguments)
+            self.assertIn(word, process.stderr)
+            self.assertEqual(len(process.stderr.strip().splitlines()), 1, process.stderr)
 
     def test_what_is_no_edit_is_refused_in_one_sentence(self):
         for prompt, word in [("make the bear smile", "poses"), ("ein blauer Bär auf dem Gras", "English"),

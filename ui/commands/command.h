@@ -189,6 +189,10 @@ struct UsePlacing {
 struct PlaceThing {
     edit::RearrangeSettings settings;
 };
+/// Removes what was painted over, and fills the place with what is around it.
+struct HealStroke {
+    ScreenRegion region;
+};
 /// Puts another scene into the open one, labelled by its name.
 struct PutIn {
     std::filesystem::path path;
@@ -364,7 +368,7 @@ using LabelCommand =
                  command::SetEditStrength, command::ExchangeVariation, command::DeleteEdit,
                  command::MoveEdit>;
 using PlaceCommand = std::variant<command::HealLabelledSplats, command::UsePlacing, command::PlaceThing,
-                                  command::HealPlace, command::PutIn>;
+                                  command::HealPlace, command::HealStroke, command::PutIn>;
 using ViewCommand =
     std::variant<command::HideLabel, command::IsolateLabel, command::ShowHidden, command::SetCamera,
                  command::SetViewSettings, command::SetComparison, command::CompareWith, command::LookThrough,

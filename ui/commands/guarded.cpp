@@ -319,9 +319,7 @@ void open_path(Context& context, const std::string& path) {
                       [&commands, path] { commands.push(command::Open{path_of(path)}); });
 }
 
-std::string why_not_put_in(const Context& context) {
-    return why_not_work(context);
-}
+std::string why_not_put_in(const Context& context) { return why_not_work(context); }
 
 bool can_be_put_in(const Context& context, const std::vector<std::string>& paths) {
     if (!why_not_put_in(context).empty() || paths.size() != 1) return false;
@@ -508,7 +506,7 @@ void set_tool(Context& context, Tool tool) {
     auto& viewport = context.state.viewport;
     viewport.tool = viewport.tool == tool ? Tool::Orbit : tool;
     viewport.stroke = false;
-    if (viewport.tool != Tool::Orbit) show_labelled(context);
+    if (viewport.tool != Tool::Orbit && viewport.tool != Tool::Heal) show_labelled(context);
 }
 
 void show_labelled(Context& context) {

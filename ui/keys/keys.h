@@ -31,6 +31,7 @@ enum class Shortcut {
     Delete,
     Heal,
     Place,
+    HealBrush,
     Evidence,
     Tint,
     Wipe,
@@ -48,7 +49,7 @@ enum class Shortcut {
     Turntable,
     Quit
 };
-inline constexpr std::size_t ShortcutCount = 31;
+inline constexpr std::size_t ShortcutCount = 32;
 inline constexpr Shortcut NoShortcut = static_cast<Shortcut>(-1);
 
 /// One line of the list of keys.
@@ -61,7 +62,7 @@ struct KeyHelp {
 };
 
 /// All keys. Shortcuts and camera must agree with it.
-inline constexpr std::array<KeyHelp, 55> KeyTable{{
+inline constexpr std::array<KeyHelp, 56> KeyTable{{
     {"Camera", "Left drag (no tool), middle drag", "Orbit"},
     {"Camera", "Shift + middle drag, right drag", "Pan"},
     {"Camera", "Wheel", "Zoom to the cursor"},
@@ -74,6 +75,7 @@ inline constexpr std::array<KeyHelp, 55> KeyTable{{
     {"Labels", "R", "Rectangle", Shortcut::Rectangle, "rectangle"},
     {"Labels", "L", "Lasso", Shortcut::Lasso, "lasso"},
     {"Labels", "C", "Cut out the thing in a box", Shortcut::CutOut, "cut_out"},
+    {"Labels", "J", "Heal brush: paint over a hole or a blemish", Shortcut::HealBrush, "heal_brush"},
     {"Labels", "G", "Handles that move, turn and resize what is labelled", Shortcut::Place, "place"},
     {"Labels", "Shift", "Add"},
     {"Labels", "Ctrl", "Remove"},

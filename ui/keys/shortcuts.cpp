@@ -87,11 +87,12 @@ void step_evidence(Context& context) {
 }
 
 void tool_keys(Context& context) {
-    constexpr std::array<std::pair<Shortcut, Tool>, 5> Tools{{{Shortcut::Brush, Tool::Brush},
+    constexpr std::array<std::pair<Shortcut, Tool>, 6> Tools{{{Shortcut::Brush, Tool::Brush},
                                                               {Shortcut::Rectangle, Tool::Rectangle},
                                                               {Shortcut::Lasso, Tool::Lasso},
                                                               {Shortcut::CutOut, Tool::CutOut},
-                                                              {Shortcut::Place, Tool::Place}}};
+                                                              {Shortcut::Place, Tool::Place},
+                                                              {Shortcut::HealBrush, Tool::Heal}}};
     for (const auto& [command, tool] : Tools)
         if (hit(context, command)) set_tool(context, tool);
     if (ImGui::GetIO().KeyCtrl || ImGui::GetIO().KeyAlt) return;

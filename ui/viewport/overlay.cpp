@@ -199,6 +199,9 @@ void draw_hint(Context& context, ImDrawList* list) {
         return shaded_text(context, list, corner,
                            context.model.placed ? "Place: drag a handle   Ctrl snaps   Esc leaves"
                                                 : "Place: label a thing first   Esc leaves");
+    if (state.tool == Tool::Heal)
+        return shaded_text(context, list, corner,
+                           "Heal: paint over a hole or a blemish   [ ] size   Esc leaves");
     std::string text = state.tool == Tool::Brush       ? "Brush: drag to paint"
                        : state.tool == Tool::Rectangle ? "Rectangle: drag a box"
                        : state.tool == Tool::CutOut    ? "Cut out: drag a box around a thing"

@@ -38,6 +38,14 @@ void send_circles(Context& context, std::size_t first, bool ends) {
     context.emit(command::Select{region, replaces ? SetOperation::Add : state.stroke_operation, ends});
 }
 
+/// True for the tools that paint with circles.
+bool paints(Tool tool) { return tool == Tool::Brush || tool == Tool::Heal; }
+
+/// True for a stroke whose effect is only known when it is whole.
+bool waits_for_end(const ViewportState& state) {
+    return state.tool == Tool::Heal || state.stroke_operation == SetOperation::Intersect;
+}
+
 /// Circles from the last point to the mouse, close enough to leave no gaps.
 void extend_brush(Context& context, ImVec2 mouse) {
     auto& state = context.state.viewport;
@@ -51,27 +59,37 @@ void extend_brush(Context& context, ImVec2 mouse) {
         const float share = static_cast<float>(step) / static_cast<float>(steps);
         state.path.push_back({last[0] + (mouse.x - last[0]) * share, last[1] + (mouse.y - last[1]) * share});
     }
-    // The part that stays of an intersection is only known when the stroke is whole.
-    if (state.stroke_operation != SetOperation::Intersect) send_circles(context, first, false);
+    if (!waits_for_end(state)) send_circles(context, first, false);
 }
 
 void begin_stroke(Context& context, ImVec2 mouse) {
     auto& state = context.state.viewport;
-    if (context.active_label() == nullptr) context.emit(command::AddLabel{"label"});
-    show_labelled(context);
+    if (state.tool != Tool::Heal) {
+        if (context.active_label() == nullptr) context.emit(command::AddLabel{"label"});
+        show_labelled(context);
+    }
     state.stroke = true;
     state.stroke_operation = operation_now(context);
     state.stroke_start = mouse;
     state.path.assign(1, {mouse.x, mouse.y});
-    if (state.tool == Tool::Brush && state.stroke_operation != SetOperation::Intersect)
-        send_circles(context, 0, false);
+    if (state.tool == Tool::Brush && !waits_for_end(state)) send_circles(context, 0, false);
+}
+
+/// The circles of the whole stroke.
+ScreenRegion painted(const Context& context) {
+    const auto& state = context.state.viewport;
+    ScreenRegion region;
+    for (const auto& point : state.path) region.circles.push_back(to_texture(context, point));
+    region.radius_px = context.view.brush_px * texture_scale(context);
+    return region;
 }
 
 void end_stroke(Context& context, ImVec2 mouse) {
     auto& state = context.state.viewport;
     state.stroke = false;
+    if (state.tool == Tool::Heal) return context.emit(command::HealStroke{painted(context)});
     if (state.tool == Tool::Brush) {
-        const bool whole = state.stroke_operation == SetOperation::Intersect;
+        const bool whole = waits_for_end(state);
         return send_circles(context, whole ? 0 : state.path.size() - (state.path.size() > 1 ? 1 : 0), true);
     }
     const bool box = state.tool == Tool::Rectangle || state.tool == Tool::CutOut;
@@ -147,7 +165,7 @@ void draw_badge(ImDrawList* list, ImVec2 at, float em, SetOperation operation) {
 void draw_stroke(Context& context, ImDrawList* list, ImVec2 mouse) {
     const auto& state = context.state.viewport;
     const ImU32 colour = state.stroke_operation == SetOperation::Remove ? palette::Bad : palette::Accent;
-    if (state.tool == Tool::Brush) {
+    if (paints(state.tool)) {
         for (const auto& point : state.path) list->PathLineTo({point[0], point[1]});
         list->PathStroke(with_alpha(colour, 0.25f), ImDrawFlags_None, context.view.brush_px * 2);
     }
@@ -193,7 +211,7 @@ bool use_tool(Context& context, bool hovered) {
         end_stroke(context, mouse);
         return true;
     }
-    if (state.tool == Tool::Brush) extend_brush(context, mouse);
+    if (paints(state.tool)) extend_brush(context, mouse);
     if (state.tool == Tool::Lasso &&
         std::hypot(mouse.x - state.path.back()[0], mouse.y - state.path.back()[1]) > LassoSpacingPx)
         state.path.push_back({mouse.x, mouse.y});
@@ -213,13 +231,14 @@ void draw_tool_cursor(Context& context, ImDrawList* list, bool hovered) {
         return;
     }
     float reach = context.em * 0.5f;
-    if (state.tool == Tool::Brush) {
+    if (paints(state.tool)) {
         ImGui::SetMouseCursor(ImGuiMouseCursor_None);
         reach = context.view.brush_px;
         list->AddCircle(mouse, reach + 1, IM_COL32(0, 0, 0, 160), 0, std::max(1.0f, context.em * 0.08f));
         list->AddCircle(mouse, reach, IM_COL32(255, 255, 255, 220), 0, std::max(1.0f, context.em * 0.08f));
         list->AddCircleFilled(mouse, std::max(1.0f, context.em * 0.08f), IM_COL32(255, 255, 255, 220));
     }
+    if (state.tool == Tool::Heal) return;
     const float away = reach * 0.72f + context.em * 0.6f;
     draw_badge(list, {mouse.x + away, mouse.y + away}, context.em,
                state.stroke ? state.stroke_operation : operation_now(context));

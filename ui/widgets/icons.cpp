@@ -126,6 +126,11 @@ void draw_tool(const Pen& pen, Icon icon) {
             pen.dot(0, -0.2f, 0.24f);
             pen.ellipse(0, 0.3f, 0.42f, 0.26f);
             break;
+        case Icon::Heal:  // a plaster
+            pen.path({{-0.85f, 0.35f}, {0.35f, -0.85f}, {0.85f, -0.35f}, {-0.35f, 0.85f}}, true);
+            pen.path({{-0.4f, -0.1f}, {0.1f, 0.4f}});
+            pen.path({{-0.1f, -0.4f}, {0.4f, 0.1f}});
+            break;
         case Icon::Place:  // arrows in four directions
             pen.path({{-0.85f, 0}, {0.85f, 0}});
             pen.path({{0, -0.85f}, {0, 0.85f}});

@@ -15,6 +15,7 @@ enum class Icon {
     Lasso,
     CutOut,
     Place,
+    Heal,
     FrontOnly,
     Through,
     Undo,

@@ -138,6 +138,8 @@ void run_located(MeasuredRun& run, const EditStart& start, Teller& teller, EditR
     edit::require_found(job.located());
     if (start.shows_preview) show_preview(job, teller);
     job.run(observer_of(start, teller, roads, adds));
+    if (!edit::is_drawn(job.located().mode))
+        teller.tell(edit_news::Preview{{{}, "Nothing was drawn: look at the place from all sides.", false}});
     teller.tell_use();
 }
 

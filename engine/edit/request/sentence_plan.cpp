@@ -100,6 +100,17 @@ bool is_place(const std::string& preposition, const std::string& noun) {
            !plan::has(plan::Class::body_place, noun) && !plan::has(plan::Class::whole_part, noun);
 }
 
+/// True for "a house without balloons", of balloons: what it is without is there before, and so is the rest.
+bool is_without(const language::Sentence& sentence, const std::string& source) {
+    const auto& words = sentence.words();
+    auto at = sentence.position_of(source);
+    if (at >= words.size()) return false;
+    while (at > 0 && language::is_a(words[at - 1], language::WordClass::Article)) --at;
+    return at > 0 && (words[at - 1] == "without" || words[at - 1] == "no" || words[at - 1] == "any") &&
+           (words[at - 1] == "without" ||
+            (at > 1 && (words[at - 2] == "with" || words[at - 2] == "without")));
+}
+
 Error several(const std::vector<plan::Step>& steps) {
     std::string list;
     for (std::size_t i = 0; i < steps.size(); ++i)
@@ -128,7 +139,7 @@ plan::SceneWords assumed_scene(const EditRequest& request, const std::vector<std
         if (ground && !about_ground) add(words[i], true);
         if (!ground && i > 1 && is_place(words[i - 2], words[i])) add(words[i], false);
     }
-    if (about_ground)  // what stands on it is there too
+    if (about_ground || is_without(sentence, source))  // what stands on it, or has it, is there too
         for (const auto& thing : sentence.things())
             if (!language::is_a(thing, language::WordClass::Ground)) {
                 add(thing, false);

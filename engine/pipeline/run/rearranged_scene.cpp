@@ -114,12 +114,11 @@ std::vector<Mask> touched_masks(const SceneEdit& edit, const RowChange& change,
 }
 
 /// Rows that go with the thing, and rows that fill its hole.
-heal::Healed healed(const SceneEdit& edit) {
+heal::Healed healed(const SceneEdit& edit, const Bits& thing) {
     heal::HealSettings settings;
     settings.seed = edit.recipe.request.seed;
     edit.control.report("healing the hole", 0, 0);
-    return heal::remove_and_heal({edit.scene, edit.plan.label, edit.located.views.orbit.up, edit.control},
-                                 settings);
+    return heal::remove_and_heal({edit.scene, thing, edit.located.views.orbit.up, edit.control}, settings);
 }
 
 /// A ground that goes leaves nothing around it to go on.
@@ -136,7 +135,7 @@ RowChange removal(const SceneEdit& edit) {
     const std::size_t rows = edit.scene.size();
     RowChange change{edit.plan.label, edit.scene, {}, {}, Bits(rows, 0)};
     if (!heals(edit)) return change;
-    auto healing = healed(edit);
+    auto healing = healed(edit, edit.plan.label);
     tell(healing);
     change.gone = std::move(healing.removed);
     change.healing = std::move(healing.added);
@@ -160,9 +159,15 @@ Bits anchor_rows(const SceneEdit& edit) {
     return rows;
 }
 
+/// Rows of the thing with those that only it holds. A part of a thing moves alone.
+Bits moving_rows(const SceneEdit& edit) {
+    if (!edit.recipe.request.part_of().empty()) return edit.plan.label;
+    return heal::with_held_parts({edit.scene, edit.plan.label, edit.located.views.orbit.up, edit.control});
+}
+
 /// Rows of the scene under maps of the thing, its anchor and its copies.
 RowChange transformation(const SceneEdit& edit) {
-    const auto& label = edit.plan.label;
+    const Bits label = moving_rows(edit);
     const Vec3 up = edit.located.views.orbit.up, front = edit.located.views.front;
     const auto anchor = anchor_rows(edit);
     Bits known = label;
@@ -175,7 +180,7 @@ RowChange transformation(const SceneEdit& edit) {
     RowChange change{Bits(label.size(), 0), edit.scene, {}, {}, label};
     change.copies.sh_degree = change.healing.sh_degree = edit.scene.sh_degree();
     if (places.leaves_place && heals(edit)) {
-        auto healing = healed(edit);
+        auto healing = healed(edit, label);
         tell(healing);
         change.healing = std::move(healing.added);
         for (std::size_t row = 0; row < label.size(); ++row)

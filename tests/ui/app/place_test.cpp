@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/pipeline/models/installed.h"
 #include "tests/ui/app/session.h"
 
 namespace place_test {
@@ -132,6 +133,58 @@ DOCTEST_TEST_CASE("the place that a thing has left is healed behind it") {
     DOCTEST_CHECK((healed || said_whole));
     constexpr double Rounding = 1e-4;  // of means of floats
     DOCTEST_CHECK(length(session.centre() - centre) < Rounding);
+}
+
+DOCTEST_TEST_CASE("a brush heals what it is painted over, without a label, as one step of undo") {
+    const Place place;
+    Session session;
+    session.open_bear();
+    auto& app = session.app;
+    const auto before = app.document().state().current;
+    const auto at = app.document().position();
+    ui::ScreenRegion stroke;
+    const auto& camera = app.model().camera;
+    stroke.circles = {{static_cast<float>(camera.width) * 0.5f, static_cast<float>(camera.height) * 0.85f}};
+    stroke.radius_px = 12;
+    app.run(command::HealStroke{stroke});
+    DOCTEST_REQUIRE(session.idle());
+    app.update(session.preview);
+    DOCTEST_REQUIRE(app.document().state().stack.size() == 1);
+    const auto& delta = *app.document().state().stack[0].delta;
+    DOCTEST_CHECK(delta.removed.size() > 0);
+    DOCTEST_CHECK(delta.changed.empty());
+    DOCTEST_CHECK(app.document().state().labels.empty());
+    DOCTEST_CHECK(app.document().position() == at + 1);
+    app.run(command::Undo{});
+    app.update(session.preview);
+    DOCTEST_CHECK(app.document().state().current.shares_all_with(before));
+}
+
+DOCTEST_TEST_CASE("a scene that is put in is labelled by its name, placed, and taken out by undo") {
+    const Place place;
+    Session session;
+    session.open_bear();
+    auto& app = session.app;
+    const auto rows = app.document().state().current.size();
+    const fs::path guest = pipeline::assets_path() / "scenes/bear/scene.ply";
+    app.run(command::UsePlacing{true});
+    app.run(command::PutIn{guest});
+    DOCTEST_REQUIRE(session.idle());
+    app.update(session.preview);
+    const auto& state = app.document().state();
+    DOCTEST_CHECK(state.current.size() == 2 * rows);
+    DOCTEST_REQUIRE(state.active_label >= 0);
+    DOCTEST_CHECK(state.labels.at(static_cast<std::size_t>(state.active_label)).name == "scene");
+    DOCTEST_CHECK(app.model().labelled == rows);
+    DOCTEST_CHECK(app.model().placed);
+    app.run(command::PutIn{fs::path("/nowhere/guitar.ply")});
+    DOCTEST_REQUIRE(session.idle());
+    app.update(session.preview);
+    DOCTEST_CHECK(app.document().state().current.size() == 2 * rows);
+    DOCTEST_CHECK_FALSE(app.model().toasts.empty());
+    app.run(command::Undo{});
+    app.update(session.preview);
+    DOCTEST_CHECK(app.document().state().current.size() == rows);
 }
 
 }  // namespace place_test

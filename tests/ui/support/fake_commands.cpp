@@ -81,6 +81,7 @@ template <class C> std::string fields_of(const C& wanted) {
         [&](const command::ExchangeVariation& one) { return two(one.id, one.index); },
         [&](const command::GrowLabel& one) { return text(one.steps); },
         [&](const command::AdjustColours& one) { return text(adjustment_text(one.adjustment)); },
+        [&](const command::HealStroke& one) { return text(one.region.circles.size()); },
         [&](const command::PutIn& one) { return text(one.path.string()); },
         [&](const command::UsePlacing& one) { return text(one.on ? "on" : "off"); },
         [&](const command::PlaceThing& one) {

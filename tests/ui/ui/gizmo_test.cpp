@@ -102,4 +102,20 @@ DOCTEST_TEST_CASE("after another step the numbers begin anew") {
     DOCTEST_CHECK(placing.values() == edit::RearrangeSettings{});
 }
 
+DOCTEST_TEST_CASE("the heal brush asks once, when its stroke is whole, and labels nothing") {
+    Harness harness({1280, 720, 1, Situation::Located, false});
+    harness.key('J');
+    DOCTEST_CHECK(harness.shell.state().viewport.tool == ui::Tool::Heal);
+    harness.application.calls.clear();
+    const auto picture = harness.rect("viewport");
+    const ImVec2 from{picture.x + picture.width * 0.4f, picture.y + picture.height * 0.6f};
+    harness.drag(from, {from.x + 60, from.y});
+    const auto& calls = harness.application.calls;
+    DOCTEST_CHECK(std::count_if(calls.begin(), calls.end(), [](const std::string& call) {
+                      return call.starts_with("heal_stroke");
+                  }) == 1);
+    DOCTEST_CHECK_FALSE(harness.application.asked("select"));
+    DOCTEST_CHECK_FALSE(harness.application.asked("add_label"));
+}
+
 }  // namespace gizmo_test

@@ -1,4 +1,4 @@
-"""Things placed and removed in the real window: handles are dragged, with steps while Ctrl is held, numbers are
+"""Things placed and removed in the real window: handles are dragged, in steps while Ctrl is held, numbers are
 typed, a labelled thing is deleted and its hole healed, an order removes it; each is undone."""
 import unittest
 

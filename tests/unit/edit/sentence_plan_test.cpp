@@ -120,6 +120,18 @@ DOCTEST_TEST_CASE("what is worn is looked for by itself, and goes with its weare
     DOCTEST_CHECK(rest.things[0].noun == "grass");
 }
 
+DOCTEST_TEST_CASE("a description of a thing without the source takes the source away") {
+    for (const auto& [prompt, source] :
+         {std::pair{"a house without balloons", "balloons"}, std::pair{"a bear without a hat", "hat"},
+          std::pair{"the house with no balloons", "balloons"}}) {
+        const std::string typed = prompt;
+        DOCTEST_CAPTURE(typed);
+        const auto checked = edit::check(request(typed, source));
+        DOCTEST_CHECK(checked.mode == edit::EditMode::Remove);
+        DOCTEST_CHECK(checked.source() == source);
+    }
+}
+
 DOCTEST_TEST_CASE("an edit in which nothing is drawn needs its thing by name") {
     auto wanted = request("anything", "");
     wanted.mode = "remove";

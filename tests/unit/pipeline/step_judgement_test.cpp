@@ -83,6 +83,22 @@ DOCTEST_TEST_CASE("judgement of a step: figures of other kinds of change do not 
     DOCTEST_CHECK(reason(EditMode::Add, &StepFigures::new_shown, 0).empty());
 }
 
+DOCTEST_TEST_CASE("judgement of a step: where nothing is drawn, the place and the surroundings count") {
+    const auto of = [](EditMode mode, double changed, double spilled) {
+        StepFigures figures;
+        figures.mode = mode;
+        figures.thing = figures.news = "bear";
+        figures.changed = changed;
+        figures.spilled = spilled;
+        return judge_step(figures).reason;
+    };
+    DOCTEST_CHECK(of(EditMode::Remove, 0.9, 0).empty());
+    DOCTEST_CHECK(contains(of(EditMode::Remove, 0.01, 0), "the place of the bear looks as before"));
+    DOCTEST_CHECK(of(EditMode::Transform, 0.01, 0).empty());  // a small move shows little
+    for (const auto mode : {EditMode::Remove, EditMode::Transform})
+        DOCTEST_CHECK(contains(of(mode, 0.9, 0.2), "20 % of what surrounds the bear"));
+}
+
 DOCTEST_TEST_CASE("judgement of a step: the better score counts, and none is no failure") {
     auto figures = right(EditMode::Modify);
     figures.pictures = figures.scene = 0.0;

@@ -94,4 +94,19 @@ DOCTEST_TEST_CASE("what an edit added belongs to the active label, or to one of 
     DOCTEST_CHECK(only_less.current.size() == 3);
 }
 
+DOCTEST_TEST_CASE("rows that fill a hole come with those that go, and belong to no label") {
+    const DocumentState state = state_of(4);
+    GaussianData fill = state.current.to_data();
+    fill.resize(2);
+    const EditNode node = exchange_of(state, std::vector<std::uint8_t>{0, 1, 0, 0}, fill, 7);
+    DOCTEST_CHECK(node.delta->removed == std::vector<RowId>{1});
+    DOCTEST_CHECK(node.delta->added.size() == 2);
+    const auto healed = with_edit(state, node, "bear", false, std::vector<std::uint8_t>{1, 1});
+    DOCTEST_CHECK(healed.labels.empty());
+    DOCTEST_CHECK(healed.current.size() == 5);
+    const auto half = with_edit(state, node, "bear", false, std::vector<std::uint8_t>{1, 0});
+    DOCTEST_REQUIRE(half.labels.size() == 1);
+    DOCTEST_CHECK(count_labelled(half.labels[0]) == 1);
+}
+
 }  // namespace stack_edits_test
