@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <utility>
 
 #include "engine/base/check.h"
@@ -17,6 +16,7 @@
 #include "engine/language/grammar.h"
 #include "engine/localize/clusters.h"
 #include "engine/scene/delta.h"
+#include "engine/scene/transform/joined_sets.h"
 #include "engine/scene/transform/transformed.h"
 
 namespace gse::pipeline {
@@ -28,21 +28,12 @@ constexpr float TouchedShare = 0.02f;  // of a pixel that changed rows make up: 
 
 /// Rows of a result in the making: those that go, those that come.
 struct RowChange {
-    Bits gone;             // [N]
-    GaussianSet changed;   // [N] the scene, with rows that moved
-    GaussianData copies;   // rows of the thing that come
-    GaussianData healing;  // rows that fill a hole
-    Bits moved;            // [N] rows of the thing that stay its rows
+    Bits gone;                             // [N]
+    GaussianSet changed;                   // [N] the scene, with rows that moved
+    Bits moved;                            // [N] rows of the thing that stay its rows
+    GaussianData healing;                  // rows that fill a hole
+    std::vector<GaussianSet> copies = {};  // of the thing
 };
-
-void append(GaussianData& to, const GaussianData& rows) {
-    const auto add = [](auto& a, const auto& b) { a.insert(a.end(), b.begin(), b.end()); };
-    add(to.position, rows.position);
-    add(to.log_scale, rows.log_scale);
-    add(to.rotation, rows.rotation);
-    add(to.opacity_logit, rows.opacity_logit);
-    add(to.sh, rows.sh);
-}
 
 /// Puts the rows together: those that stay in their order, then copies, then healing.
 edit::EditResult result_of(const RowChange& change) {
@@ -57,10 +48,13 @@ edit::EditResult result_of(const RowChange& change) {
         result.base_to_new[row] = next++;
         result.label.push_back(change.moved[row]);
     }
-    GaussianData data = change.changed.filtered(keep).to_data();
-    append(data, change.copies);
-    append(data, change.healing);
-    result.set = GaussianSet(std::move(data));
+    std::vector<GaussianSet> parts{change.changed.filtered(keep)};
+    parts.insert(parts.end(), change.copies.begin(), change.copies.end());
+    parts.emplace_back(change.healing);
+    result.set = joined(parts);
+    if (result.set.empty())
+        throw Error(ErrorCode::InvalidArgument, "nothing of the scene would be left",
+                    "label less of it, or keep it");
     result.generation.assign(result.label.size(), 0);
     result.label.resize(result.set.size(), 1);
     result.generation.resize(result.set.size(), 1);
@@ -131,9 +125,15 @@ void tell(const heal::Healed& healed) {
     if (!healed.open.empty()) log::warning("{}", healed.open);
 }
 
+GaussianData no_rows(const SceneEdit& edit) {
+    GaussianData none;
+    none.sh_degree = edit.scene.sh_degree();
+    return none;
+}
+
 RowChange removal(const SceneEdit& edit) {
     const std::size_t rows = edit.scene.size();
-    RowChange change{edit.plan.label, edit.scene, {}, {}, Bits(rows, 0)};
+    RowChange change{edit.plan.label, edit.scene, Bits(rows, 0), no_rows(edit)};
     if (!heals(edit)) return change;
     auto healing = healed(edit, edit.plan.label);
     tell(healing);
@@ -177,8 +177,7 @@ RowChange transformation(const SceneEdit& edit) {
     const auto places =
         edit::rearrangement(edit.recipe.request, thing, anchor.empty() ? nullptr : &other,
                             edit::other_points(edit.scene, anchor.empty() ? label : known, thing.frame));
-    RowChange change{Bits(label.size(), 0), edit.scene, {}, {}, label};
-    change.copies.sh_degree = change.healing.sh_degree = edit.scene.sh_degree();
+    RowChange change{Bits(label.size(), 0), edit.scene, label, no_rows(edit)};
     if (places.leaves_place && heals(edit)) {
         auto healing = healed(edit, label);
         tell(healing);
@@ -191,8 +190,8 @@ RowChange transformation(const SceneEdit& edit) {
         change.changed = transformed(change.changed, anchor, *places.anchor);
         change.moved = std::move(known);
     }
-    const GaussianData rows = edit.scene.filtered(label).to_data();
-    for (const auto& place : places.copies) append(change.copies, transformed(rows, place));
+    const GaussianSet rows = edit.scene.filtered(label);
+    for (const auto& place : places.copies) change.copies.push_back(transformed(rows, place));
     return change;
 }
 
@@ -214,6 +213,10 @@ Edited rearranged_scene(const SceneEdit& edit) {
     auto touched = touched_masks(edit, change, result);
     Edited edited = finished(edit, edit.recipe.request, std::move(result));
     edited.touched = std::move(touched);
+    ContentHash hash;
+    hash.text(edited.key);
+    hash.fields(static_cast<const edit::RearrangeSettings&>(edit.recipe.request));
+    edited.key = hash.key().hex();
     return edited;
 }
 
