@@ -30,6 +30,10 @@ constexpr std::size_t LeastBeyond = 25;            // cells beyond the shadow to
 constexpr double MostGain = 2.6;
 constexpr double DeepShadow = 0.9;    // in logarithms of brightness, that is filled anew and not lit
 constexpr double LargestLit = 4;      // cells, standard deviation of a row that is lit
+constexpr double RoughSpread = 0.09;  // of a surface whose means are no measure
+constexpr int RetinexSweeps = 300;
+constexpr double RetinexRelax = 1.8, RetinexNoise = 0.16;  // over-relaxation; what light may be by chance
+constexpr double PaintHue = 0.06, PaintStep = 0.25;        // between cells, in logarithms
 constexpr double BrightShare = 0.97;  // of the rows of the surface beyond, that are darker than its brightest
 constexpr double FitScale = 0.15;     // in logarithms, beyond which a cell counts little
 constexpr int GainRounds = 4;         // of the gain, each on what the one before left
@@ -160,6 +164,8 @@ public:
             measure(tones, along = cells);
             if (spread_ < CalmSpread) break;
         }
+        retinex_ = spread_ > RoughSpread;
+        if (retinex_) measure(tones, along);
         const BitGrid shaded = connected();
         find_brightest();
         for (std::size_t k = 0; k < within_.size(); ++k)
@@ -194,8 +200,48 @@ private:
         return sum;
     }
 
+    /// Light of the cells by colour retinex (Land and McCann 1971, Funt et al. 1992): steps of brightness
+    /// between cells of one hue are light, others are paint. Solves the Poisson equation; the surface beyond
+    /// has the light 0.
+    void measure_light() {
+        Grid<std::array<double, 4>> light(hole_.width, hole_.height);
+        Grid<std::array<double, 4>> colour = light;
+        for (std::size_t i = 0; i < colour.cells.size(); ++i)
+            colour.cells[i] = logarithms(chart_.colour.cells[i]);
+        const auto width = static_cast<std::size_t>(hole_.width);
+        constexpr int Sides[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
+        for (int sweep = 0; sweep < RetinexSweeps; ++sweep)
+            for (const auto cell : within_) {
+                const int x = static_cast<int>(cell % width), y = static_cast<int>(cell / width);
+                std::array<double, 4> sum{};
+                double count = 0;
+                for (const auto& [dx, dy] : Sides) {
+                    if (!surface_.inside(x + dx, y + dy) || surface_.at(x + dx, y + dy) == 0) continue;
+                    const std::size_t other = surface_.index(x + dx, y + dy);
+                    const auto step = light_step(colour.cells[other], colour.cells[cell]);
+                    for (std::size_t c = 0; c < 4; ++c) sum[c] += light.cells[other][c] + step[c];
+                    count += 1;
+                }
+                for (std::size_t c = 0; c < 4 && count > 0; ++c)
+                    light.cells[cell][c] += RetinexRelax * (sum[c] / count - light.cells[cell][c]);
+            }
+        for (std::size_t k = 0; k < within_.size(); ++k) dark_[k] = light.cells[within_[k]];
+        spread_ = 0.5 * RetinexNoise;
+    }
+
+    /// Step of light between two colours; none where the paint changes.
+    static std::array<double, 4> light_step(const std::array<double, 4>& from,
+                                            const std::array<double, 4>& to) {
+        std::array<double, 4> step{};
+        for (std::size_t c = 0; c < 4; ++c) step[c] = to[c] - from[c];
+        const double hue = std::max({step[0], step[1], step[2]}) - std::min({step[0], step[1], step[2]});
+        if (hue > PaintHue || std::abs(step[3]) > PaintStep) return {};
+        return step;
+    }
+
     /// Means of all cells less the trend of the surface beyond.
     void measure(const Tones& tones, double along) {
+        if (retinex_) return measure_light();
         off_ = Grid<std::array<double, 4>>(hole_.width, hole_.height);
         for (std::size_t i = 0; i < off_.cells.size(); ++i)
             if (surface_.cells[i] != 0) off_.cells[i] = tones.off(chart_.colour.cells[i]);
@@ -320,6 +366,7 @@ private:
     Grid<std::int32_t> place_;                  // of a cell in `within_`; -1 = not there
     Values dark_;                               // of the cells of `within_`, less the trend
     double spread_ = 0, brightest_ = FarAway;
+    bool retinex_ = false;
 };
 
 }  // namespace

@@ -7,14 +7,17 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <sstream>
 
 #include "engine/base/clock.h"
 #include "engine/base/error.h"
 #include "engine/base/thread_pool.h"
 #include "engine/evaluate/metrics.h"
+#include "engine/io/project/load_scene.h"
 #include "engine/laboratory/synth/removal_scene.h"
 #include "engine/math/noise.h"
 #include "engine/raster/rasterizer.h"
+#include "engine/scene/scene.h"
 
 namespace gse::bench {
 namespace {
@@ -81,6 +84,15 @@ Image mean_filled(const Image& deleted, const Mask& hole) {
     return image;
 }
 
+Vec3 vector_of(const std::string& name, const std::string& text) {
+    std::istringstream words(text);
+    Vec3 v;
+    if (!(words >> v.x >> v.y >> v.z))
+        throw Error(ErrorCode::InvalidArgument, "the setting " + name + " is not three numbers",
+                    "write them with spaces between");
+    return v;
+}
+
 class HealBench {
 public:
     HealBench(const HealBenchParameters& parameters, const heal::HealSettings& settings,
@@ -89,14 +101,20 @@ public:
           rasterizer_(raster::make_fast_rasterizer(pool_)) {}
 
     Subject run() {
-        const auto names =
+        auto names =
             parameters_.kinds == "all" ? synth::removal_scene_names() : words_in_list(parameters_.kinds);
+        GaussianSet scan;
+        if (!parameters_.scan.empty())
+            names = {"scan"}, scan = drawable(load_scene(parameters_.scan).gaussians);
         std::map<std::string, Figures> figures;
         for (const auto& name : names)
             for (int i = 0; i < parameters_.seeds; ++i) {
                 if (job_.stop_requested()) throw Error(ErrorCode::Cancelled, "the measurement was stopped");
-                measure(synth::removal_scene(name, parameters_.seed + static_cast<std::uint64_t>(i),
-                                             parameters_.splats),
+                const std::uint64_t seed = parameters_.seed + static_cast<std::uint64_t>(i);
+                measure(scan.empty() ? synth::removal_scene(name, seed, parameters_.splats)
+                                     : synth::removal_scene_on(scan, vector_of("up", parameters_.up),
+                                                               vector_of("place", parameters_.place),
+                                                               parameters_.thing_size, seed),
                         figures[name], i == 0);
             }
         return subject(names, figures);
@@ -152,7 +170,7 @@ private:
         const auto whole = thing;
         miss(scan, thing);
         const double start = wall_seconds();
-        const auto healed = heal::remove_and_heal({scan, thing, {0, -1, 0}, job_}, settings_);
+        const auto healed = heal::remove_and_heal({scan, thing, scene.up, job_}, settings_);
         figures.seconds += wall_seconds() - start;
         const GaussianSet result = heal::healed_set(scan, healed);
         std::vector<std::uint8_t> keep(thing.size());

@@ -20,6 +20,8 @@ struct HealBenchParameters {
     int views = 6;
     int size = 256;
     double missed = 0;
+    std::string scan, up = "0 -1 0", place = "0 0 0";
+    double thing_size = 0.5;
 
     template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         f("kinds", self.kinds, "Kinds of scenes, or all.");
@@ -30,6 +32,10 @@ struct HealBenchParameters {
           "Views that the scan was made from; what none shows is missing.", Range{4, 1000});
         f("views", self.views, "Other views that the figures are of.", Range{1, 100});
         f("size", self.size, "Side of the pictures, pixels.", Range{32, 2048});
+        f("scan", self.scan, "Scene file that a thing is put into, instead of the generated kinds.");
+        f("up", self.up, "Up direction of that scene.");
+        f("place", self.place, "Place in that scene where the thing stands.");
+        f("thing_size", self.thing_size, "Height of that thing, world units.", Range{1e-6, 1e6});
         f("missed", self.missed, "Share of the thing, in patches, that the label misses.", Range{0, 0.5});
     }
 };

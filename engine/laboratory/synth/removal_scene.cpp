@@ -177,18 +177,21 @@ Sheet make_thing(const std::string& word, const std::string& material, const Vec
     return sheet;
 }
 
+/// Factors of the colours at a place, in the shadow of the thing.
+Vec3 shadow_at(const Vec3& place, const Sheet& thing, double reach) {
+    double nearest = 1e30;
+    for (const auto& point : thing.points) {
+        const Vec3 d = point.position - place;
+        nearest = std::min(nearest, dot(d, d));
+    }
+    return mix({1, 1, 1}, {0.40, 0.42, 0.50}, ShadowDepth * std::exp(-nearest / (reach * reach)));
+}
+
 /// Colours of the sheet in the shadow of the thing.
 std::vector<Vec3> shaded(const Sheet& sheet, const Sheet& thing) {
     auto colours = sheet.colours;
-    for (std::size_t i = 0; i < colours.size(); ++i) {
-        double nearest = 1e9;
-        for (const auto& point : thing.points) {
-            const Vec3 d = point.position - sheet.points[i].position;
-            nearest = std::min(nearest, dot(d, d));
-        }
-        const double dark = ShadowDepth * std::exp(-nearest / (ShadowReach * ShadowReach));
-        colours[i] *= mix({1, 1, 1}, {0.40, 0.42, 0.50}, dark);
-    }
+    for (std::size_t i = 0; i < colours.size(); ++i)
+        colours[i] *= shadow_at(sheet.points[i].position, thing, ShadowReach);
     return colours;
 }
 
@@ -268,6 +271,56 @@ RemovalScene removal_scene(const std::string& name, std::uint64_t seed, int gaus
     result.orbit.radius = 2.0;
     result.orbit.fov_x = 0.8;
     result.widest_azimuth = layout.widest;
+    return result;
+}
+
+RemovalScene removal_scene_on(const GaussianSet& surroundings, const Vec3& up, const Vec3& place, double size,
+                              std::uint64_t seed) {
+    constexpr int ThingRows = 6000;
+    // Model space to the scene: y goes along up.
+    const Mat3 turn = rotation_to(normalized(up));
+    Sheet thing = make_thing("bear", "red", {}, size, ThingRows, seed);
+    GaussianData drawn, scene = surroundings.to_data();
+    append(thing, thing.colours, Random::stream(seed, 18), drawn);
+    const Quat spin = quaternion(turn) * Quat(0, 0, 0, 1);  // undoes the half turn about z of append()
+    for (std::size_t row = 0; row < drawn.size(); ++row) {
+        thing.points[row].position = turn * thing.points[row].position + place;
+        const float* q = &drawn.rotation[row * 4];
+        const Quat turned = spin * Quat(q[0], q[1], q[2], q[3]);
+        const std::size_t to = scene.size();
+        scene.resize(to + 1);
+        for (std::size_t k = 0; k < 3; ++k) {
+            scene.position[to * 3 + k] = static_cast<float>(thing.points[row].position[static_cast<int>(k)]);
+            scene.log_scale[to * 3 + k] = drawn.log_scale[row * 3 + k];
+            scene.sh[to * scene.sh_stride() + k] = drawn.sh[row * 3 + k];
+        }
+        const double rotation[4] = {turned.w, turned.x, turned.y, turned.z};
+        for (std::size_t k = 0; k < 4; ++k) scene.rotation[to * 4 + k] = static_cast<float>(rotation[k]);
+        scene.opacity_logit[to] = drawn.opacity_logit[row];
+    }
+    for (std::size_t row = 0; row < surroundings.size(); ++row) {
+        const Vec3 at{scene.position[row * 3], scene.position[row * 3 + 1], scene.position[row * 3 + 2]};
+        if (!(length(at - place) < 2 * size)) continue;
+        const Vec3 shadow = shadow_at(at, thing, ShadowReach * size);
+        float* sh = &scene.sh[row * scene.sh_stride()];
+        for (std::size_t k = 0; k < scene.sh_stride(); ++k) {
+            const double factor = shadow[static_cast<int>(k % 3)];
+            sh[k] =
+                static_cast<float>(k < 3 ? sh_from_colour(colour_from_sh(sh[k]) * factor) : sh[k] * factor);
+        }
+    }
+    RemovalScene result;
+    result.name = "scan";
+    result.thing.assign(scene.size(), 0);
+    std::fill(result.thing.begin() + static_cast<std::ptrdiff_t>(surroundings.size()), result.thing.end(), 1);
+    result.truth = surroundings;
+    result.scene = GaussianSet(std::move(scene));
+    result.up = normalized(up);
+    result.orbit.centre = place + result.up * (0.3 * size);
+    result.orbit.up = result.up;
+    result.orbit.radius = 2.6 * size;
+    result.orbit.fov_x = 0.8;
+    result.widest_azimuth = std::numbers::pi;
     return result;
 }
 

@@ -238,6 +238,36 @@ DOCTEST_TEST_CASE("a shadow is lit again, and dark marks stay") {
             DOCTEST_CHECK(healed.removed[row] == 0);
 }
 
+DOCTEST_TEST_CASE("a shadow on tiles of many colours is lit again") {
+    const auto paint = [](const Vec3& p) {
+        const Vec3 paints[] = {
+            {0.8, 0.6, 0.5}, {0.3, 0.6, 0.6}, {0.75, 0.75, 0.7}, {0.35, 0.5, 0.65}, {0.8, 0.7, 0.6}};
+        const int x = static_cast<int>(std::floor(p.x / 0.3 + 0.5)),
+                  z = static_cast<int>(std::floor(p.z / 0.3 + 0.5));
+        return paints[static_cast<std::size_t>((7 * x + 3 * z + x * z + 700) % 5)];
+    };
+    const auto light = [](const Vec3& p) { return 1 - 0.5 * std::exp(-dot(p, p) / 0.09); };
+    constexpr double Fine = 0.025;
+    Builder scene;
+    scene.sheet(
+        Fine, level, {0, 1, 0}, [&](const Vec3& p) { return paint(p) * light(p); },
+        [](const Vec3& p) { return length(p) > 0.15; });
+    scene.ball({0, BallRadius, 0}, BallRadius, 300, {0.9, 0.1, 0.1}, true);
+    const auto healed = scene.heal();
+    double before = 0, after = 0;
+    std::size_t rows = 0;
+    for (std::size_t row = 0; row < healed.added.size(); ++row) {
+        const Vec3 at = place(healed.added, row);
+        if (length(at) < 0.2) continue;  // the rim of the hole is texture
+        before += paint(at).x * (1 - light(at));
+        after += std::abs(paint(at).x - colour_from_sh(healed.added.sh[row * 3]));
+        ++rows;
+    }
+    DOCTEST_CHECK(rows > 100);
+    constexpr double MostLeft = 0.5;  // of the shadow; paint is told from light by its hue alone
+    DOCTEST_CHECK(after < MostLeft * before);
+}
+
 DOCTEST_TEST_CASE("a patch that the label left out goes with the thing, and what stands against it stays") {
     Builder scene = floor_with_ball(0.22);
     const auto missed = [&](std::size_t row) {

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/laboratory/synth/removal_scene.h"
 
@@ -31,6 +32,26 @@ DOCTEST_TEST_CASE("the truth differs from the surroundings in colours alone, and
         DOCTEST_CHECK(shadow);
         DOCTEST_CHECK(static_cast<std::size_t>(std::count(scene.thing.begin(), scene.thing.end(), 1)) ==
                       scene.scene.size() - around);
+    }
+}
+
+DOCTEST_TEST_CASE("a thing stands upright at a place of another scene") {
+    const auto ground = synth::removal_scene("behind", 3, 3000).truth;
+    for (const Vec3& up : {Vec3{0, -1, 0}, Vec3{0, 0, 1}, Vec3{0.6, 0.8, 0}}) {
+        const Vec3 place{0.2, 0, 0.3};
+        const auto scene = synth::removal_scene_on(ground, up, place, 0.5, 4);
+        DOCTEST_CHECK(scene.truth.shares_all_with(ground));
+        double low = 1e9, high = -1e9, away = 0;
+        for (std::size_t row = ground.size(); row < scene.scene.size(); ++row) {
+            const float* p = &scene.scene.position()[row * 3];
+            const Vec3 at = Vec3{p[0], p[1], p[2]} - place;
+            low = std::min(low, dot(at, up)), high = std::max(high, dot(at, up));
+            away = std::max(away, length(at - up * dot(at, up)));
+        }
+        DOCTEST_CHECK(std::abs(low) < 0.01);
+        DOCTEST_CHECK(high > 0.35);
+        DOCTEST_CHECK(high < 0.65);
+        DOCTEST_CHECK(away < 0.5);
     }
 }
 
