@@ -105,14 +105,14 @@ def middle(box):
     return [(low + high) / 2 for low, high in box]
 
 
-def fault_of_transform(step, change):
-    """What is wrong about a transform; empty = nothing."""
+def fault_of_transform(step, thing, change):
+    """What is wrong about a transform; empty = nothing. Parts of a thing stand on no ground."""
     if len(step.new) != len(step.old):
         return f"{len(step.old)} splats became {len(step.new)}"
     old, new = bounds(step.before, step.old), bounds(step.after, step.new)
     grown = [b / a for a, b in zip(size(old), size(new))]
     shift = [(b - a) / max(size(old)) for a, b in zip(middle(old), middle(new))]
-    lifted = (new[1][0] - old[1][0]) / size(old)[1]
+    lifted = 0 if " of " in thing else (new[1][0] - old[1][0]) / size(old)[1]
     words = change.split()
     told = "grown {:.2f} {:.2f} {:.2f}, shifted {:.2f} {:.2f} {:.2f}".format(*grown, *shift)
     moves = {"left": (0, -1), "right": (0, 1), "up": (1, 1), "down": (1, -1), "back": (2, 1),
@@ -179,7 +179,7 @@ def fault_of(step, operation, arguments):
     if operation == "duplicate":
         wanted = int(arguments[1]) * len(step.old)
         return "" if len(step.new) == wanted else f"{len(step.new)} splats in place of {wanted}"
-    return fault_of_transform(step, arguments[1])
+    return fault_of_transform(step, arguments[0], arguments[1])
 
 
 def verdict_on(folder, plan):

@@ -105,7 +105,9 @@ bool is_without(const language::Sentence& sentence, const std::string& source) {
     const auto& words = sentence.words();
     auto at = sentence.position_of(source);
     if (at >= words.size()) return false;
-    while (at > 0 && language::is_a(words[at - 1], language::WordClass::Article)) --at;
+    using language::WordClass;
+    while (at > 0 && language::is_a(words[at - 1], WordClass::IndefiniteArticle | WordClass::DefiniteArticle))
+        --at;
     return at > 0 && (words[at - 1] == "without" || words[at - 1] == "no" || words[at - 1] == "any") &&
            (words[at - 1] == "without" ||
             (at > 1 && (words[at - 2] == "with" || words[at - 2] == "without")));
