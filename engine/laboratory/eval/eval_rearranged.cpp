@@ -36,6 +36,11 @@ std::size_t count_of(const Bits& bits) {
     return static_cast<std::size_t>(std::count(bits.begin(), bits.end(), std::uint8_t{1}));
 }
 
+/// True for rows with equal bits of opacity and of the first extent, which moves keep.
+bool same_opacity_and_size(const GaussianSet& a, std::size_t i, const GaussianSet& b, std::size_t j) {
+    return a.opacity_logit()[i] == b.opacity_logit()[j] && a.log_scale()[i * 3] == b.log_scale()[j * 3];
+}
+
 /// A case whose edit has run.
 class Rearranged {
 public:
@@ -108,37 +113,57 @@ private:
         return count;
     }
 
-    /// Pairs of labelled rows and what became of them: of the thing itself, or of a copy.
-    RowPairs pairs_of(int thing) const {
-        const auto& now = job_.result().base_to_new;
-        const auto staying = static_cast<std::size_t>(
-            std::count_if(now.begin(), now.end(), [](std::int64_t row) { return row >= 0; }));
-        std::size_t next = staying + static_cast<std::size_t>(std::max(thing - 1, 0)) * count_of(label_);
+    /// Pairs of labelled rows and what became of them.
+    RowPairs pairs_of_thing() const {
         RowPairs pairs;
-        for (std::size_t row = 0; row < label_.size(); ++row) {
-            if (label_[row] == 0) continue;
-            if (thing > 0) pairs.emplace_back(row, next++);
-            else if (now[row] >= 0) pairs.emplace_back(row, static_cast<std::size_t>(now[row]));
-        }
+        for (std::size_t row = 0; row < label_.size(); ++row)
+            if (const auto now = job_.result().base_to_new[row]; label_[row] != 0 && now >= 0)
+                pairs.emplace_back(row, static_cast<std::size_t>(now));
+        if (pairs.size() != count_of(label_))
+            throw Error(ErrorCode::InvalidArgument, "the result lacks rows of the thing");
         return pairs;
+    }
+
+    /// Pairs of rows and their copies, copy by copy: behind the rows that stay, in their order. A copy has
+    /// what the thing wears or holds, too.
+    std::vector<RowPairs> pairs_of_copies() const {
+        const auto& result = job_.result();
+        const auto staying = static_cast<std::size_t>(std::count_if(
+            result.base_to_new.begin(), result.base_to_new.end(), [](std::int64_t row) { return row >= 0; }));
+        const auto copies = static_cast<std::size_t>(edit_.asked.things - 1);
+        const std::size_t rows =
+            copies > 0 ? (result.set.size() - staying - count_of(result.hidden)) / copies : 0;
+        std::vector<RowPairs> list(copies);
+        for (std::size_t copy = 0; copy < copies; ++copy) {
+            std::size_t next = staying + copy * rows;
+            const std::size_t end = next + rows;
+            for (std::size_t row = 0; row < label_.size() && next < end; ++row)
+                if (same_opacity_and_size(base(), row, result.set, next))
+                    list[copy].emplace_back(row, next++);
+            if (next != end || rows < count_of(label_))
+                throw Error(ErrorCode::InvalidArgument, "the result lacks rows of a copy");
+        }
+        return list;
     }
 
     void add_maps(Json& json) {
         MapError error;
+        const auto& result = job_.result();
+        synth::Placing map = asked_map(edit_, extent_, axes_);
+        const Vec3 wanted = map.shift;
+        const auto follow = [&](const RowPairs& pairs) {
+            map.shift = fitted_shift(base(), result.set, pairs, map);
+            error.add(map_error(base(), result.set, pairs, map));
+        };
+        follow(pairs_of_thing());
+        json["place_error"] = length(map.shift - wanted) / extent_.longest();
+        places_.push_back(map);
+        places_.back().shift = settled(wanted, map.shift);
         double nearest = 1e300;
-        for (int thing = 0; thing < edit_.asked.things; ++thing) {
-            const auto pairs = pairs_of(thing);
-            if (pairs.size() != count_of(label_) || pairs.back().second >= job_.result().set.size())
-                throw Error(ErrorCode::InvalidArgument,
-                            "the result lacks rows of the thing or of its copies");
-            synth::Placing map = asked_map(edit_, extent_, axes_);
-            const Vec3 wanted = map.shift;
-            map.shift = fitted_shift(base(), job_.result().set, pairs, map);
-            error.add(map_error(base(), job_.result().set, pairs, map));
-            if (thing == 0) json["place_error"] = length(map.shift - wanted) / extent_.longest();
+        for (const auto& pairs : pairs_of_copies()) {
+            follow(pairs);
             for (const auto& other : places_) nearest = std::min(nearest, length(map.shift - other.shift));
             places_.push_back(map);
-            if (thing == 0) places_.back().shift = settled(wanted, map.shift);
         }
         json["position_error"] = error.position / extent_.longest();
         json["covariance_error"] = error.covariance;
