@@ -100,17 +100,18 @@ bool is_place(const std::string& preposition, const std::string& noun) {
            !plan::has(plan::Class::body_place, noun) && !plan::has(plan::Class::whole_part, noun);
 }
 
-/// True for "a house without balloons", of balloons: what it is without is there before, and so is the rest.
-bool is_without(const language::Sentence& sentence, const std::string& source) {
+/// "house" of "a house without balloons" or "a house with no balloons", of balloons: what it is without is
+/// there before, and so is the rest. Empty for other sentences.
+std::string bare_thing(const language::Sentence& sentence, const std::string& source) {
+    using language::WordClass;
     const auto& words = sentence.words();
     auto at = sentence.position_of(source);
-    if (at >= words.size()) return false;
-    using language::WordClass;
-    while (at > 0 && language::is_a(words[at - 1], WordClass::IndefiniteArticle | WordClass::DefiniteArticle))
-        --at;
-    return at > 0 && (words[at - 1] == "without" || words[at - 1] == "no" || words[at - 1] == "any") &&
-           (words[at - 1] == "without" ||
-            (at > 1 && (words[at - 2] == "with" || words[at - 2] == "without")));
+    if (at >= words.size()) return {};
+    constexpr auto Articles = WordClass::IndefiniteArticle | WordClass::DefiniteArticle;
+    while (at > 0 && (language::is_a(words[at - 1], Articles) || words[at - 1] == "any")) --at;
+    if (at > 1 && words[at - 1] == "no" && words[at - 2] == "with") at -= 1;
+    else if (at == 0 || words[at - 1] != "without") return {};
+    return at > 1 ? words[at - 2] : std::string();
 }
 
 Error several(const std::vector<plan::Step>& steps) {
@@ -141,7 +142,8 @@ plan::SceneWords assumed_scene(const EditRequest& request, const std::vector<std
         if (ground && !about_ground) add(words[i], true);
         if (!ground && i > 1 && is_place(words[i - 2], words[i])) add(words[i], false);
     }
-    if (about_ground || is_without(sentence, source))  // what stands on it, or has it, is there too
+    if (const auto whole = bare_thing(sentence, source); !whole.empty()) add(whole, false);
+    if (about_ground)  // what stands on it is there, too
         for (const auto& thing : sentence.things())
             if (!language::is_a(thing, language::WordClass::Ground)) {
                 add(thing, false);
