@@ -30,8 +30,8 @@ def without_measured_cost(value):
 @unittest.skipUnless((MODEL / "model_index.json").exists(), "[skip] the starter model is not there")
 class Evaluations(ProgramTest):
     def evaluate(self, out, *arguments):
-        process = run_laboratory("-q", "eval", "--out", out, "--edits", 2, "--kinds", "recolour add", *QUICK,
-                                 *arguments)
+        kinds = [] if "--kinds" in arguments else ["--kinds", "recolour add"]
+        process = run_laboratory("-q", "eval", "--out", out, "--edits", 2, *kinds, *QUICK, *arguments)
         self.assertEqual(process.returncode, 0, process.stderr)
         return process, json.loads((out / "eval.json").read_text())
 
@@ -61,6 +61,23 @@ class Evaluations(ProgramTest):
                          ["full", "no_localization", "no_pseudo_gt", "no_gate", "static_mask", "no_anchor"])
         self.assertGreater(report["peak_rss_mb"], 0)
         self.assertTrue((out / report["sheets"][0]).read_bytes().startswith(b"\x89PNG"))
+
+    def test_what_is_removed_and_copied_is_held_against_the_truth(self):
+        kinds = ["--kinds", "remove duplicate", "--seed", 5]
+        process, report = self.evaluate(self.folder / "out", *kinds)
+        removed, copied = report["edits"]
+        for edit in (removed, copied):
+            self.assertNotIn("error", edit)
+            self.assertEqual(edit["rearranged"]["rows_changed_outside"], 0)
+            self.assertIn("passed", edit["judgement"])
+        for key in ("psnr_hole_db", "psnr_hole_deleted_db", "psnr_hole_mean_db", "ssim_hole", "thing_left"):
+            self.assertIn(key, removed["rearranged"])
+        for key in ("position_error", "covariance_error", "colour_error"):
+            self.assertLess(copied["rearranged"][key], 1e-5)  # some steps of float
+        self.assertEqual(report["summary"]["remove_rows_changed_outside"]["met"], True)
+        self.assertIn("judgement", process.stdout)
+        _, again = self.evaluate(self.folder / "again", *kinds)
+        self.assertEqual(without_measured_cost(report), without_measured_cost(again))
 
     def test_the_same_seed_gives_the_same_figures(self):
         _, first = self.evaluate(self.folder / "first", "--seed", 9)

@@ -291,7 +291,7 @@ Json rearranged_figures(const EvalCase& edit, const pipeline::EditRecipe& recipe
     job->run();
     if (job->result().stopped) throw Error(ErrorCode::Cancelled, "the evaluation was stopped");
     if (job->result().failure) throw *job->result().failure;
-    json["job_seconds"] = job->times().to_json();
+    json["job"]["seconds"] = job->times().to_json();
     json["rearranged"] = Rearranged(edit, scene, *job, tools).figures();
     json["judgement"] = pipeline::judgement_to_json(pipeline::judge_step(*job));
     return json;
