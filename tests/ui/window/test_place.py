@@ -1,5 +1,5 @@
 """Things placed and removed in the real window: handles are dragged, in steps while Ctrl is held, numbers are
-typed, a labelled thing is deleted and its hole healed, an order removes it; each is undone."""
+typed, a labelled thing is deleted and its hole healed, a brush heals, an order removes; each is undone."""
 import unittest
 
 from window import WindowTest
@@ -15,14 +15,6 @@ class Place(WindowTest):
         window.key("ctrl+l")
         window.wait(lambda s: s["labelled"] > 0 and not s["job"]["running"], "the bear is not labelled", 120)
         return window
-
-    def type_number(self, window, name, text):
-        window.xdotool("keydown", "ctrl")
-        window.click(name)
-        window.xdotool("keyup", "ctrl")
-        window.key("ctrl+a")
-        window.xdotool("type", "--delay", "40", text)
-        window.key("Return")
 
     def undo(self, window, stack):
         window.click("viewport", 0.9, 0.2)  # no field has the keys
@@ -48,7 +40,7 @@ class Place(WindowTest):
         if "place.move_right" not in window.widgets():
             window.click("place.open")
         window.scroll_to("place.resize", "panel.Labels")
-        self.type_number(window, "place.resize", "1.5")
+        window.type_number("place.resize", "1.5")
         window.wait(lambda s: s["stack"] == 1, "the typed size changed nothing", 20)
         window.picture("place_03_typed")
         self.undo(window, 0)
@@ -66,13 +58,20 @@ class Place(WindowTest):
         self.undo(window, 0)
         window.wait(lambda s: s["splats"] == splats, "the thing did not come back", 20)
 
+        window.key("j")
+        window.drag("viewport", [(0.3, 0.85), (0.34, 0.85), (0.4, 0.86)])
+        window.wait(lambda s: s["stack"] == 1 and not s["job"]["running"], "the brush healed nothing", 60)
+        window.picture("place_05_brush")
+        window.key("Escape")
+        self.undo(window, 0)
+
         window.click("tab.Prompt")
         window.write("prompt.sentence", "remove the bear")
         window.wait_widget("prompt.edit", enabled=True)
-        window.picture("place_05_order")
+        window.picture("place_06_order")
         window.click("prompt.edit")
         window.wait(lambda s: s["result_waiting"] and not s["job"]["running"], "no result waits", 120)
-        window.picture("place_06_removed")
+        window.picture("place_07_removed")
         window.click("result.apply")
         window.wait(lambda s: s["stack"] == 1, "the removal was not applied", 20)
         self.assertLess(window.state()["splats"], splats)

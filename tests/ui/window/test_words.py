@@ -11,22 +11,13 @@ class Words(WindowTest):
         window = self.open()
         window.click("start.sample")
         window.wait(lambda s: s["splats"] > 0 and not s["busy"], "the sample did not open")
-        self.type_number(window, "prompt.iterations", "20")
+        window.type_number("prompt.iterations", "20")
         return window
 
     def chip(self, window, name):
         """Clicks a word of the sentence by its place in it."""
         window.wait_widget(name)
         window.click(name)
-
-    def type_number(self, window, name, text):
-        """Ctrl + click turns a number that is dragged into one that is typed."""
-        window.xdotool("keydown", "ctrl")
-        window.click(name)
-        window.xdotool("keyup", "ctrl")
-        window.key("ctrl+a")
-        window.xdotool("type", "--delay", "40", text)
-        window.key("Return")
 
     def test_a_target_goes_with_its_sentence(self):
         window = self.start()
@@ -97,7 +88,7 @@ class Words(WindowTest):
         window.scroll_to("prompt.group.Localization", "panel.Prompt")
         window.click("prompt.group.Localization")
         window.scroll_to("request.least_confidence", "panel.Prompt")
-        self.type_number(window, "request.least_confidence", "0.999")
+        window.type_number("request.least_confidence", "0.999")
         window.click("prompt.locate")
         window.wait(lambda s: s["job"]["running"], "the search did not start", 20)
         window.idle(300)

@@ -189,6 +189,15 @@ class Window:
             self.xdotool("key", key)
             self.settle()
 
+    def type_number(self, name, text):
+        """Ctrl + click turns a number that is dragged into one that is typed."""
+        self.xdotool("keydown", "ctrl")
+        self.click(name)
+        self.xdotool("keyup", "ctrl")
+        self.key("ctrl+a")
+        self.xdotool("type", "--delay", "40", text)
+        self.key("Return")
+
     def write(self, name, text):
         """Replaces the text of a field; the prompt's are typed until it has arrived: on a busy machine a
         click may fall between frames."""
