@@ -1,8 +1,12 @@
 """Things placed and removed in the real window: handles are dragged, in steps while Ctrl is held, numbers are
-typed, a labelled thing is deleted and its hole healed, a brush heals, an order removes; each is undone."""
+typed, a labelled thing is deleted and its hole healed, a brush heals, an order removes, a second scene is put
+in; each is undone."""
+import pathlib
 import unittest
 
 from window import WindowTest
+
+SAMPLE = pathlib.Path(__file__).resolve().parents[3] / "assets/scenes/bear/scene.ply"
 
 
 class Place(WindowTest):
@@ -43,6 +47,28 @@ class Place(WindowTest):
         window.type_number("place.resize", "1.5")
         window.wait(lambda s: s["stack"] == 1, "the typed size changed nothing", 20)
         window.picture("place_03_typed")
+        self.undo(window, 0)
+        window.close()
+
+    def test_a_second_scene_is_put_in_and_dragged(self):
+        window = self.open()
+        window.click("start.sample")
+        window.wait(lambda s: s["splats"] > 0 and not s["busy"], "the sample did not open")
+        splats = window.state()["splats"]
+        window.click("menu.File")
+        window.click("menu.put_in")
+        window.wait_widget("files.path")
+        window.click("files.path")
+        window.key("ctrl+a")
+        window.xdotool("type", "--delay", "20", str(SAMPLE))
+        window.key("Return")
+        window.wait(lambda s: s["stack"] == 1 and s["splats"] == 2 * splats, "it was not put in", 60)
+        self.assertEqual(window.state()["labelled"], splats)
+        window.wait_widget("gizmo.ground")
+        window.picture("place_08_put_in")
+        window.drag("gizmo.ground", [(0.5, 0.5), (4, 2), (6, 3)])
+        window.wait(lambda s: s["stack"] == 2, "it was not dragged", 20)
+        self.undo(window, 1)
         self.undo(window, 0)
         window.close()
 
