@@ -95,6 +95,7 @@ class Steps(ProgramTest):
     def test_one_more_of_the_same_leaves_a_project(self):
         process = self.edit("another bear, a green one, next to it", "--quality", "draft")
         self.assertIn(process.returncode, [0, 3], process.stderr)   # drawn well or not
+        self.assertNotIn("leaves it out", process.stderr)   # "beside" is read from the sentence
         listing = run("project", self.out / "edit.gsep", "--json")
         self.assertEqual(listing.returncode, 0, listing.stderr)
         self.assertEqual(len(json.loads(listing.stdout)["edits"]), 1)

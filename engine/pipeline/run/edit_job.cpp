@@ -183,15 +183,29 @@ void EditJob::check_length() const {
                  words[read]);
 }
 
+namespace {
+
+/// Words of a sentence that name or describe something: "beside" and "left of" say where, which is read from
+/// the sentence and not by the model.
+std::vector<std::string> telling_words(const language::Sentence& sentence) {
+    std::vector<std::string> words;
+    for (const auto& term : language::noun_terms(sentence.words(), {}))
+        if (language::says_something(term))
+            for (auto& word : language::words_of(term)) words.push_back(std::move(word));
+    return words;
+}
+
+}  // namespace
+
 void EditJob::begin(Scene scene, std::shared_ptr<neural::TextToImage> model, Segmenters segmenters,
                     const GivenCameras& given) {
     workplace_ =
         std::make_unique<RunContext>(std::move(scene), std::move(model), recipe_.job, std::move(segmenters));
-    auto words = recipe_.request.sentence().sentence().words();
+    auto words = telling_words(recipe_.request.sentence().sentence());
     for (auto& word : language::words_of(recipe_.request.source())) words.push_back(std::move(word));
     if (!recipe_.request.part_of().empty())  // a part is told by its thing's shape, where it has no word
         for (const auto& part : language::words_of(recipe_.request.source())) std::erase(words, part);
-    if (recipe_.request.whole_scene()) words = recipe_.request.sentence().sentence().words();
+    if (recipe_.request.whole_scene()) words = telling_words(recipe_.request.sentence().sentence());
     std::sort(words.begin(), words.end());
     words.erase(std::unique(words.begin(), words.end()), words.end());
     const auto known = workplace_->model().known_words();
