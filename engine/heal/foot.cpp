@@ -18,7 +18,7 @@ constexpr std::size_t LeastFoot = 4;             // cells
 constexpr int NearestRing = 3, WidestRing = 16;  // cells around the foot whose colours are compared
 constexpr double AroundCells = 3.5;              // from a hole, that must show the surface
 constexpr std::size_t MostRing = 1500;
-constexpr std::array Lights{1.0, 1.25, 1.6, 2.0, 2.5};  // factors by which a shaded colour may be too dark
+constexpr std::array Lights{1.0, 1.25, 1.6, 2.0};  // factors by which a shaded colour may be too dark
 constexpr double Unlike = 0.15;                         // distance of a colour from all colours around
 constexpr double GarbageShare = 0.25;                   // of the foot's known cells
 constexpr double LeastKnown = 0.3;    // of the foot's cells, that there is a surface to judge
