@@ -19,9 +19,9 @@ constexpr int NearestRing = 3, WidestRing = 16;  // cells around the foot whose 
 constexpr double AroundCells = 3.5;              // from a hole, that must show the surface
 constexpr std::size_t MostRing = 1500;
 constexpr std::array Lights{1.0, 1.25, 1.6, 2.0};  // factors by which a shaded colour may be too dark
-constexpr double Unlike = 0.15;                         // distance of a colour from all colours around
-constexpr double GarbageShare = 0.25;                   // of the foot's known cells
-constexpr double LeastKnown = 0.3;    // of the foot's cells, that there is a surface to judge
+constexpr double Unlike = 0.15;                    // distance of a colour from all colours around
+constexpr double GarbageShare = 0.25;              // of the foot's known cells
+constexpr double LeastKnown = 0.3;                 // of the foot's cells, that there is a surface to judge
 constexpr double LeastDensity = 0.7;  // of rows in the foot over those around; above its inverse, too
 constexpr double LargestSize = 1.5;   // of the rows in the foot over those around; below its inverse, too
 constexpr double LeastDetail = 0.85;  // of density times squared size, for a foot that is as whole as the
