@@ -24,8 +24,11 @@ constexpr double GarbageShare = 0.25;              // of the foot's known cells
 constexpr double LeastKnown = 0.3;                 // of the foot's cells, that there is a surface to judge
 constexpr double LeastDensity = 0.7;  // of rows in the foot over those around; above its inverse, too
 constexpr double LargestSize = 1.5;   // of the rows in the foot over those around; below its inverse, too
-constexpr double LeastLight = 0.45, MostLight = 1.1;  // of the foot over that around
-constexpr double MostHue = 0.06;                      // difference of the channels' shares
+constexpr double LeastDetail = 0.85;  // of density times squared size, for a foot that is as whole as the
+                                      // surface around but finer; below its inverse, too
+constexpr double LeastLightFine = 0.28, MostHueFine = 0.12;  // of such a foot
+constexpr double LeastLight = 0.45, MostLight = 1.1;         // of the foot over that around
+constexpr double MostHue = 0.06;                             // difference of the channels' shares
 
 BitGrid shrunk(const BitGrid& bits, int cells) {
     BitGrid inverse = bits;
@@ -144,10 +147,15 @@ bool foot_is_garbage(const Chart& chart, const BitGrid& foot, std::span<const Su
     const auto cells = static_cast<double>(std::count(foot.cells.begin(), foot.cells.end(), 1));
     if (static_cast<double>(under.cells) < LeastKnown * cells || around.cells == 0) return false;
     const double density = under.density / around.density, light = under.light / around.light;
+    const double hue = length(under.share - around.share);
+    const double detail = density * under.size * under.size / (around.size * around.size);
+    const bool fine = under.size < around.size && detail > LeastDetail && detail < 1 / LeastDetail;
+    if (fine && light > LeastLightFine && light < MostLight && hue < MostHueFine)
+        return unlike_share(chart, foot, in_ring) > GarbageShare;
     if (density < LeastDensity || density > 1 / LeastDensity) return true;
     if (under.size > LargestSize * around.size || under.size * LargestSize < around.size) return true;
     if (light < LeastLight || light > MostLight) return true;
-    if (length(under.share - around.share) > MostHue) return true;
+    if (hue > MostHue) return true;
     return unlike_share(chart, foot, in_ring) > GarbageShare;
 }
 
