@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs sentences of the development suite that remove, move, resize, turn or copy things of the bundled scene.
+"""Runs sentences of the development suite that remove, move, resize, turn or copy things of the sample scene.
 
     rearrange_sheet.py PROGRAM --out FOLDER [--count 0] [--seed 1] [-- EDIT_OPTION ...]
 
