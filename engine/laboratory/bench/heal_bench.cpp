@@ -14,6 +14,7 @@
 #include "engine/base/thread_pool.h"
 #include "engine/evaluate/metrics.h"
 #include "engine/io/project/load_scene.h"
+#include "engine/laboratory/eval/hole_figures.h"
 #include "engine/laboratory/synth/removal_scene.h"
 #include "engine/math/noise.h"
 #include "engine/raster/rasterizer.h"
@@ -28,7 +29,6 @@ constexpr int CaptureSide = 160;
 constexpr double LowElevation = 0.25, HighElevation = 0.8, TestElevation = 0.5;
 constexpr double LeastSeen = 0.1;  // of what a row shows without the thing, that a scan needs to hold it
 constexpr double HoleDifference = 4.0 / 255;
-constexpr int RingPx = 8;  // around the hole, whose mean colour fills it
 
 /// Figures of a picture in the hole and outside, with their sums over views.
 struct Figures {
@@ -65,23 +65,6 @@ double rim_gradient(const Image& image, const Mask& mask) {
             cross(x, y + 1);
         }
     return sum;
-}
-
-/// The deleted picture with the hole in the mean colour of the pixels around it.
-Image mean_filled(const Image& deleted, const Mask& hole) {
-    const Mask wide = grown(hole, RingPx);
-    std::array<double, 3> sum{};
-    double count = 0;
-    for (std::size_t i = 0; i < hole.data.size(); ++i)
-        if (wide.data[i] != 0 && hole.data[i] == 0) {
-            for (std::size_t c = 0; c < 3; ++c) sum[c] += deleted.data[i * 3 + c];
-            count += 1;
-        }
-    Image image = deleted;
-    for (std::size_t i = 0; i < hole.data.size() && count > 0; ++i)
-        if (hole.data[i] != 0)
-            for (std::size_t c = 0; c < 3; ++c) image.data[i * 3 + c] = static_cast<float>(sum[c] / count);
-    return image;
 }
 
 Vec3 vector_of(const std::string& name, const std::string& text) {
