@@ -50,7 +50,6 @@ std::size_t toast_with(const app::Application& app, const std::string& button) {
 
 bool opens(Session& session, const fs::path& project) {
     session.app.run(command::Open{project});
-    DOCTEST_REQUIRE(session.until([&] { return session.app.model().file_job.running; }, 10));
     DOCTEST_REQUIRE(session.idle());
     session.app.update(session.preview);
     return session.app.model().document != nullptr;
