@@ -272,7 +272,7 @@ struct TargetRound {
 };
 
 /// Scope of the next edit: a label, or the result of a search.
-struct EditReach {
+struct EditScope {
     std::string label;       // that it uses or could use, with splats in it; empty = there is none
     std::size_t splats = 0;  // of it
     bool by_label = false;   // it says what may change; else the words are looked for
@@ -378,7 +378,7 @@ struct SearchPart {
     std::vector<std::string> made_things;  // by the applied edits
     std::size_t words_read = 0;            // of the sentence, by the text encoder; 0 = all, or not known
     std::string read_target;  // the word that a search of this sentence saw to be new; empty = none looked
-    EditReach reach;
+    EditScope scope;
     bool labelled_by_hand = false;  // nothing has to be found: the active label says what may change
     Estimate estimate;
     std::vector<AttentionView> attention;
@@ -438,10 +438,10 @@ struct PlacePart {
 /// Models and their settings.
 struct ModelPart {
     std::vector<ModelView> models;
-    std::vector<std::string> known_words;  // of the chosen model; empty = open vocabulary
-    std::vector<std::string> drawn_words;  // that it draws besides and does not look for
-    bool words_known = false;              // known_words has been read
-    edit::EditRequest request_defaults;    // values that suit the model in use
+    std::vector<std::string> known_words;           // of the chosen model; empty = open vocabulary
+    std::vector<std::string> generated_vocabulary;  // that it draws besides and does not look for
+    bool words_known = false;                       // known_words has been read
+    edit::EditRequest request_defaults;             // values that suit the model in use
     ModelSettings model_settings, model_settings_defaults;
     bool edits_by_instruction = false;  // the model in use is told what to do, too
     std::vector<LoraView> loras;

@@ -26,7 +26,7 @@ void ModelList::refresh(const std::string& in_use) {
         rows_.push_back(std::move(row));
     }
     known_words_ = pipeline::model_words(in_use);
-    drawn_words_ = pipeline::drawn_words(in_use);
+    generated_vocabulary_ = pipeline::generated_vocabulary(in_use);
 }
 
 void ModelList::try_out(const std::string& path) {
@@ -48,7 +48,7 @@ std::string ModelList::name_of(const std::string& path) const {
 void ModelList::show(ui::ModelPart& model) const {
     model.models = rows_;
     model.known_words = known_words_;
-    model.drawn_words = drawn_words_;
+    model.generated_vocabulary = generated_vocabulary_;
     model.words_known = true;
 }
 

@@ -25,14 +25,14 @@ public:
     /// Name of a model, or its path.
     std::string name_of(const std::string& path) const;
     const std::vector<std::string>& known_words() const { return known_words_; }
-    const std::vector<std::string>& drawn_words() const { return drawn_words_; }
+    const std::vector<std::string>& generated_vocabulary() const { return generated_vocabulary_; }
     void show(ui::ModelPart& model) const;
 
 private:
     std::vector<ui::ModelView> rows_;
     std::map<std::string, std::string> problems_;  // by path, of models that were tried; empty = none yet
     std::string tried_;
-    std::vector<std::string> known_words_, drawn_words_;  // of the model in use
+    std::vector<std::string> known_words_, generated_vocabulary_;  // of the model in use
 };
 
 }  // namespace gse::app

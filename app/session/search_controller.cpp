@@ -138,8 +138,8 @@ void SearchController::take_document() {
     wanted_vote_.reset();
     arriving_ = std::make_shared<ArrivingViews>();
     choice_.reset();
-    reach_key_ = {};
-    reach_ = {};
+    scope_key_ = {};
+    scope_ = {};
     labelled_by_hand_ = attention_corrected_ = false;
     last_estimate_ = {};
     costs_.forget_estimate();
@@ -351,16 +351,16 @@ void SearchController::show_scope() {
     workspace_.document.apply("Choose label", std::move(next), "choose-label");
 }
 
-void SearchController::set_reach(bool by_label) {
+void SearchController::set_scope(bool by_label) {
     const NamedLabel* used = by_label ? nullptr : scope();
     if (const NamedLabel* label = used != nullptr ? used : workspace_.active_label())
-        choice_ = ReachChoice{by_label, label->name, language::normalised_prompt(sentence_.asked().source)};
+        choice_ = ScopeChoice{by_label, label->name, language::normalised_prompt(sentence_.asked().source)};
 }
 
 void SearchController::choose_label_by_hand() {
     if (const NamedLabel* label = workspace_.active_label();
         label != nullptr && (made_by_hand(*label) || count_labelled(*label) == 0))
-        set_reach(true);
+        set_scope(true);
 }
 
 void SearchController::choose_for_source() {
@@ -373,7 +373,7 @@ void SearchController::rename_label(const std::string& from, const std::string& 
 }
 
 /// Made anew only when words, label or choice are others.
-void SearchController::refresh_reach() {
+void SearchController::refresh_scope() {
     ContentHash hash;
     hash.numbers(workspace_.document.revision(), last_.number(), choice_.has_value());
     const auto words = sentence_.asked();
@@ -382,23 +382,23 @@ void SearchController::refresh_reach() {
         hash.numbers(choice_->by_label);
         hash.texts({choice_->label, choice_->source});
     }
-    if (reach_key_ == hash.key()) return;
-    reach_key_ = hash.key();
+    if (scope_key_ == hash.key()) return;
+    scope_key_ = hash.key();
     const auto source = language::normalised_prompt(last_.words().source);
     attention_corrected_ = !last_.views().empty() &&
                            corrected_after_search(workspace_.document.state().labels, {last_.word(), source});
-    reach_ = {};
+    scope_ = {};
     labelled_by_hand_ = false;
-    reach_.present = present_already(workspace_.document.state(), recipe().request, read_target());
+    scope_.present = present_already(workspace_.document.state(), recipe().request, read_target());
     const NamedLabel *active = workspace_.active_label(), *used = scope();
     const NamedLabel* label = used != nullptr ? used : active;
     if (label == nullptr || count_labelled(*label) == 0) return;
-    reach_.label = label->name;
-    reach_.splats = count_labelled(*label);
-    reach_.by_label = used != nullptr;
-    reach_.corrected = !label->found_for.empty() && corrected_by_hand(*label);
-    if (used != nullptr && active != nullptr && active != used) reach_.shown = active->name;
-    labelled_by_hand_ = reach_.by_label && stands_alone(*label, words, models_.list().known_words());
+    scope_.label = label->name;
+    scope_.splats = count_labelled(*label);
+    scope_.by_label = used != nullptr;
+    scope_.corrected = !label->found_for.empty() && corrected_by_hand(*label);
+    if (used != nullptr && active != nullptr && active != used) scope_.shown = active->name;
+    labelled_by_hand_ = scope_.by_label && stands_alone(*label, words, models_.list().known_words());
 }
 
 // Frames
@@ -408,7 +408,7 @@ void SearchController::refresh() {
     vote_if_wanted();
     sentence_.set_known_words(models_.list().known_words());
     if (workspace_.document.empty()) return;
-    refresh_reach();
+    refresh_scope();
     if (seconds_since(last_estimate_) <= EstimateSeconds) return;
     last_estimate_ = Clock::now();
     refresh_estimate();
@@ -426,7 +426,8 @@ void SearchController::refresh_estimate() {
     work.tune_steps = settings.learn_scene && !work.located && !learned ? settings.learning.steps : 0;
     work.rows = current.size();
     work.traits = models_.traits();
-    work.words = language::promptable_vocabulary(models_.list().known_words(), models_.list().drawn_words());
+    work.words =
+        language::promptable_vocabulary(models_.list().known_words(), models_.list().generated_vocabulary());
     if (sentence_.steps().size() > 1) return costs_.estimate(work_of_steps(sentence_, std::move(work)));
     try {
         work.mode = edit::decide_mode(edit::check(sentence_.asked()), std::nullopt).first;
@@ -441,7 +442,7 @@ void SearchController::show(ui::SearchPart& model) const {
     model.made_things = sentence_.made();
     model.words_read = words_read_;
     model.read_target = read_target();
-    model.reach = reach_;
+    model.scope = scope_;
     model.labelled_by_hand = labelled_by_hand_;
     model.attention_corrected = attention_corrected_;
     model.voting = workspace_.jobs->works_at(JobKind::Vote);
@@ -452,7 +453,7 @@ void SearchController::show(ui::SearchPart& model) const {
 
 template <> void SearchController::on(const command::SetRequest& one) { set_request(one.request); }
 
-template <> void SearchController::on(const command::SetReach& one) { set_reach(one.by_label); }
+template <> void SearchController::on(const command::SetScope& one) { set_scope(one.by_label); }
 
 template <> void SearchController::on(const command::RepeatEdit& one) {
     if (workspace_.document.empty()) return;

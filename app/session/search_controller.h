@@ -117,8 +117,8 @@ private:
     void label_located(const EditJob& job, const std::string& step, const std::string& merge_key);
     void vote_if_wanted();
     void end_vote(const std::shared_ptr<EditJob>& job, const Vote& vote, const Error* error);
-    void set_reach(bool by_label);
-    void refresh_reach();
+    void set_scope(bool by_label);
+    void refresh_scope();
     void refresh_reading();
     void refresh_estimate();
 
@@ -133,9 +133,9 @@ private:
     std::string looked_from_;  // where the camera was turned to when it began; empty = nowhere
     std::optional<Vote> wanted_vote_;
     std::shared_ptr<ArrivingViews> arriving_ = std::make_shared<ArrivingViews>();  // of the search under way
-    std::optional<ReachChoice> choice_;  // of the label that was active then
-    ContentKey reach_key_;               // that the three below were made for
-    ui::EditReach reach_;
+    std::optional<ScopeChoice> choice_;  // of the label that was active then
+    ContentKey scope_key_;               // that the three below were made for
+    ui::EditScope scope_;
     bool labelled_by_hand_ = false, attention_corrected_ = false;
     Clock::time_point last_estimate_{};
 };

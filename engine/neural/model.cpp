@@ -79,7 +79,7 @@ public:
                supports_scene_conditioning();
     }
     std::vector<std::string> known_words() const override { return bundle_->facts.vocabulary; }
-    std::vector<std::string> drawn_words() const override {
+    std::vector<std::string> generated_vocabulary() const override {
         return supports_appearance_editing() && !loaded_->facts.vocabulary.empty()
                    ? loaded_->facts.drawn_vocabulary
                    : std::vector<std::string>{};
@@ -170,7 +170,7 @@ private:
     }
     ModelBundle with_shape_unet() const {
         auto bundle = *bundle_;
-        const auto drawn = drawn_words();
+        const auto drawn = generated_vocabulary();
         bundle.facts.vocabulary.insert(bundle.facts.vocabulary.end(), drawn.begin(), drawn.end());
         bundle.unet = load_shape_unet(loaded_->path / loaded_->facts.shape_unet);
         bundle.unet->to(bundle.device);

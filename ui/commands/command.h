@@ -130,7 +130,7 @@ struct LeaveOutView {
     bool out = true;
 };
 /// Chooses the splats that may change: those of the active label, or those that a search finds.
-struct SetReach {
+struct SetScope {
     bool by_label = true;
 };
 /// Puts the settings of an applied edit into the prompt, with a new seed.
@@ -354,7 +354,7 @@ using FileCommand = std::variant<command::Open, command::OpenSample, command::Sa
                                  command::SetUpAxis, command::RepairScene, command::CancelFileJob>;
 using SearchCommand =
     std::variant<command::SetRequest, command::Locate, command::LabelAnyway, command::SetAttentionThreshold,
-                 command::LeaveOutView, command::SetReach, command::RepeatEdit>;
+                 command::LeaveOutView, command::SetScope, command::RepeatEdit>;
 using EditCommand =
     std::variant<command::Edit, command::Pause, command::Cancel, command::OrderTarget, command::FitToTargets,
                  command::ApplyResult, command::DiscardResult, command::AnotherResult, command::ShowResult,

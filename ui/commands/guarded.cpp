@@ -283,7 +283,7 @@ bool ask_partly(Context& context) {
 
 void run_edit(Context& context) {
     if (!why_not_edit(context).empty()) return;
-    const auto& present = context.model.reach.present;
+    const auto& present = context.model.scope.present;
     if (!context.state.prompt.seed_locked) roll_seed(context);
     send_request(context);
     if (context.state.prompt.steps.size() < 2 && !present.empty()) return ask_second(context, present);

@@ -47,7 +47,7 @@ void draw_adjust(Context& context) {
                      ? fmt::format("Changes what \"{}\" labels: {} splats.", label->name, count_text(count))
                      : fmt::format("Nothing is labelled: changes all {} splats.",
                                    count_text(context.document().current.size())));
-    note(context, "adjust.reach");
+    note(context, "adjust.scope");
     bool changed = false;
     const ColourAdjustment standard;
     ColourAdjustment::visit_fields(

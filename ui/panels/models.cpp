@@ -213,9 +213,9 @@ void draw_models_panel(Context& context) {
                                : fmt::format("The chosen model knows {} words.", words.size()));
     if (!words.empty() && folding(context, "models.words", "Words it knows")) {
         draw_words(words);
-        if (!context.model.drawn_words.empty()) {
+        if (!context.model.generated_vocabulary.empty()) {
             dim_text("It draws these besides, but does not find them:");
-            draw_words(context.model.drawn_words);
+            draw_words(context.model.generated_vocabulary);
         }
     }
     draw_loras(context);

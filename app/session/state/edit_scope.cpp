@@ -116,7 +116,7 @@ bool stands_alone(const NamedLabel& label, const edit::EditRequest& request,
 }
 
 bool label_says(const NamedLabel& label, const edit::EditRequest& request,
-                const std::vector<std::string>& known, const std::optional<ReachChoice>& choice) {
+                const std::vector<std::string>& known, const std::optional<ScopeChoice>& choice) {
     if (count_labelled(label) == 0) return false;
     const auto source = language::normalised_prompt(request.source),
                target = language::normalised_prompt(request.target);
@@ -141,7 +141,7 @@ namespace {
 
 /// The artist's word about a label for this source; nothing = none was said.
 std::optional<bool> chosen(const NamedLabel& label, const std::string& source,
-                           const std::optional<ReachChoice>& choice, bool any_source) {
+                           const std::optional<ScopeChoice>& choice, bool any_source) {
     if (!choice || choice->label != label.name) return std::nullopt;
     const bool fits = choice->source.empty() ? any_source : choice->source == source;
     return fits ? std::optional(choice->by_label) : std::nullopt;
@@ -149,7 +149,7 @@ std::optional<bool> chosen(const NamedLabel& label, const std::string& source,
 
 /// Tells whether the active label stands for a thing that is neither its own nor another label's.
 bool stands_in(const NamedLabel& label, const DocumentState& state, const std::string& source,
-               const std::optional<ReachChoice>& choice) {
+               const std::optional<ScopeChoice>& choice) {
     const bool of_another = choice && choice->label == label.name && !choice->source.empty() &&
                             !source.empty() && choice->source != source;
     return !of_another && !(state.row_ids && is_addition(label, *state.row_ids));
@@ -159,7 +159,7 @@ bool stands_in(const NamedLabel& label, const DocumentState& state, const std::s
 
 std::optional<std::size_t> scope_label(const DocumentState& state, const edit::EditRequest& request,
                                        const std::vector<std::string>& known,
-                                       const std::optional<ReachChoice>& choice) {
+                                       const std::optional<ScopeChoice>& choice) {
     const auto source = language::normalised_prompt(request.source),
                target = language::normalised_prompt(request.target);
     const auto& labels = state.labels;

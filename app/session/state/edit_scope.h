@@ -12,7 +12,7 @@
 namespace gse::app {
 
 /// The artist's choice about a label: it drives the edits of a source, or these are searched for.
-struct ReachChoice {
+struct ScopeChoice {
     bool by_label = false;
     std::string label;   // its name
     std::string source;  // as told; empty = of any source that is typed next
@@ -34,7 +34,7 @@ bool is_label_of(const NamedLabel& label, const std::string& word);
 /// and the model does not know them and it was made by hand, or the artist chose it. `known` holds the words
 /// of the model; empty = it takes any.
 bool label_says(const NamedLabel& label, const edit::EditRequest& request,
-                const std::vector<std::string>& known, const std::optional<ReachChoice>& choice);
+                const std::vector<std::string>& known, const std::optional<ScopeChoice>& choice);
 
 /// Tells whether all that is labelled was added by edits. `row_ids`: identity of each row.
 bool is_addition(const NamedLabel& label, const std::vector<RowId>& row_ids);
@@ -45,7 +45,7 @@ bool is_addition(const NamedLabel& label, const std::vector<RowId>& row_ids);
 /// source.
 std::optional<std::size_t> scope_label(const DocumentState& state, const edit::EditRequest& request,
                                        const std::vector<std::string>& known,
-                                       const std::optional<ReachChoice>& choice);
+                                       const std::optional<ScopeChoice>& choice);
 
 /// Name of the thing that an addition puts there, where the scene has one already; empty otherwise. An edit
 /// of the stack added it, or a label is named for it. Or a search saw that only what is said of it is new:

@@ -56,53 +56,53 @@ Mask with_rims(const Mask& holes, const Mask& mask, const Image& alpha) {
 
 /// Mean of the neighbours that count, of all channels of both pictures, where the depth holds 1/z; false
 /// where none counts.
-bool take_mean(CleanPlate& backdrop, int x, int y, const Mask& counts) {
+bool take_mean(CleanPlate& clean_plate, int x, int y, const Mask& counts) {
     std::array<float, 4> sum{};
     int neighbours = 0;
     for (const auto& [dx, dy] : Sides) {
-        if (!within(backdrop.depth, x + dx, y + dy) || counts.at(x + dx, y + dy) == 0) continue;
+        if (!within(clean_plate.depth, x + dx, y + dy) || counts.at(x + dx, y + dy) == 0) continue;
         for (int c = 0; c < 3; ++c)
-            sum[static_cast<std::size_t>(c)] += backdrop.picture.at(x + dx, y + dy, c);
-        sum[3] += backdrop.depth.at(x + dx, y + dy, 0);
+            sum[static_cast<std::size_t>(c)] += clean_plate.picture.at(x + dx, y + dy, c);
+        sum[3] += clean_plate.depth.at(x + dx, y + dy, 0);
         ++neighbours;
     }
     if (neighbours == 0) return false;
     for (int c = 0; c < 3; ++c)
-        backdrop.picture.at(x, y, c) = sum[static_cast<std::size_t>(c)] / static_cast<float>(neighbours);
-    backdrop.depth.at(x, y, 0) = sum[3] / static_cast<float>(neighbours);
+        clean_plate.picture.at(x, y, c) = sum[static_cast<std::size_t>(c)] / static_cast<float>(neighbours);
+    clean_plate.depth.at(x, y, 0) = sum[3] / static_cast<float>(neighbours);
     return true;
 }
 
 }  // namespace
 
-std::size_t fill_holes(CleanPlate& backdrop, const Mask& mask, const Image& alpha) {
-    GSE_CHECK(backdrop.depth.width == mask.width && backdrop.depth.height == mask.height);
+std::size_t fill_holes(CleanPlate& clean_plate, const Mask& mask, const Image& alpha) {
+    GSE_CHECK(clean_plate.depth.width == mask.width && clean_plate.depth.height == mask.height);
     GSE_CHECK(alpha.width == mask.width && alpha.height == mask.height);
-    backdrop.filled = with_rims(holes_of(backdrop.depth, mask), mask, alpha);
-    const Image before = backdrop.depth;
-    for (auto& z : backdrop.depth.data) z = z > 0 ? 1 / z : 0;
+    clean_plate.filled = with_rims(holes_of(clean_plate.depth, mask), mask, alpha);
+    const Image before = clean_plate.depth;
+    for (auto& z : clean_plate.depth.data) z = z > 0 ? 1 / z : 0;
     std::vector<std::pair<int, int>> pixels;
     Mask known(mask.width, mask.height);
     for (int y = 0; y < mask.height; ++y)
         for (int x = 0; x < mask.width; ++x) {
-            const bool hole = backdrop.filled.at(x, y) != 0;
-            known.at(x, y) = !hole && backdrop.depth.at(x, y, 0) > 0 ? 1 : 0;
+            const bool hole = clean_plate.filled.at(x, y) != 0;
+            known.at(x, y) = !hole && clean_plate.depth.at(x, y, 0) > 0 ? 1 : 0;
             if (hole) pixels.emplace_back(x, y);
         }
     std::size_t left = pixels.size();
     while (left > 0) {
         std::vector<std::pair<int, int>> layer;
         for (const auto& [x, y] : pixels)
-            if (known.at(x, y) == 0 && take_mean(backdrop, x, y, known)) layer.emplace_back(x, y);
+            if (known.at(x, y) == 0 && take_mean(clean_plate, x, y, known)) layer.emplace_back(x, y);
         if (layer.empty()) break;
         for (const auto& [x, y] : layer) known.at(x, y) = 1;
         left -= layer.size();
     }
     for (int step = 0; step < SmoothingSteps; ++step)
-        for (const auto& [x, y] : pixels) take_mean(backdrop, x, y, known);
+        for (const auto& [x, y] : pixels) take_mean(clean_plate, x, y, known);
     for (std::size_t i = 0; i < before.data.size(); ++i) {
-        float& z = backdrop.depth.data[i];
-        z = backdrop.filled.data[i] == 0 ? before.data[i] : z > 0 ? 1 / z : 0;
+        float& z = clean_plate.depth.data[i];
+        z = clean_plate.filled.data[i] == 0 ? before.data[i] : z > 0 ? 1 / z : 0;
     }
     return pixels.size() - left;
 }

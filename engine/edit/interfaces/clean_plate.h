@@ -22,6 +22,6 @@ struct CleanPlate {
 /// A hole is an empty place inside `mask` that the scene encloses: it touches neither the picture's rim nor
 /// empty pixels outside the mask (sky). Its rim that is not quite opaque belongs to it, since its colour is
 /// in part the background's. `alpha` [H,W,1] is the opacity of the plate.
-std::size_t fill_holes(CleanPlate& backdrop, const Mask& mask, const Image& alpha);
+std::size_t fill_holes(CleanPlate& clean_plate, const Mask& mask, const Image& alpha);
 
 }  // namespace gse::edit

@@ -59,7 +59,7 @@ struct EditView {
     // Elevation of the camera above the thing's horizon, radians; 0 where the azimuth is not known.
     double elevation = 0;
     // The scene without what may change, its holes filled; empty unless the round draws anew.
-    CleanPlate backdrop = {};
+    CleanPlate clean_plate = {};
 };
 
 /// Orders for a round.

@@ -79,10 +79,10 @@ std::vector<int> EditSnapshot::generation() const {
     return per_row(*this, 0, [this](std::size_t i) { return rows->generation[i]; });
 }
 
-std::vector<std::uint8_t> EditSnapshot::hidden() const {
+std::vector<std::uint8_t> EditSnapshot::hole_fill() const {
     const std::size_t kept = rows->kept.size();
     return per_row<std::uint8_t>(*this, 0, [&](std::size_t i) -> std::uint8_t {
-        return i >= kept && rows->ancestor[i - kept] == OfHidden ? 1 : 0;
+        return i >= kept && rows->ancestor[i - kept] == OfHoleFill ? 1 : 0;
     });
 }
 

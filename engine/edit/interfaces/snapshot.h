@@ -15,15 +15,15 @@ struct RoundState;
 
 /// Marks in place of the base row that a row descends from. Such a row grew from a seed of a new object, or
 /// of the surface that the old one hid.
-constexpr std::int64_t OfSeed = -1, OfHidden = -2;
+constexpr std::int64_t OfSeed = -1, OfHoleFill = -2;
 
 /// Rows of the label at that moment.
 struct SnapshotRows {
     GaussianData rows;                // those that are the base's, in its order, then those born in the run
     std::vector<std::uint32_t> kept;  // base row of each of the first ones, ascending
     std::vector<std::int64_t>
-        ancestor;                 // [rows - kept] base row that a born one descends from, or OfSeed, OfHidden
-    std::vector<int> generation;  // [rows]
+        ancestor;  // [rows - kept] base row that a born one descends from, or OfSeed, OfHoleFill
+    std::vector<int> generation;         // [rows]
     std::vector<std::uint32_t> removed;  // base rows that are gone, ascending
 };
 
@@ -48,7 +48,7 @@ struct EditSnapshot {
     std::vector<std::int64_t> base_to_new() const;  // [base rows] row of the edited set, -1 = removed
     std::vector<std::uint8_t> label() const;        // [size()] 1 = the row belongs to the label
     std::vector<int> generation() const;            // [size()] 0 = there before the edit
-    std::vector<std::uint8_t> hidden() const;       // [size()] 1 = of what the old thing hid
+    std::vector<std::uint8_t> hole_fill() const;    // [size()] 1 = of what the old thing hid
     /// Bytes beside the base's arrays.
     std::size_t byte_size() const;
 };

@@ -46,8 +46,8 @@ EditView cut_out_section(const EditView& view, const ViewSection& section) {
     part.rendered = cut(view.rendered, section);
     part.original = cut(view.original, section);
     part.depth = cut(view.depth, section);
-    part.backdrop.picture = cut(view.backdrop.picture, section);
-    part.backdrop.depth = cut(view.backdrop.depth, section);
+    part.clean_plate.picture = cut(view.clean_plate.picture, section);
+    part.clean_plate.depth = cut(view.clean_plate.depth, section);
     part.mask = Mask(section.side, section.side);
     for (int y = 0; y < section.side; ++y)
         for (int x = 0; x < section.side; ++x)

@@ -288,7 +288,7 @@ private:
         if (!shapes_ || phase_->round() == redrawn.round_before) return;
         const auto seeds =
             shapes_->seeds(phase_->found(), bounds_of(plan_.room, plan_.seeds), set_.rows().sh_degree);
-        if (seeds.size() > 0) return set_.plant(seeds, phase_->hidden(set_.rows().sh_degree), FadedLogit);
+        if (seeds.size() > 0) return set_.plant(seeds, phase_->hole_fill(set_.rows().sh_degree), FadedLogit);
         const std::string nothing = "the redrawn views agree on no shape of \"" + tools_.word + "\"";
         if (phase_->round() > 0)
             return log::warning("{} any more; the last round's is fitted further", nothing);
@@ -497,7 +497,7 @@ private:
         result.base_to_new = reached.base_to_new();
         result.label = reached.label();
         result.generation = reached.generation();
-        result.hidden = reached.hidden();
+        result.hole_fill = reached.hole_fill();
         result.skipped_rows = set_.skipped_rows();
         result.guidance_scale = gradient_of_guidance_.scale();
         if (phase_) {

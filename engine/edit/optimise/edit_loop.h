@@ -21,7 +21,7 @@ struct EditResult {
     std::vector<std::int64_t> base_to_new;  // [N] row in `set` of every base row, -1 = removed
     std::vector<std::uint8_t> label;        // [rows of set]
     std::vector<int> generation;            // [rows of set]
-    std::vector<std::uint8_t> hidden;       // [rows of set] 1 = not the new thing, but what the old one hid
+    std::vector<std::uint8_t> hole_fill;    // [rows of set] 1 = not the new thing, but what the old one hid
     std::vector<IterationRecord> history;
     int iterations = 0;
     bool stopped = false;                // by the stop token; the result is the last good state

@@ -22,7 +22,7 @@ void apply_strength(const GaussianSet& base, double strength, EditResult& result
         if (has_origin[row] == 0) born.push_back(row);
 
     std::vector<std::int64_t> base_to_new(base.size(), -1);
-    std::vector<std::uint8_t> label, hidden;
+    std::vector<std::uint8_t> label, hole_fill;
     std::vector<int> generation;
     for (std::size_t row = 0; row < rows.size(); ++row) {
         const bool added = rows[row] >= base.size();
@@ -32,13 +32,13 @@ void apply_strength(const GaussianSet& base, double strength, EditResult& result
                   : result.base_to_new[rows[row]];
         label.push_back(was < 0 ? 1
                                 : result.label[static_cast<std::size_t>(was)]);  // removed, and back again
-        hidden.push_back(was < 0 ? 0 : result.hidden[static_cast<std::size_t>(was)]);
+        hole_fill.push_back(was < 0 ? 0 : result.hole_fill[static_cast<std::size_t>(was)]);
         generation.push_back(was < 0 ? 0 : result.generation[static_cast<std::size_t>(was)]);
     }
     result.set = std::move(set);
     result.base_to_new = std::move(base_to_new);
     result.label = std::move(label);
-    result.hidden = std::move(hidden);
+    result.hole_fill = std::move(hole_fill);
     result.generation = std::move(generation);
 }
 

@@ -32,7 +32,7 @@ struct RowTable {
     std::size_t first_row = 0;  // unlabelled rows in front of the labelled ones in `rows`
     GaussianData rows;
     std::vector<std::int64_t> origin;    // [labelled] base row it is, -1 = born in the run
-    std::vector<std::int64_t> ancestor;  // [labelled] base row it is or descends from, or OfSeed, OfHidden
+    std::vector<std::int64_t> ancestor;  // [labelled] base row it is or descends from, or OfSeed, OfHoleFill
     std::vector<int> generation;         // [labelled]
     std::vector<float> birth_sh;         // [labelled,K,3] colour when the row (or its ancestor) came to be
     std::vector<float> birth_scale;      // [labelled] largest log-scale when the row came to be

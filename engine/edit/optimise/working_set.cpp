@@ -276,16 +276,17 @@ GaussianSpans WorkingSet::unlabelled() const {
     return rows;
 }
 
-void WorkingSet::plant(const GaussianData& seeds, const GaussianData& hidden, double logit) {
+void WorkingSet::plant(const GaussianData& seeds, const GaussianData& hole_fill, double logit) {
     most_opaque_ = static_cast<float>(logit);
     std::vector<std::uint8_t> keep(labelled(), 1);
     for (std::size_t i = 0; i < keep.size(); ++i) keep[i] = table_.ancestor[i] >= 0 ? 1 : 0;
     table_.keep(keep);
     for (auto& value : tail(table_.rows.opacity_logit, 1)) value = std::min(value, most_opaque_);
-    table_.reserve(seeds.size() + hidden.size());
+    table_.reserve(seeds.size() + hole_fill.size());
     const int generation = schedule_.advance();
     for (std::size_t row = 0; row < seeds.size(); ++row) append(seeds, row, generation, -1, OfSeed);
-    for (std::size_t row = 0; row < hidden.size(); ++row) append(hidden, row, generation, -1, OfHidden);
+    for (std::size_t row = 0; row < hole_fill.size(); ++row)
+        append(hole_fill, row, generation, -1, OfHoleFill);
     for (auto* moments : {&table_.position, &table_.log_scale, &table_.rotation, &table_.opacity, &table_.sh})
         *moments = {};
     steps_ = 0;

@@ -66,9 +66,9 @@ public:
                            double least_weight, double least_left);
 
     /// Begins an object of another shape. Rows of the base fade to `logit` where they are more opaque, and so
-    /// do those that a later label brings. Rows that grew from seeds go. `seeds`, and `hidden` for surfaces
-    /// that the old object hid, take their place. Momentum, statistics and anchors begin anew.
-    void plant(const GaussianData& seeds, const GaussianData& hidden, double logit);
+    /// do those that a later label brings. Rows that grew from seeds go. `seeds`, and `hole_fill` for
+    /// surfaces that the old object hid, take their place. Momentum, statistics and anchors begin anew.
+    void plant(const GaussianData& seeds, const GaussianData& hole_fill, double logit);
 
     /// Takes another label for this base, in the middle of a run. Rows that leave it become the base's again.
     /// Rows that join it start as in the base, with the change of colour that the label shares. Rows that

@@ -62,7 +62,7 @@ DrawnViews draw_thing(const PlaceDrawing& drawing, MultiViewEditor& guidance, co
                       drawing.views[v],   drawing.view_words.empty() ? std::string() : drawing.view_words[v]};
         if (!drawing.azimuths.empty())
             view.azimuth = drawing.azimuths[v], view.elevation = drawing.elevations[v];
-        view.backdrop = {drawing.renders[v], drawing.depths[v]};
+        view.clean_plate = {drawing.renders[v], drawing.depths[v]};
         views.push_back(std::move(view));
     }
     EditViewsRequest input;

@@ -76,7 +76,7 @@ void DatasetUpdate::choose(const std::vector<std::size_t>& visible) {
     begin_sheet();
 }
 
-GaussianData DatasetUpdate::hidden(int sh_degree) const {
+GaussianData DatasetUpdate::hole_fill(int sh_degree) const {
     if (!state_ || plan_.mode != EditMode::Replace) return {};
     auto rows = ground_hole_fill(*state_->begun, sh_degree);
     if (rows.size() > 0) log::info("{} splats close the holes that the old thing leaves", rows.size());
@@ -118,8 +118,8 @@ EditView DatasetUpdate::begin_view(std::size_t v, const GaussianSpans& rows, con
     for (auto& value : view.original.data) value = std::clamp(value, 0.0f, 1.0f);
     if (anew_) {
         auto behind = draw(unlabelled, view.view.camera, settings);
-        view.backdrop.picture = std::move(behind.colour), view.backdrop.depth = std::move(behind.depth);
-        fill_holes(view.backdrop, view.mask, behind.alpha);
+        view.clean_plate.picture = std::move(behind.colour), view.clean_plate.depth = std::move(behind.depth);
+        fill_holes(view.clean_plate, view.mask, behind.alpha);
     }
     return view;
 }

@@ -47,7 +47,7 @@ public:
     int round() const { return rounds_.round(); }  // -1 = none has begun
     /// Rows for the holes that a thing leaves when another takes its place, as the round's views show them
     /// (ground_hole_fill()).
-    GaussianData hidden(int sh_degree) const;
+    GaussianData hole_fill(int sh_degree) const;
     const CutOut& found() const { return rounds_.found(); }  // of the new shape, in the last round
     /// The masks have changed: what was redrawn counts inside them.
     void take_masks();

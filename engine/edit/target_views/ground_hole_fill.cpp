@@ -32,7 +32,7 @@ Holes points_in_holes(const std::vector<EditView>& views) {
     Holes holes;
     std::vector<double> pixels;
     for (const auto& view : views) {
-        const auto& [picture, depth, filled] = view.backdrop;
+        const auto& [picture, depth, filled] = view.clean_plate;
         const Camera& camera = view.view.camera;
         for (int y = 0; y < filled.height; ++y)
             for (int x = 0; x < filled.width; ++x) {
@@ -94,11 +94,11 @@ bool borne_out(const std::vector<EditView>& views, const Vec3& point, double sla
         const Vec3 p = camera.to_camera(point);
         if (!(p.z > 0)) continue;
         const double px = camera.fx * p.x / p.z + camera.cx, py = camera.fy * p.y / p.z + camera.cy;
-        const auto& backdrop = view.backdrop;
-        if (!(px >= 0 && py >= 0 && px < backdrop.depth.width && py < backdrop.depth.height)) continue;
+        const auto& clean_plate = view.clean_plate;
+        if (!(px >= 0 && py >= 0 && px < clean_plate.depth.width && py < clean_plate.depth.height)) continue;
         const int x = static_cast<int>(px), y = static_cast<int>(py);
-        const double z = backdrop.depth.at(x, y, 0);
-        if (!backdrop.filled.data.empty() && backdrop.filled.at(x, y) != 0)
+        const double z = clean_plate.depth.at(x, y, 0);
+        if (!clean_plate.filled.data.empty() && clean_plate.filled.at(x, y) != 0)
             agree += std::abs(z - p.z) <= slack ? 1 : 0;
         else against += z <= 0 || p.z < z - slack ? 1 : 0;  // it would hide the sky, or what lies behind
     }

@@ -28,11 +28,11 @@ constexpr std::size_t LeastOutlines = 3;  // fewer do not enclose a space
 /// The rim of a thing is part of a pixel.
 Image softened(const Mask& mask) { return mean_of_neighbours(mask_image(mask)); }
 
-Image over(const Image& picture, const Image& share, const Image& backdrop) {
-    GSE_CHECK_EQ(picture.data.size(), backdrop.data.size());
-    Image result = backdrop;
+Image over(const Image& picture, const Image& share, const Image& clean_plate) {
+    GSE_CHECK_EQ(picture.data.size(), clean_plate.data.size());
+    Image result = clean_plate;
     for (std::size_t i = 0; i < result.data.size(); ++i)
-        result.data[i] = share.data[i / 3] * picture.data[i] + (1 - share.data[i / 3]) * backdrop.data[i];
+        result.data[i] = share.data[i / 3] * picture.data[i] + (1 - share.data[i / 3]) * clean_plate.data[i];
     return result;
 }
 
@@ -57,7 +57,7 @@ Image ShapeFinder::outline_of(const EditView& view, const EditedViews& drawn, st
     const double level =
         request_.attention_threshold > 0 ? request_.attention_threshold : attention_.threshold();
     return softened(drawn.changes.empty()
-                        ? thing_in_picture(picture, view.backdrop.picture, view.mask, maps.front(), level)
+                        ? thing_in_picture(picture, view.clean_plate.picture, view.mask, maps.front(), level)
                         : changed_thing(drawn.changes[index], view.mask, maps.front(), level));
 }
 
@@ -66,7 +66,7 @@ bool ShapeFinder::take_out(const EditView& view, EditedViews& drawn, std::size_t
     Image share = outline_of(view, drawn, index, seed);
     const bool shows =
         std::any_of(share.data.begin(), share.data.end(), [](float value) { return value > 0.5f; });
-    drawn.images[index] = over(drawn.images[index], share, view.backdrop.picture);
+    drawn.images[index] = over(drawn.images[index], share, view.clean_plate.picture);
     if (outline != nullptr) *outline = std::move(share);
     return shows;
 }
@@ -100,7 +100,7 @@ CutOut ShapeFinder::cut_out(const std::vector<EditView>& views, EditedViews& dra
         if (take_out(views[v], drawn, v, seed, &outline)) {
             found.usable.push_back(v);
             found.outlines.push_back(
-                {views[v].view.camera, std::move(outline), views[v].backdrop.depth, picture});
+                {views[v].view.camera, std::move(outline), views[v].clean_plate.depth, picture});
         }
         job.report("cutting out the new thing", static_cast<int>(v + 1), static_cast<int>(views.size()));
     }

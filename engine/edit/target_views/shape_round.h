@@ -28,7 +28,7 @@ public:
     ShapeFinder(const EditPlan& plan, const CheckedRequest& request, std::string word,
                 AttentionSource& attention);
 
-    /// Finds the thing in each picture and lays it over the view's backdrop: the pictures become what the
+    /// Finds the thing in each picture and lays it over the view's clean plate: the pictures become what the
     /// scene is fitted to. Throws Error (Model) when fewer than three views show it, (Cancelled) on a stop
     /// request.
     CutOut cut_out(const std::vector<EditView>& views, EditedViews& drawn, int round, const JobControl& job);

@@ -57,7 +57,7 @@ public:
     /// Words the model was trained on; empty = an open vocabulary.
     virtual std::vector<std::string> known_words() const = 0;
     /// Words that only its views() are told besides: what they stand for can be drawn, but not looked for.
-    virtual std::vector<std::string> drawn_words() const { return {}; }
+    virtual std::vector<std::string> generated_vocabulary() const { return {}; }
     /// Side of the square images the model works at.
     virtual int image_size() const = 0;
     virtual std::string name() const = 0;

@@ -99,8 +99,8 @@ struct DiffusionViewEditor::Batch {
     torch::Tensor noise;
     torch::Tensor mask;      // [K,1,h,w]
     torch::Tensor contexts;  // [K,2,T,D] negative, positive
-    torch::Tensor behind;  // [K,C,h,w] latents of the backdrops, else the unedited views, that what draws new
-                           // things is shown; else undefined
+    torch::Tensor behind;   // [K,C,h,w] latents of the clean plates, else the unedited views, that what draws
+                            // new things is shown; else undefined
     torch::Tensor inpaint;  // [K,2+C,h,w] the same with the mask
     torch::Tensor
         picture;  // [K,C,h,w] what a model that edits pictures is shown: the unedited views; else undefined
@@ -161,7 +161,7 @@ DiffusionViewEditor::Batch DiffusionViewEditor::prepare(const std::vector<edit::
                 original[v] = view.rendered.data == view.original.data ? clean[v] : kept(view.original);
                 if (inpaints)
                     behind[v] =
-                        view.backdrop.picture.data.empty() ? original[v] : kept(view.backdrop.picture);
+                        view.clean_plate.picture.data.empty() ? original[v] : kept(view.clean_plate.picture);
             }
         });
     for (const auto& view : views)

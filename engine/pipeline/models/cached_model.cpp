@@ -228,7 +228,7 @@ std::string question_of(const edit::AttentionQuery& query, const neural::Attenti
 
 void add_view(ContentHash& hash, const edit::EditView& view) {
     for (const auto* image :
-         {&view.rendered, &view.original, &view.depth, &view.backdrop.picture, &view.backdrop.depth})
+         {&view.rendered, &view.original, &view.depth, &view.clean_plate.picture, &view.clean_plate.depth})
         hash.image(*image);
     hash.bytes(view.mask.data.data(), view.mask.data.size());
     const auto& camera = view.view.camera;
@@ -383,7 +383,7 @@ std::optional<CachedModel::Facts> CachedModel::kept_facts() const {
     try {
         Facts facts;
         facts.words = json.at("words").get<std::vector<std::string>>();
-        facts.drawn_words = json.at("drawn_words").get<std::vector<std::string>>();
+        facts.generated_vocabulary = json.at("generated_vocabulary").get<std::vector<std::string>>();
         facts.image_size = json.at("image_size").get<int>();
         facts.name = json.at("name").get<std::string>();
         facts.kind = static_cast<neural::BundleKind>(json.at("kind").get<int>());
@@ -407,7 +407,7 @@ const CachedModel::Facts& CachedModel::facts() const {
     if (known()) return *facts_;
     const auto& model = real();
     Facts facts{model.known_words(),
-                model.drawn_words(),
+                model.generated_vocabulary(),
                 model.image_size(),
                 model.name(),
                 model.kind(),
@@ -421,7 +421,7 @@ const CachedModel::Facts& CachedModel::facts() const {
     facts.threshold = attention->threshold();
     facts.attention_size = attention->image_size();
     const nlohmann::json json{{"words", facts.words},
-                              {"drawn_words", facts.drawn_words},
+                              {"generated_vocabulary", facts.generated_vocabulary},
                               {"image_size", facts.image_size},
                               {"name", facts.name},
                               {"kind", facts.kind},

@@ -37,7 +37,7 @@ public:
     bool supports_scene_conditioning() const override { return facts().supports_scene_conditioning; }
     bool supports_appearance_editing() const override { return facts().supports_appearance_editing; }
     std::vector<std::string> known_words() const override { return facts().words; }
-    std::vector<std::string> drawn_words() const override { return facts().drawn_words; }
+    std::vector<std::string> generated_vocabulary() const override { return facts().generated_vocabulary; }
     int image_size() const override { return facts().image_size; }
     std::string name() const override { return facts().name; }
     neural::BundleKind kind() const override { return facts().kind; }
@@ -69,7 +69,7 @@ public:
 private:
     /// Facts of a model that was loaded once, which need no loading.
     struct Facts {
-        std::vector<std::string> words, drawn_words;
+        std::vector<std::string> words, generated_vocabulary;
         int image_size = 0;
         std::string name;
         neural::BundleKind kind = neural::BundleKind::Plain;

@@ -46,7 +46,7 @@ std::shared_ptr<const neural::PromptReader> reader_of(const fs::path& model) {
 std::size_t words_read(const fs::path& model, const std::vector<std::string>& words) {
     const auto reader = reader_of(model);
     if (!reader) return words.size();
-    const auto known = language::promptable_vocabulary(model_words(model), drawn_words(model));
+    const auto known = language::promptable_vocabulary(model_words(model), generated_vocabulary(model));
     std::vector<std::string> told;
     std::vector<std::size_t> places;  // of what is told, in the sentence
     for (std::size_t i = 0; i < words.size(); ++i) {
@@ -90,7 +90,7 @@ language::plan::ModelAbility model_ability(const fs::path& folder) {
     return {open, std::move(known)};
 }
 
-std::vector<std::string> drawn_words(const fs::path& folder) {
+std::vector<std::string> generated_vocabulary(const fs::path& folder) {
     const auto known = model_words(folder);
     return known.empty() ? known : edit::with_dyes(word_list(folder, "drawn_vocabulary"), known);
 }

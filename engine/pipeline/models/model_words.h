@@ -17,9 +17,9 @@ nlohmann::json model_json(const std::filesystem::path& path);
 /// Words of the model in `folder` (gseditpro.json), empty for an open vocabulary; no network is loaded.
 std::vector<std::string> model_words(const std::filesystem::path& folder);
 
-/// Words that it draws besides and does not look for (neural::TextToImage::drawn_words()), and colours that
-/// it is dyed in (edit::dye_words()); empty for an open vocabulary.
-std::vector<std::string> drawn_words(const std::filesystem::path& folder);
+/// Words that it draws besides and does not look for (neural::TextToImage::generated_vocabulary()), and
+/// colours that it is dyed in (edit::dye_words()); empty for an open vocabulary.
+std::vector<std::string> generated_vocabulary(const std::filesystem::path& folder);
 
 /// Ability of the model in `folder` to do steps of a plan, by its files.
 language::plan::ModelAbility model_ability(const std::filesystem::path& folder);

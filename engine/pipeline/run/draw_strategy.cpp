@@ -26,19 +26,19 @@ const char* DrawStrategy::name() const {
 }
 
 std::optional<edit::GroundUnder> plain_ground_under(const SceneEdit& scene_edit) {
-    const auto& [workplace, scene, located, plan, recipe, observer, control] = scene_edit;
+    const auto& [context, scene, located, plan, recipe, observer, control] = scene_edit;
     if (!recipe.guidance.plain_ground || recipe.request.whole_scene()) return std::nullopt;
     const auto& request = recipe.request;
     if (edit::replaces_accessory(request.sentence(), plan.mode)) {
-        workplace.look_for_ground(located.views.views);
-        const auto below = workplace.ground(request.prompt());
+        context.look_for_ground(located.views.views);
+        const auto below = context.ground(request.prompt());
         return below ? std::optional<edit::GroundUnder>({*below, true}) : std::nullopt;
     }
     const bool adds = plan.mode == edit::EditMode::Add;
     if (adds && request.source() == request.target()) return std::nullopt;  // to all of the scene
     const auto& bits = adds ? *located.result.source_label.bits : plan.label;
     return edit::ground_under(request.prompt(), scene, bits, located.views.orbit.up, located.views.front,
-                              workplace.painter().rasterizer(), workplace.traits());
+                              context.painter().rasterizer(), context.traits());
 }
 
 /// Order of ways to draw. A network that is shown the scene draws well if the scene looks like its training
@@ -46,7 +46,7 @@ std::optional<edit::GroundUnder> plain_ground_under(const SceneEdit& scene_edit)
 /// ground at first. A ground cannot be shown without the scene: its default colour comes last.
 std::vector<DrawStrategy> draw_strategies(const SceneEdit& scene_edit,
                                           const std::optional<edit::GroundUnder>& ground) {
-    const auto& model = scene_edit.workplace.model();
+    const auto& model = scene_edit.context.model();
     const auto& recipe = scene_edit.recipe;
     const auto mode = scene_edit.plan.mode;
     const bool restyle = recipe.guidance.restyle;
@@ -60,7 +60,7 @@ std::vector<DrawStrategy> draw_strategies(const SceneEdit& scene_edit,
         strategies.insert(in_nothing ? strategies.begin() : strategies.end(), {restyle, Ground::Plain});
     if (draws_anew && in_nothing) strategies.resize(1);
     if (!keeps_shapes) return strategies;
-    if (edit::usual_look(recipe.request.sentence(), mode, scene_edit.workplace.traits()))
+    if (edit::default_ground_colour(recipe.request.sentence(), mode, scene_edit.context.traits()))
         strategies.push_back({restyle, Ground::DefaultColour});
     else strategies.push_back({false, Ground::Scene});  // the model itself
     return strategies;

@@ -153,8 +153,8 @@ void EditJob::check_recipe(const neural::TextToImage* model) const {
     check_fields(recipe_.dreambooth);
     const auto known = model != nullptr ? model->known_words() : model_words(model_path(recipe_.job));
     const auto drawn = !edit::method_of(recipe_.request).draws_views() ? std::vector<std::string>{}
-                       : model != nullptr ? edit::with_dyes(model->drawn_words(), known)
-                                          : drawn_words(model_path(recipe_.job));
+                       : model != nullptr ? edit::with_dyes(model->generated_vocabulary(), known)
+                                          : generated_vocabulary(model_path(recipe_.job));
     edit::require_known_words(recipe_.request, known, drawn,
                               recipe_.job.brings_label() || !hints_.label.empty());
     check_length();
@@ -199,7 +199,7 @@ std::vector<std::string> telling_words(const language::Sentence& sentence) {
 
 void EditJob::begin(Scene scene, std::shared_ptr<neural::TextToImage> model, Segmenters segmenters,
                     const GivenCameras& given) {
-    workplace_ =
+    context_ =
         std::make_unique<RunContext>(std::move(scene), std::move(model), recipe_.job, std::move(segmenters));
     auto words = telling_words(recipe_.request.sentence().sentence());
     for (auto& word : language::words_of(recipe_.request.source())) words.push_back(std::move(word));
@@ -208,12 +208,13 @@ void EditJob::begin(Scene scene, std::shared_ptr<neural::TextToImage> model, Seg
     if (recipe_.request.whole_scene()) words = telling_words(recipe_.request.sentence().sentence());
     std::sort(words.begin(), words.end());
     words.erase(std::unique(words.begin(), words.end()), words.end());
-    const auto known = workplace_->model().known_words();
-    warn_unknown_words(words, edit::method_of(recipe_.request).draws_views()
-                                  ? language::promptable_vocabulary(
-                                        known, edit::with_dyes(workplace_->model().drawn_words(), known))
-                                  : known);
-    views_ = std::make_shared<const Views>(choose_views(workplace_->scene(), recipe_, given));
+    const auto known = context_->model().known_words();
+    warn_unknown_words(words,
+                       edit::method_of(recipe_.request).draws_views()
+                           ? language::promptable_vocabulary(
+                                 known, edit::with_dyes(context_->model().generated_vocabulary(), known))
+                           : known);
+    views_ = std::make_shared<const Views>(choose_views(context_->scene(), recipe_, given));
     if (views_->automatic && !given.cameras.empty())
         log::info("{} stored views are too few to search from: an orbit around the scene is used",
                   given.cameras.size());
@@ -234,8 +235,7 @@ std::vector<Image> EditJob::instance_pictures() {
     }
     std::vector<Image> pictures;
     for (const auto& view : views)
-        pictures.push_back(
-            workplace_->painter().paint(drawn().spans(), view.camera, render_settings()).colour);
+        pictures.push_back(context_->painter().paint(drawn().spans(), view.camera, render_settings()).colour);
     return pictures;
 }
 
@@ -244,7 +244,7 @@ void EditJob::tune() {
     auto tuned = model().tune(recipe_.dreambooth, instance_pictures(),
                               language::instance_prompt(recipe_.request.sentence()),
                               language::without_identifier(model_prompt()), control_);
-    workplace_->take_model(std::move(tuned.model));
+    context_->take_model(std::move(tuned.model));
     tuning_ = std::move(tuned.report);
     times_.end();
     log::info(
@@ -255,7 +255,7 @@ void EditJob::tune() {
 }
 
 std::optional<neural::TunedModel> EditJob::tuned() const {
-    return tuning_ ? std::optional(neural::TunedModel{workplace_->shared_model(), *tuning_}) : std::nullopt;
+    return tuning_ ? std::optional(neural::TunedModel{context_->shared_model(), *tuning_}) : std::nullopt;
 }
 
 /// Puts a new search in place of the old one, with the settings it was made for.
@@ -267,8 +267,8 @@ void EditJob::take(Located located) {
 }
 
 language::plan::SceneWords EditJob::words_shown(language::plan::SceneWords assumed) {
-    workplace_->ask_anew(recipe_.attention);
-    return scene_words_shown(*workplace_, recipe_, *views_, std::move(assumed), control_);
+    context_->ask_anew(recipe_.attention);
+    return scene_words_shown(*context_, recipe_, *views_, std::move(assumed), control_);
 }
 
 std::vector<std::uint8_t> EditJob::source_in_result() const {
@@ -287,7 +287,7 @@ std::vector<std::uint8_t> EditJob::source_in_result() const {
 void EditJob::locate() {
     if (recipe_.use_dreambooth && !tuning_ && !recipe_.request.is_rearranged()) tune();
     times_.begin("locate");
-    take(pipeline::locate(*workplace_, recipe_, *views_, hints_, control_));
+    take(pipeline::locate(*context_, recipe_, *views_, hints_, control_));
     plan();
     times_.end();
     const auto& result = located();
@@ -302,13 +302,13 @@ void EditJob::locate() {
 /// seen.
 void EditJob::relocate(const CheckedRecipe& recipe) {
     times_.begin("locate");
-    take(pipeline::locate_again(*workplace_, *located_, recipe, control_));
+    take(pipeline::locate_again(*context_, *located_, recipe, control_));
     times_.end();
 }
 
 double EditJob::attention_threshold() const {
     const double asked = recipe_.request.attention_threshold;
-    return asked > 0 ? asked : workplace_->stated_threshold();
+    return asked > 0 ? asked : context_->stated_threshold();
 }
 
 void EditJob::locate_again(double attention_threshold, const std::string& excluded_views) {
@@ -334,7 +334,7 @@ void EditJob::correct_label(const std::vector<std::uint8_t>& bits) {
 void EditJob::use_label(const std::vector<std::uint8_t>& bits) {
     GSE_CHECK_EQ(bits.size(), scene().gaussians.size());
     times_.begin("locate");
-    take(locate_by_label(*workplace_, *located_, bits, control_));
+    take(locate_by_label(*context_, *located_, bits, control_));
     times_.end();
 }
 
@@ -353,7 +353,7 @@ void EditJob::take_settings(const CheckedRecipe& recipe, bool relabels) {
 }
 
 const edit::EditPlan& EditJob::plan() {
-    if (!plan_) plan_ = plan_of(*workplace_, *located_, recipe_);
+    if (!plan_) plan_ = plan_of(*context_, *located_, recipe_);
     return *plan_;
 }
 
@@ -365,7 +365,7 @@ const std::vector<Mask>& EditJob::changed_masks() {
 OrbitParameters EditJob::moved_orbit() const {
     auto now = result().label;
     for (std::size_t row = 0; row < now.size(); ++row)
-        if (result().hidden[row] != 0) now[row] = 0;
+        if (result().hole_fill[row] != 0) now[row] = 0;
     const auto from = localize::focus_orbit(drawn(), *located().label.bits, views_->orbit);
     OrbitParameters orbit = localize::focus_orbit(drawn_result(), now, views_->orbit);
     const double apart = length(orbit.centre - from.centre);
@@ -401,7 +401,7 @@ double EditJob::film_front() const {
 void EditJob::run(const EditObserver& observer) {
     times_.begin("edit");
     const double start = wall_seconds();
-    Edited edited = edit_scene(*workplace_, *located_, plan(), recipe_, observer, control_);
+    Edited edited = edit_scene(*context_, *located_, plan(), recipe_, observer, control_);
     edited.seconds = wall_seconds() - start;
     edited_ = std::make_shared<const Edited>(std::move(edited));
     times_.end();
@@ -427,7 +427,7 @@ Edited EditJob::probe(const ProbeSize& size) {
     if (size.early) observer.targets = [&](const edit::ViewTargets&) { redrawn.request_stop(); };
     const ProbeScene part = probe_scene(scene().gaussians, plan());
     const double start = wall_seconds();
-    Edited edited = edit_scene(*workplace_, part.set, *located_, part.plan, plain, observer, quiet);
+    Edited edited = edit_scene(*context_, part.set, *located_, part.plan, plain, observer, quiet);
     edited.seconds = wall_seconds() - start;
     return edited;
 }

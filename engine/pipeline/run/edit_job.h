@@ -64,7 +64,7 @@ public:
         locate_again(attention_threshold, recipe_.request.excluded_views);
     }
     /// Who is told of the views while locate() looks; empty = nobody.
-    void watch_views(ViewWatch watch) { workplace_->watch_views(std::move(watch)); }
+    void watch_views(ViewWatch watch) { context_->watch_views(std::move(watch)); }
     /// The attention threshold in force: the request's, or what the model states.
     double attention_threshold() const;
     /// Label corrected by hand (modify mode): [N] 0 or 1.
@@ -88,12 +88,12 @@ public:
     void take_settings(const CheckedRecipe& recipe, bool relabels = true);
 
     const CheckedRecipe& recipe() const { return recipe_; }
-    const Scene& scene() const { return workplace_->scene(); }
+    const Scene& scene() const { return context_->scene(); }
     /// The scene and the result as pictures and figures are made from them: without what cannot be drawn.
-    const GaussianSet& drawn() const { return workplace_->drawn(); }
+    const GaussianSet& drawn() const { return context_->drawn(); }
     const GaussianSet& drawn_result() const { return edited_->drawn; }
     /// Splats of the scene that cannot be drawn; the edit leaves them as they are.
-    std::size_t unusable() const { return workplace_->unusable(); }
+    std::size_t unusable() const { return context_->unusable(); }
     const std::vector<View>& views() const { return views_->views; }
     const edit::LocateResult& located() const { return located_->result; }
     /// Plan of the loop, made anew when label or settings have changed.
@@ -118,16 +118,16 @@ public:
     /// The recipe's prompt as the model is told it.
     std::string model_prompt() const;
     /// Pictures that the search has asked the networks about so far.
-    std::size_t questions() const { return workplace_->questions(); }
+    std::size_t questions() const { return context_->questions(); }
     /// Cost of drawing the place of an added object, out of that.
-    const PlaceCost& place_cost() const { return workplace_->place_cost(); }
+    const PlaceCost& place_cost() const { return context_->place_cost(); }
     /// Tells whether the model is shown the scene where something new is drawn.
-    bool supports_scene_conditioning() const { return workplace_->model().supports_scene_conditioning(); }
+    bool supports_scene_conditioning() const { return context_->model().supports_scene_conditioning(); }
     bool supports_appearance_editing() const {
-        return recipe_.guidance.restyle && workplace_->model().supports_appearance_editing();
+        return recipe_.guidance.restyle && context_->model().supports_appearance_editing();
     }
     /// Segmenter of the job.
-    std::string segmenter_name() const { return workplace_->segmenter().name(); }
+    std::string segmenter_name() const { return context_->segmenter().name(); }
     /// Tells whether the pictures said which word is new, and not the recipe.
     bool target_read() const { return located_->target_read; }
     bool automatic_views() const { return views_->automatic; }
@@ -139,10 +139,10 @@ public:
     OrbitParameters film_orbit() const;
     /// Azimuth on it, radians, from which the front is seen where one is known; 0 otherwise.
     double film_front() const;
-    neural::TextToImage& model() { return workplace_->model(); }
+    neural::TextToImage& model() { return context_->model(); }
     /// The model, for a job on what this one came to.
-    std::shared_ptr<neural::TextToImage> shared_model() const { return workplace_->shared_model(); }
-    Painter& painter() { return workplace_->painter(); }
+    std::shared_ptr<neural::TextToImage> shared_model() const { return context_->shared_model(); }
+    Painter& painter() { return context_->painter(); }
     StageTimes& times() { return times_; }
     const StageTimes& times() const { return times_; }
     const JobControl& control() const { return control_; }
@@ -161,7 +161,7 @@ private:
     JobControl control_;
     Hints hints_;
     StageTimes times_;
-    std::unique_ptr<RunContext> workplace_;
+    std::unique_ptr<RunContext> context_;
     // What the stages came to; replaced, never changed.
     std::shared_ptr<const Views> views_;
     std::shared_ptr<const Located> located_;

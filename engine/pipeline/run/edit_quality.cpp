@@ -24,7 +24,7 @@ constexpr double LeastLikeness = 0.4;
 /// Tells whether the sentence got a word that the model draws and its encoder does not know.
 bool says_what_is_drawn_only(const neural::TextToImage& model, const std::string& before,
                              const std::string& told) {
-    const auto drawn = model.drawn_words();
+    const auto drawn = model.generated_vocabulary();
     const auto said = language::words_of(before);
     const auto is_new = [&](const auto& word) {
         return std::find(said.begin(), said.end(), word) == said.end() &&

@@ -21,7 +21,8 @@ struct EditQuality {
     bool warns = false;   // the pictures do not show the edit
     /// Similarity to a known thing, for a new thing that the encoder has no word for. It is the score of the
     /// known thing that the pictures show most. It does not say that the thing is the right one, but a result
-    /// like none is a lump. For such a ground: share of the way to its usual colour (edit/usual_look.h).
+    /// like none is a lump. For such a ground: share of the way to its usual colour
+    /// (edit/target_views/strategies/default_ground_colour.h).
     std::optional<double> likeness = {};
 
     /// True when another way of drawing is worth a try.

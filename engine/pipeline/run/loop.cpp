@@ -45,10 +45,10 @@ edit::CheckedRequest told_to_model(const neural::TextToImage& model, const edit:
     return unknown ? request.in_look_of_whole() : request;
 }
 
-edit::EditPlan plan_of(RunContext& workplace, const Located& located, const CheckedRecipe& recipe) {
+edit::EditPlan plan_of(RunContext& context, const Located& located, const CheckedRecipe& recipe) {
     const auto* label = located.by_label() ? &located.label : nullptr;
-    auto plan = edit::make_plan(question(workplace, recipe, located.views, label), located.result,
-                                workplace.painter().rasterizer());
+    auto plan = edit::make_plan(question(context, recipe, located.views, label), located.result,
+                                context.painter().rasterizer());
     // A thing that is drawn anew needs to know its sides; where none was said, its front is where the views
     // begin.
     plan.azimuths = located.views.azimuths;
@@ -60,15 +60,15 @@ edit::EditPlan plan_of(RunContext& workplace, const Located& located, const Chec
     return plan;
 }
 
-Edited edit_scene(RunContext& workplace, const Located& located, const edit::EditPlan& plan,
+Edited edit_scene(RunContext& context, const Located& located, const edit::EditPlan& plan,
                   const CheckedRecipe& recipe, const EditObserver& observer, const JobControl& control) {
-    return edit_scene(workplace, workplace.scene().gaussians, located, plan, recipe, observer, control);
+    return edit_scene(context, context.scene().gaussians, located, plan, recipe, observer, control);
 }
 
 edit::EditTools tools_of(const SceneEdit& scene_edit, const language::EditSentence& sentence,
                          edit::AttentionSource& attention, edit::Segmenter& segmenter) {
-    const auto& [workplace, scene, located, plan, recipe, observer, control] = scene_edit;
-    edit::EditTools tools{workplace.painter().rasterizer(), nullptr, observer.snapshot, control,
+    const auto& [context, scene, located, plan, recipe, observer, control] = scene_edit;
+    edit::EditTools tools{context.painter().rasterizer(), nullptr, observer.snapshot, control,
                           observer.iteration};
     tools.snapshot_seconds = observer.snapshot_seconds;
     tools.new_label = observer.new_label;
@@ -127,14 +127,14 @@ Edited fit_to_views(const SceneEdit& scene_edit) {
 
 /// Follows the model's gradient.
 Edited follow_gradient(const SceneEdit& scene_edit) {
-    const auto& [workplace, scene, located, plan, recipe, observer, control] = scene_edit;
-    const auto& model = workplace.model();
+    const auto& [context, scene, located, plan, recipe, observer, control] = scene_edit;
+    const auto& model = context.model();
     const auto request = told_to_model(model, recipe.request);
     const auto prompt = model.kind() == neural::BundleKind::InstructPix2Pix ? told_to_editor(request)
                                                                             : request.sentence().prompt();
     const auto guidance = model.guidance(prompt, with_sentence_before(recipe.guidance, request.sentence()));
     const auto attention = uncached(model).attention(recipe.attention);
-    auto tools = tools_of(scene_edit, request.sentence(), *attention, uncached(workplace.segmenter()));
+    auto tools = tools_of(scene_edit, request.sentence(), *attention, uncached(context.segmenter()));
     tools.guidance = guidance.get();
     return finished(scene_edit, request, edit::run_edit(scene, plan, request, tools));
 }
@@ -155,7 +155,7 @@ private:
     template <class Lead> Edited run(const edit::CheckedRequest& request, Lead&& lead) const {
         CheckedRecipe recipe = scene_edit_.recipe;
         recipe.request = request;
-        return lead({scene_edit_.workplace, scene_edit_.scene, scene_edit_.located, scene_edit_.plan, recipe,
+        return lead({scene_edit_.context, scene_edit_.scene, scene_edit_.located, scene_edit_.plan, recipe,
                      scene_edit_.observer, scene_edit_.control});
     }
 
@@ -165,11 +165,11 @@ private:
 
 }  // namespace
 
-Edited edit_scene(RunContext& workplace, const GaussianSet& scene, const Located& located,
+Edited edit_scene(RunContext& context, const GaussianSet& scene, const Located& located,
                   const edit::EditPlan& plan, const CheckedRecipe& recipe, const EditObserver& observer,
                   const JobControl& control) {
     const auto use_before = network_use();
-    const SceneEdit scene_edit{workplace, scene, located, plan, recipe, observer, control};
+    const SceneEdit scene_edit{context, scene, located, plan, recipe, observer, control};
     if (!edit::is_drawn(plan.mode)) return rearranged_scene(scene_edit);
     SceneMethodRun run(scene_edit);
     edit::method_of(recipe.request).run(run, recipe.request);

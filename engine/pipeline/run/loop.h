@@ -52,14 +52,14 @@ std::string told_to_editor(const edit::CheckedRequest& request);
 edit::CheckedRequest told_to_model(const neural::TextToImage& model, const edit::CheckedRequest& request);
 
 /// Masks, label and seeds for the loop. The recipe counts for how far masks are grown.
-edit::EditPlan plan_of(RunContext& workplace, const Located& located, const CheckedRecipe& recipe);
+edit::EditPlan plan_of(RunContext& context, const Located& located, const CheckedRecipe& recipe);
 
 /// Runs the edit loop with the settings of `recipe`, which agrees with `located.recipe` in what search_key()
 /// is of. Throws as edit::run_edit does.
-Edited edit_scene(RunContext& workplace, const Located& located, const edit::EditPlan& plan,
+Edited edit_scene(RunContext& context, const Located& located, const edit::EditPlan& plan,
                   const CheckedRecipe& recipe, const EditObserver& observer, const JobControl& control);
-/// Loop with another scene in place of the workplace's. The plan is of that one.
-Edited edit_scene(RunContext& workplace, const GaussianSet& scene, const Located& located,
+/// Loop with another scene in place of the context's. The plan is of that one.
+Edited edit_scene(RunContext& context, const GaussianSet& scene, const Located& located,
                   const edit::EditPlan& plan, const CheckedRecipe& recipe, const EditObserver& observer,
                   const JobControl& control);
 

@@ -58,9 +58,9 @@ edit::EditResult result_of(const RowChange& change) {
     result.generation.assign(result.label.size(), 0);
     result.label.resize(result.set.size(), 1);
     result.generation.resize(result.set.size(), 1);
-    result.hidden.assign(result.set.size(), 0);
-    std::fill(result.hidden.end() - static_cast<std::ptrdiff_t>(change.healing.size()), result.hidden.end(),
-              std::uint8_t{1});
+    result.hole_fill.assign(result.set.size(), 0);
+    std::fill(result.hole_fill.end() - static_cast<std::ptrdiff_t>(change.healing.size()),
+              result.hole_fill.end(), std::uint8_t{1});
     result.iterations = 1;
     return result;
 }
@@ -82,7 +82,7 @@ std::size_t changed_elsewhere(const GaussianSet& before, const RowChange& change
 /// Pixels of each view in which rows that went, moved or came are seen, grown as masks are.
 std::vector<Mask> touched_masks(const SceneEdit& edit, const RowChange& change,
                                 const edit::EditResult& result) {
-    auto& rasterizer = edit.workplace.painter().rasterizer();
+    auto& rasterizer = edit.context.painter().rasterizer();
     const auto& plan = edit.plan;
     std::vector<float> before(change.gone.begin(), change.gone.end());
     for (std::size_t row = 0; row < before.size(); ++row)
@@ -150,8 +150,8 @@ Bits anchor_rows(const SceneEdit& edit) {
     CheckedRecipe recipe = edit.recipe;
     recipe.request = request.search_for_anchor();
     Views views = edit.located.views;
-    if (views.automatic) views = choose_views(edit.workplace.scene(), recipe, {});
-    const Located found = locate(edit.workplace, recipe, views, {}, edit.control);
+    if (views.automatic) views = choose_views(edit.context.scene(), recipe, {});
+    const Located found = locate(edit.context, recipe, views, {}, edit.control);
     edit::require_found(found.result);
     Bits rows = *found.result.label.bits;
     for (std::size_t row = 0; row < rows.size(); ++row)

@@ -7,7 +7,7 @@
 namespace gse::pipeline {
 
 /// Removes or transforms what the plan labels (EditPlan::label, [N]). No network is asked. The result has
-/// iterations = 1. Rows that healing lays are marked as EditResult::hidden. Throws Error (InvalidArgument)
+/// iterations = 1. Rows that healing lays are marked as EditResult::hole_fill. Throws Error (InvalidArgument)
 /// where nothing is labelled, or the change cannot be made.
 Edited rearranged_scene(const SceneEdit& scene_edit);
 

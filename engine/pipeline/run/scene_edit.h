@@ -9,9 +9,9 @@
 
 namespace gse::pipeline {
 
-/// One edit. Refers to all it names; `scene` is the one of the plan, in place of the workplace's.
+/// One edit. Refers to all it names; `scene` is the one of the plan, in place of the context's.
 struct SceneEdit {
-    RunContext& workplace;
+    RunContext& context;
     const GaussianSet& scene;
     const Located& located;
     const edit::EditPlan& plan;

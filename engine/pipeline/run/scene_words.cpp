@@ -74,14 +74,14 @@ language::plan::SceneWords scene_words_shown(RunContext& context, const CheckedR
     const auto known = context.model().known_words();
     if (!ranker.available() || scene.things.empty()) return scene;
     context.look_for_ground(views.views);
-    const auto backdrop = context.ground(recipe.request.sentence().before());
+    const auto ground = context.ground(recipe.request.sentence().before());
     const auto some = farthest_views(views.views, ReadingViews);
     const auto images =
-        context.pictures(some, render_settings(context.scene(), recipe.request), backdrop, control);
+        context.pictures(some, render_settings(context.scene(), recipe.request), ground, control);
     std::vector<const Image*> pictures;
     for (const auto& image : images) pictures.push_back(&image);
     auto& thing = scene.things.front();
-    if (!backdrop && !thing.is_ground) {  // a thing that was cut out stands on none
+    if (!ground && !thing.is_ground) {  // a thing that was cut out stands on none
         const auto ground = best_of(ranker, of_class(known, language::WordClass::Ground), pictures,
                                     [&](const auto& word) { return "a " + thing.noun + " on the " + word; });
         const auto place = scene.ground();

@@ -129,18 +129,18 @@ std::string key_of(const Located& located) {
     return hash.key().hex();
 }
 
-edit::Finding finding_of(const RunContext& workplace, const Located& located) {
+edit::Finding finding_of(const RunContext& context, const Located& located) {
     const auto& result = located.result;
-    return {workplace.drawn(),
+    return {context.drawn(),
             result.word,
             thing_of(result),
             located.views.views,
             result.views,
             located.views.orbit,
             located.views.front,
-            render_settings(workplace.scene(), located.recipe.request),
-            result.on_ground ? workplace.ground(located.recipe.request.sentence().before()) : std::nullopt,
-            workplace.traits()};
+            render_settings(context.scene(), located.recipe.request),
+            result.on_ground ? context.ground(located.recipe.request.sentence().before()) : std::nullopt,
+            context.traits()};
 }
 
 /// Tells whether the views are those of what the words found, and not of a new thing's place.
@@ -150,11 +150,10 @@ bool shows_finding(const Located& located) {
 }
 
 /// Note that an uncertain finding is seen in its views only.
-Located finished(RunContext& workplace, Located located) {
+Located finished(RunContext& context, Located located) {
     auto& result = located.result;
     if (shows_finding(located))
-        edit::take_second_look(result,
-                               edit::second_look(finding_of(workplace, located), workplace.second_look()),
+        edit::take_second_look(result, edit::second_look(finding_of(context, located), context.second_look()),
                                located.recipe.request.least_confidence);
     if (!located.found())
         for (auto* label : {&result.label, &result.source_label})
@@ -166,13 +165,12 @@ Located finished(RunContext& workplace, Located located) {
 /// One search; every step of it gives a new value.
 class Search {
 public:
-    Search(RunContext& workplace, CheckedRecipe recipe, const Views& views, const Hints& hints,
+    Search(RunContext& context, CheckedRecipe recipe, const Views& views, const Hints& hints,
            const JobControl& control)
-        : workplace_(workplace), recipe_(std::move(recipe)), views_(views), hints_(hints), control_(control) {
-    }
+        : context_(context), recipe_(std::move(recipe)), views_(views), hints_(hints), control_(control) {}
 
     Located run() {
-        if (recipe_.request.whole_scene()) return located_everywhere(workplace_, recipe_, views_, control_);
+        if (recipe_.request.whole_scene()) return located_everywhere(context_, recipe_, views_, control_);
         if (!recipe_.request.part_of().empty() && hints_.label.empty()) return part();
         Located located = shown_whole(searched());
         located.result.room = room_on_wearer(located);
@@ -186,11 +184,11 @@ private:
         whole.request = recipe_.request.search_for_whole();
         const Hints hints{{}, hints_.said};
         Located located =
-            finished(workplace_, Search(workplace_, std::move(whole), views_, hints, control_).run());
+            finished(context_, Search(context_, std::move(whole), views_, hints, control_).run());
         located.recipe = recipe_;
         if (!located.found()) return located;
         located.within = *located.result.label.bits;
-        return locate_part(workplace_, std::move(located), control_);
+        return locate_part(context_, std::move(located), control_);
     }
 
     Located searched() {
@@ -198,8 +196,8 @@ private:
         const bool by_label =
             !hints_.label.empty() &&
             (recipe_.job.brings_label() ||
-             !language::vocabulary_contains(workplace_.model().known_words(), recipe_.request.source()));
-        if (hints_.label.empty()) look_for_ground(workplace_, recipe_, views_);
+             !language::vocabulary_contains(context_.model().known_words(), recipe_.request.source()));
+        if (hints_.label.empty()) look_for_ground(context_, recipe_, views_);
         read_scene(moves() && !by_label);
         if (by_label) return from_label();
         Located located = moves() ? from_all_distances() : moved_in(views_, {});
@@ -211,7 +209,7 @@ private:
     }
 
     double cut_of(const Located& located) {
-        return edit::look_along_border(finding_of(workplace_, located), workplace_.second_look().threads).cut;
+        return edit::look_along_border(finding_of(context_, located), context_.second_look().threads).cut;
     }
 
     /// Looks from farther off where the edges of the pictures cut off what was found.
@@ -238,7 +236,7 @@ private:
     bool moves() const { return views_.automatic && recipe_.request.reframe_views; }
 
     std::optional<edit::StudioBackground> ground() {
-        return hints_.label.empty() ? ground_shown(workplace_, recipe_, views_) : std::nullopt;
+        return hints_.label.empty() ? ground_shown(context_, recipe_, views_) : std::nullopt;
     }
 
     Located from_label() { return moved_in(views_, hints_.label); }
@@ -257,7 +255,7 @@ private:
     void read_scene(bool scans) {
         distances_ = scans ? std::vector<double>(ScanDistances.begin(), ScanDistances.end())
                            : std::vector<double>{1.0};
-        auto& recognition = workplace_.recognition();
+        auto& recognition = context_.recognition();
         auto& request = recipe_.request;
         const bool open = request.target_open();
         if (!recognition.compares() || !(scans || open)) return;
@@ -267,7 +265,7 @@ private:
             const auto some = scans ? orbit_views(nearer(views_.orbit, distance), ScanViews, side, side)
                                     : farthest_views(views_.views, std::size_t{ScanViews});
             pictures.push_back(
-                workplace_.pictures(some, render_settings(workplace_.scene(), request), ground(), control_));
+                context_.pictures(some, render_settings(context_.scene(), request), ground(), control_));
             control_.report("comparing the sentence with the scene", static_cast<int>(pictures.size()),
                             static_cast<int>(distances_.size()));
         }
@@ -277,9 +275,9 @@ private:
         if (open && !sentence.replacement().empty()) targets = {sentence.replacement()};
         // The encoder is not told words that are only drawn: they are new where the scene shows all else that
         // the sentence says.
-        const auto known = workplace_.model().known_words(),
+        const auto known = context_.model().known_words(),
                    said = language::promptable_vocabulary(
-                       known, edit::with_dyes(workplace_.model().drawn_words(), known));
+                       known, edit::with_dyes(context_.model().generated_vocabulary(), known));
         std::erase_if(targets, [&](const auto& word) { return !language::vocabulary_contains(said, word); });
         const auto reading = edit::read_scene(recognition, request, targets, pictures, known);
         if (open)
@@ -306,7 +304,7 @@ private:
     /// encoder can, else the side that the artist looked at.
     Views faced(Views views) {
         if (!recipe_.job.front.empty() || !views.words.empty() ||
-            !language::vocabulary_contains(workplace_.model().known_words(), "front side back view"))
+            !language::vocabulary_contains(context_.model().known_words(), "front side back view"))
             return views;
         const auto looked = looked_from();
         const auto front = edit::chosen_front(front_shown(views), looked);
@@ -316,14 +314,14 @@ private:
     }
 
     std::optional<edit::FrontReading> front_shown(const Views& views) {
-        auto& recognition = workplace_.recognition();
+        auto& recognition = context_.recognition();
         if (!recognition.compares()) return std::nullopt;
         const auto some = farthest_views(views.views, FrontViews);
         if (some.size() < 3) return std::nullopt;
         std::vector<double> azimuths;
         for (const auto& view : some) azimuths.push_back(azimuth_of(view.camera, views.orbit));
-        const auto pictures = workplace_.pictures(some, render_settings(workplace_.scene(), recipe_.request),
-                                                  ground(), control_);
+        const auto pictures =
+            context_.pictures(some, render_settings(context_.scene(), recipe_.request), ground(), control_);
         const auto read =
             edit::read_front(recognition, recipe_.request.sentence().before(), pictures, azimuths);
         log::info("the front is seen at {:.0f} degrees (lead {:.4f})", read.azimuth / Degree, read.lead);
@@ -332,7 +330,7 @@ private:
 
     edit::LocateResult look(const CheckedRecipe& recipe, const Views& views,
                             const std::vector<std::uint8_t>& label) {
-        return search_from(workplace_, views, recipe, label.empty() ? nullptr : &label, control_);
+        return search_from(context_, views, recipe, label.empty() ? nullptr : &label, control_);
     }
 
     /// Search in few views from one distance.
@@ -375,7 +373,7 @@ private:
     /// of a ground, is framed as it is.
     bool framed_as_figure(edit::EditMode mode) const {
         return mode == edit::EditMode::Replace ||
-               (edit::draws_place(recipe_.request, mode) && workplace_.model().supports_scene_conditioning());
+               (edit::draws_place(recipe_.request, mode) && context_.model().supports_scene_conditioning());
     }
 
     /// Place of the wearer of a label, or of its head.
@@ -385,28 +383,28 @@ private:
         auto bits = *wearer_;
         for (std::size_t row = 0; row < bits.size(); ++row) bits[row] &= (*label.bits)[row] == 0 ? 1 : 0;
         if (std::find(bits.begin(), bits.end(), std::uint8_t{1}) == bits.end()) return {};
-        return edit::wearer_of(recipe_.request, workplace_.drawn(), bits, orbit.up, front, true,
-                               workplace_.traits())
+        return edit::wearer_of(recipe_.request, context_.drawn(), bits, orbit.up, front, true,
+                               context_.traits())
             .standing;
     }
 
     /// All of a scene that was cut out of its surroundings; else what a few views around what is worn find
     /// for the first other thing of the sentence. Empty where nothing is found.
     std::vector<std::uint8_t> wearer_of(const Label& worn, const OrbitParameters& orbit) {
-        const std::size_t rows = workplace_.drawn().size();
-        if (ground_shown(workplace_, recipe_, views_)) return std::vector<std::uint8_t>(rows, 1);
+        const std::size_t rows = context_.drawn().size();
+        if (ground_shown(context_, recipe_, views_)) return std::vector<std::uint8_t>(rows, 1);
         CheckedRecipe scan = recipe_;
         const auto& request = recipe_.request;
         const auto& said = request.sentence();
         const auto things = said.sentence().things({said.source(), said.target()});
         const auto wearer = std::find_if(things.begin(), things.end(), [&](const auto& thing) {
             return thing != said.source() && thing != said.target() &&
-                   language::vocabulary_contains(workplace_.model().known_words(), thing);
+                   language::vocabulary_contains(context_.model().known_words(), thing);
         });
         if (wearer == things.end()) return {};
         scan.request = request.search_for(*wearer);
         scan.request.views = std::min(request.views, ScanViews);
-        auto around = localize::focus_orbit(workplace_.drawn(), *worn.bits, orbit, {});
+        auto around = localize::focus_orbit(context_.drawn(), *worn.bits, orbit, {});
         around.radius *= WearerSize;
         const auto found = look(scan, views_on(around, scan), {});
         log::debug("\"{}\", who wears \"{}\": confidence {:.2f}", *wearer, said.source(),
@@ -427,18 +425,18 @@ private:
     OrbitParameters focused_on(const Label& label, edit::EditMode mode, const OrbitParameters& orbit,
                                const Vec3& front) {
         if (framed_as_figure(mode)) {
-            const auto standing = edit::wearer_of(recipe_.request, workplace_.drawn(), *label.bits, orbit.up,
-                                                  front, mode == edit::EditMode::Add, workplace_.traits())
+            const auto standing = edit::wearer_of(recipe_.request, context_.drawn(), *label.bits, orbit.up,
+                                                  front, mode == edit::EditMode::Add, context_.traits())
                                       .standing;
             const auto wearer = edit::replaces_accessory(recipe_.request.sentence(), mode)
                                     ? standing_of_wearer(label, orbit, front)
                                     : edit::UprightBounds{};
             if (standing.found())
-                return framed_figure(wearer.found() ? wearer : standing, orbit, workplace_.traits());
+                return framed_figure(wearer.found() ? wearer : standing, orbit, context_.traits());
         }
         localize::FocusParameters framing;
-        framing.head_room = workplace_.traits().head_room;
-        auto focused = localize::focus_orbit(workplace_.drawn(), *label.bits, orbit, framing);
+        framing.head_room = context_.traits().head_room;
+        auto focused = localize::focus_orbit(context_.drawn(), *label.bits, orbit, framing);
         if (mode == edit::EditMode::Add) focused.radius *= room_around(recipe_.request.sentence().relation());
         return focused;
     }
@@ -529,7 +527,7 @@ private:
         return better ? other : located;
     }
 
-    RunContext& workplace_;
+    RunContext& context_;
     CheckedRecipe recipe_;
     const Views& views_;
     const Hints& hints_;
@@ -541,44 +539,44 @@ private:
 
 }  // namespace
 
-Located locate(RunContext& workplace, const CheckedRecipe& recipe, const Views& views, const Hints& hints,
+Located locate(RunContext& context, const CheckedRecipe& recipe, const Views& views, const Hints& hints,
                const JobControl& control) {
     if (hints.label.empty())
         edit::require_views(edit::excluded_views_of(recipe.request.excluded_views),
                             views.views.size());  // before any work
-    workplace.ask_anew(recipe.attention);
+    context.ask_anew(recipe.attention);
     CheckedRecipe all = recipe;  // from all views; what is left out is a matter of those that it ends with
     all.request.excluded_views.clear();
-    Located located = finished(workplace, Search(workplace, all, views, hints, control).run());
+    Located located = finished(context, Search(context, all, views, hints, control).run());
     if (recipe.request.excluded_views.empty() || located.by_label()) return located;
     all = located.recipe;
     all.request.excluded_views = recipe.request.excluded_views;
-    return locate_again(workplace, located, all, control);
+    return locate_again(context, located, all, control);
 }
 
-Located locate_again(RunContext& workplace, const Located& located, const CheckedRecipe& recipe,
+Located locate_again(RunContext& context, const Located& located, const CheckedRecipe& recipe,
                      const JobControl& control) {
-    workplace.ask(recipe.attention);
+    context.ask(recipe.attention);
     Located again{located.views, recipe, located.label, {}, located.target_read, {}};
     if (recipe.request.whole_scene())
-        return finished(workplace, located_everywhere(workplace, recipe, located.views, control));
+        return finished(context, located_everywhere(context, recipe, located.views, control));
     if (!located.within.empty() && !again.by_label()) {
         again.within = located.within;
         again.result = located.result;
-        return finished(workplace, locate_part(workplace, std::move(again), control));
+        return finished(context, locate_part(context, std::move(again), control));
     }
     const auto* label = again.by_label() ? &again.label : nullptr;
-    again.result = search_from(workplace, again.views, recipe, label, control);
+    again.result = search_from(context, again.views, recipe, label, control);
     if (edit::moves_worn_place(recipe.request.sentence(), again.result.mode))
         again.result.room = located.result.room;
-    return finished(workplace, std::move(again));
+    return finished(context, std::move(again));
 }
 
-Located locate_by_label(RunContext& workplace, const Located& located, std::vector<std::uint8_t> label,
+Located locate_by_label(RunContext& context, const Located& located, std::vector<std::uint8_t> label,
                         const JobControl& control) {
     Located labelled = located;
     labelled.label = std::move(label);
-    return locate_again(workplace, labelled, labelled.recipe, control);
+    return locate_again(context, labelled, labelled.recipe, control);
 }
 
 Located with_label(const Located& located, const std::vector<std::uint8_t>& bits) {

@@ -39,23 +39,23 @@ struct Located {
 ///
 /// Excluded views of the recipe count among those that the search ends
 /// with. Throws Error (Cancelled) on a stop request, and for failures of the tools.
-Located locate(RunContext& workplace, const CheckedRecipe& recipe, const Views& views, const Hints& hints,
+Located locate(RunContext& context, const CheckedRecipe& recipe, const Views& views, const Hints& hints,
                const JobControl& control);
 
 /// Search from its own views for a recipe of equal search_key(): other thresholds. Networks are only asked
 /// new questions.
-Located locate_again(RunContext& workplace, const Located& located, const CheckedRecipe& recipe,
+Located locate_again(RunContext& context, const Located& located, const CheckedRecipe& recipe,
                      const JobControl& control);
 
 /// Search with a label made by hand, [N] 0 or 1, which alone is the scope of the edit.
-Located locate_by_label(RunContext& workplace, const Located& located, std::vector<std::uint8_t> label,
+Located locate_by_label(RunContext& context, const Located& located, std::vector<std::uint8_t> label,
                         const JobControl& control);
 
 /// The label corrected by hand, [N] 0 or 1 (modify mode).
 Located with_label(const Located& located, const std::vector<std::uint8_t>& bits);
 
 /// Question that a recipe puts to its views. Refers to its arguments.
-edit::LocateInput question(const RunContext& workplace, const CheckedRecipe& recipe, const Views& views,
+edit::LocateInput question(const RunContext& context, const CheckedRecipe& recipe, const Views& views,
                            const std::vector<std::uint8_t>* label);
 
 }  // namespace gse::pipeline

@@ -11,11 +11,11 @@
 
 namespace gse::pipeline {
 
-edit::LocateInput question(const RunContext& workplace, const CheckedRecipe& recipe, const Views& views,
+edit::LocateInput question(const RunContext& context, const CheckedRecipe& recipe, const Views& views,
                            const std::vector<std::uint8_t>* label) {
-    const auto& scene = workplace.scene();
+    const auto& scene = context.scene();
     const auto elevations = views.azimuths.empty() ? std::vector<double>{} : elevations_above(views);
-    return {workplace.drawn(),
+    return {context.drawn(),
             views.views,
             views.words,
             recipe.request,
@@ -23,31 +23,31 @@ edit::LocateInput question(const RunContext& workplace, const CheckedRecipe& rec
             scene.info.up,
             views.front,
             label,
-            workplace.model().known_words(),
+            context.model().known_words(),
             views.azimuths,
             elevations,
             {},
-            workplace.traits()};
+            context.traits()};
 }
 
-void look_for_ground(RunContext& workplace, const CheckedRecipe& recipe, const Views& views) {
-    if (recipe.guidance.plain_ground) workplace.look_for_ground(views.views);
+void look_for_ground(RunContext& context, const CheckedRecipe& recipe, const Views& views) {
+    if (recipe.guidance.plain_ground) context.look_for_ground(views.views);
 }
 
-std::optional<edit::StudioBackground> ground_shown(RunContext& workplace, const CheckedRecipe& recipe,
+std::optional<edit::StudioBackground> ground_shown(RunContext& context, const CheckedRecipe& recipe,
                                                    const Views& views) {
-    look_for_ground(workplace, recipe, views);
-    return recipe.guidance.plain_ground ? workplace.ground(recipe.request.sentence().before()) : std::nullopt;
+    look_for_ground(context, recipe, views);
+    return recipe.guidance.plain_ground ? context.ground(recipe.request.sentence().before()) : std::nullopt;
 }
 
-edit::LocateResult search_from(RunContext& workplace, const Views& views, const CheckedRecipe& recipe,
+edit::LocateResult search_from(RunContext& context, const Views& views, const CheckedRecipe& recipe,
                                const std::vector<std::uint8_t>* label, const JobControl& control,
                                const std::vector<std::uint8_t>* within) {
-    auto input = question(workplace, recipe, views, label);
+    auto input = question(context, recipe, views, label);
     input.within = within;
-    input.ground = label == nullptr ? ground_shown(workplace, recipe, views) : std::nullopt;
-    auto tools = workplace.tools(views, input.ground, control);
-    const auto drawing = workplace.place_drawing(recipe.request.sentence());
+    input.ground = label == nullptr ? ground_shown(context, recipe, views) : std::nullopt;
+    auto tools = context.tools(views, input.ground, control);
+    const auto drawing = context.place_drawing(recipe.request.sentence());
     tools.drawing = drawing.get();
     tools.plain_ground = recipe.guidance.plain_ground;
     return edit::locate(input, tools);
@@ -55,26 +55,26 @@ edit::LocateResult search_from(RunContext& workplace, const Views& views, const 
 
 namespace {
 
-bool is_known(const RunContext& workplace, const std::string& word) {
-    return language::vocabulary_contains(workplace.model().known_words(), word);
+bool is_known(const RunContext& context, const std::string& word) {
+    return language::vocabulary_contains(context.model().known_words(), word);
 }
 
 }  // namespace
 
-Located locate_part(RunContext& workplace, Located located, const JobControl& control) {
+Located locate_part(RunContext& context, Located located, const JobControl& control) {
     const auto& request = located.recipe.request;
     const std::string part = request.source();
     auto& result = located.result;
-    if (is_known(workplace, part)) {
-        result = search_from(workplace, located.views, located.recipe, nullptr, control, &located.within);
+    if (is_known(context, part)) {
+        result = search_from(context, located.views, located.recipe, nullptr, control, &located.within);
         if (!located.found())
             result.message = fmt::format("\"{}\" was not found within \"{}\" ({})", part, request.part_of(),
                                          result.message);
         return located;
     }
-    const auto rows = edit::labelled_part(part, workplace.drawn(), located.within, located.views.orbit.up);
-    result = edit::part_of_finding(question(workplace, located.recipe, located.views, nullptr),
-                                   workplace.painter().rasterizer(), std::move(result), rows, part);
+    const auto rows = edit::labelled_part(part, context.drawn(), located.within, located.views.orbit.up);
+    result = edit::part_of_finding(question(context, located.recipe, located.views, nullptr),
+                                   context.painter().rasterizer(), std::move(result), rows, part);
     if (request.is_rearranged()) {  // the thing was looked for to change its look
         result.mode = *request.mode;
         result.reason = "as asked";
@@ -84,10 +84,10 @@ Located locate_part(RunContext& workplace, Located located, const JobControl& co
     return located;
 }
 
-Located located_everywhere(RunContext& workplace, const CheckedRecipe& recipe, const Views& views,
+Located located_everywhere(RunContext& context, const CheckedRecipe& recipe, const Views& views,
                            const JobControl& control) {
-    Located located{views, recipe, std::vector<std::uint8_t>(workplace.drawn().size(), 1), {}, false, {}};
-    located.result = search_from(workplace, views, recipe, &located.label, control);
+    Located located{views, recipe, std::vector<std::uint8_t>(context.drawn().size(), 1), {}, false, {}};
+    located.result = search_from(context, views, recipe, &located.label, control);
     for (auto& view : located.result.views) {
         std::fill(view.mask.data.begin(), view.mask.data.end(), std::uint8_t{1});
         view.region = view.mask;

@@ -10,23 +10,23 @@
 namespace gse::pipeline {
 
 /// Looks for a ground, where it is wanted; the first views that are looked at decide.
-void look_for_ground(RunContext& workplace, const CheckedRecipe& recipe, const Views& views);
+void look_for_ground(RunContext& context, const CheckedRecipe& recipe, const Views& views);
 
 /// The ground on which words are looked for; a label is what it is.
-std::optional<edit::StudioBackground> ground_shown(RunContext& workplace, const CheckedRecipe& recipe,
+std::optional<edit::StudioBackground> ground_shown(RunContext& context, const CheckedRecipe& recipe,
                                                    const Views& views);
 
 /// One search. `label`: made by hand, or null. `within`: LocateInput::within.
-edit::LocateResult search_from(RunContext& workplace, const Views& views, const CheckedRecipe& recipe,
+edit::LocateResult search_from(RunContext& context, const Views& views, const CheckedRecipe& recipe,
                                const std::vector<std::uint8_t>* label, const JobControl& control,
                                const std::vector<std::uint8_t>* within = nullptr);
 
 /// The part that the recipe looks for, within the thing `located.within`. Its word is looked for from the
 /// views of the thing; where the model has none, the thing's shape tells the part.
-Located locate_part(RunContext& workplace, Located located, const JobControl& control);
+Located locate_part(RunContext& context, Located located, const JobControl& control);
 
 /// Every splat may change, wherever a picture shows it. Nothing is looked for.
-Located located_everywhere(RunContext& workplace, const CheckedRecipe& recipe, const Views& views,
+Located located_everywhere(RunContext& context, const CheckedRecipe& recipe, const Views& views,
                            const JobControl& control);
 
 }  // namespace gse::pipeline

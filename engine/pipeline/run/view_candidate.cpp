@@ -54,7 +54,7 @@ EditQuality judge_drawn(const neural::TextToImage& model, const language::EditSe
                         edit::EditMode mode, const edit::ViewTargets& round,
                         const edit::ModelTraits& traits) {
     auto verdict = judge_targets(model, sentence, round);
-    const auto look = edit::usual_look(sentence, mode, traits);
+    const auto look = edit::default_ground_colour(sentence, mode, traits);
     if (!look) return verdict;
     const double gone = edit::gone_towards(*look, round);
     if (!verdict.score) verdict.likeness = gone;
@@ -74,7 +74,8 @@ edit::CheckedRequest in_usual_colour(const neural::TextToImage& model, edit::Che
     const auto known = model.known_words();
     const auto &thing = new_thing(request.sentence(), mode), &told = request.sentence().prompt();
     const auto usual = language::with_usual_colour(
-        told, thing, language::promptable_vocabulary(known, edit::with_dyes(model.drawn_words(), known)),
+        told, thing,
+        language::promptable_vocabulary(known, edit::with_dyes(model.generated_vocabulary(), known)),
         traits.usual_colours);
     if (usual == told) return request;
     log::info("the sentence names no colour for \"{}\": it is drawn as \"{}\"", thing, usual);
@@ -84,15 +85,15 @@ edit::CheckedRequest in_usual_colour(const neural::TextToImage& model, edit::Che
 }  // namespace
 
 GaussianSet PatternLayer::over(const GaussianSet& set, std::vector<std::uint8_t> rows,
-                               const std::vector<std::uint8_t>& hidden) const {
-    for (std::size_t row = 0; row < rows.size(); ++row) rows[row] &= hidden[row] == 0 ? 1 : 0;
+                               const std::vector<std::uint8_t>& hole_fill) const {
+    for (std::size_t row = 0; row < rows.size(); ++row) rows[row] &= hole_fill[row] == 0 ? 1 : 0;
     return edit::dye_rows(remap, {edit::standing_alone(set, rows, up, front), up, front}, rows, set, seed);
 }
 
 edit::SnapshotCallback PatternLayer::over(edit::SnapshotCallback snapshots) const {
     if (!snapshots) return snapshots;
     const auto finish = [layer = *this](const edit::EditSnapshot& snapshot, const GaussianSet& set) {
-        return layer.over(set, snapshot.label(), snapshot.hidden());
+        return layer.over(set, snapshot.label(), snapshot.hole_fill());
     };
     return [finish, next = std::move(snapshots)](edit::EditSnapshot snapshot) {
         snapshot.finish = finish;
@@ -104,13 +105,14 @@ ViewCandidate::ViewCandidate(const SceneEdit& scene_edit, const DrawStrategy& st
                              const std::optional<edit::GroundUnder>& ground,
                              std::vector<CachedPictures>* drawn)
     : scene_edit_(scene_edit), request_(scene_edit.recipe.request) {
-    const auto& [workplace, scene, located, plan, recipe, observer, control] = scene_edit;
-    const auto& model = workplace.model();
+    const auto& [context, scene, located, plan, recipe, observer, control] = scene_edit;
+    const auto& model = context.model();
     request_ = told_to_model(model, request_);
     if (model.kind() != neural::BundleKind::InstructPix2Pix) {
-        request_ = in_usual_colour(model, std::move(request_), plan.mode, workplace.traits());
-        remap_ = edit::dye_of(request_.sentence(), plan.mode,
-                              language::promptable_vocabulary(model.known_words(), model.drawn_words()));
+        request_ = in_usual_colour(model, std::move(request_), plan.mode, context.traits());
+        remap_ =
+            edit::dye_of(request_.sentence(), plan.mode,
+                         language::promptable_vocabulary(model.known_words(), model.generated_vocabulary()));
     }
     if (remap_ && remap_->pattern)
         pattern_ = PatternLayer{*remap_, located.views.orbit.up, located.views.front, request_.seed};
@@ -118,7 +120,7 @@ ViewCandidate::ViewCandidate(const SceneEdit& scene_edit, const DrawStrategy& st
     settings_.restyle = strategy.restyle;
     add_editors(strategy, ground, drawn);
     attention_ = uncached(model).attention(recipe.attention);  // every render is another question
-    auto tools = tools_of(scene_edit, request_.sentence(), *attention_, workplace.segmenter());
+    auto tools = tools_of(scene_edit, request_.sentence(), *attention_, context.segmenter());
     if (pattern_) tools.snapshot = pattern_->over(tools.snapshot);
     tools.views = editors_.back().get();
     tools.known = model.known_words();
@@ -140,10 +142,10 @@ void ViewCandidate::add_editors(const DrawStrategy& strategy, const std::optiona
                                 std::vector<CachedPictures>* drawn) {
     const auto& recipe = scene_edit_.recipe;
     const auto& plan = scene_edit_.plan;
-    const auto& model = scene_edit_.workplace.model();
+    const auto& model = scene_edit_.context.model();
     if (strategy.ground == DrawStrategy::Ground::DefaultColour) {
         add<edit::DefaultGroundColour>(
-            *edit::usual_look(recipe.request.sentence(), plan.mode, scene_edit_.workplace.traits()));
+            *edit::default_ground_colour(recipe.request.sentence(), plan.mode, scene_edit_.context.traits()));
     } else {
         const bool instructed = model.kind() == neural::BundleKind::InstructPix2Pix;
         const auto prompt = instructed ? told_to_editor(request_) : request_.sentence().prompt();
@@ -152,8 +154,8 @@ void ViewCandidate::add_editors(const DrawStrategy& strategy, const std::optiona
     }
     const auto& located = scene_edit_.located;
     if (!located.within.empty() && request_.part_of().empty())  // the model is told the thing itself
-        add<edit::WholeThing>(*editors_.back(), scene_edit_.workplace.painter().rasterizer(),
-                              scene_edit_.workplace.drawn(), located.within, plan.settings);
+        add<edit::WholeThing>(*editors_.back(), scene_edit_.context.painter().rasterizer(),
+                              scene_edit_.context.drawn(), located.within, plan.settings);
     if (strategy.ground == DrawStrategy::Ground::Plain && ground)
         add<edit::OnPlainGround>(*editors_.back(), ground->plain, shown_before(plan, recipe));
     if (drawn != nullptr) add<CachedViews>(*editors_.back(), *drawn);
@@ -169,10 +171,10 @@ void ViewCandidate::draw() {
 }
 
 EditQuality ViewCandidate::judge() const {
-    const auto& model = scene_edit_.workplace.model();
+    const auto& model = scene_edit_.context.model();
     const auto mode = scene_edit_.plan.mode;
     return remap_ ? judge_undyed(model, request_, mode, *remap_, remapped_)
-                  : judge_drawn(model, request_.sentence(), mode, *sheet_, scene_edit_.workplace.traits());
+                  : judge_drawn(model, request_.sentence(), mode, *sheet_, scene_edit_.context.traits());
 }
 
 void ViewCandidate::show(const edit::ViewTargets& sheet) {
@@ -182,7 +184,7 @@ void ViewCandidate::show(const edit::ViewTargets& sheet) {
 
 Edited ViewCandidate::fit() {
     auto result = optimiser_->fit();
-    if (pattern_) result.set = pattern_->over(result.set, result.label, result.hidden);
+    if (pattern_) result.set = pattern_->over(result.set, result.label, result.hole_fill);
     auto edited = finished(scene_edit_, request_, std::move(result));
     edited.targets = std::move(sheets_);
     return edited;

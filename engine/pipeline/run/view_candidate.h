@@ -17,7 +17,7 @@ struct PatternLayer {
     std::uint64_t seed;
 
     GaussianSet over(const GaussianSet& set, std::vector<std::uint8_t> rows,
-                     const std::vector<std::uint8_t>& hidden) const;
+                     const std::vector<std::uint8_t>& hole_fill) const;
     /// Hands on states of the edit which show it.
     edit::SnapshotCallback over(edit::SnapshotCallback snapshots) const;
 };

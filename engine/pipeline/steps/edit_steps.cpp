@@ -74,7 +74,7 @@ EditSteps steps_of_sentence(const EditRecipe& recipe, const plan::SceneWords& sc
 std::vector<edit::PlannedStep> known_to_model(std::vector<edit::PlannedStep> steps,
                                               const edit::EditRequest& request,
                                               const std::filesystem::path& folder) {
-    const auto known = model_words(folder), drawn = drawn_words(folder);
+    const auto known = model_words(folder), drawn = generated_vocabulary(folder);
     if (known.empty()) return steps;
     for (auto& step : steps) try {
             if (!step.words) continue;

@@ -47,7 +47,7 @@ double share(double part, double all) { return all > 0 ? part / all : 0; }
 std::vector<std::uint8_t> new_rows(const edit::EditResult& result) {
     auto bits = result.label;
     for (std::size_t row = 0; row < bits.size(); ++row)
-        if (row < result.hidden.size() && result.hidden[row] != 0) bits[row] = 0;
+        if (row < result.hole_fill.size() && result.hole_fill[row] != 0) bits[row] = 0;
     for (const auto row : result.base_to_new)
         if (row >= 0) bits[static_cast<std::size_t>(row)] = 0;
     return bits;

@@ -58,7 +58,7 @@ void show(Shown& shown, const ui::SearchPart& part) {
     static_cast<void>(estimate);  // of this machine
     shown["search.request"] = text_of(request);
     shown["search.words"] = fmt::format("{} {} {} {}", said.size(), made.size(), words_read, read_target);
-    shown["search.reach"] =
+    shown["search.scope"] =
         fmt::format("{} {} {} {} {}", reach.label, reach.splats, reach.by_label, reach.corrected, by_hand);
     shown["search.views"] = fmt::format("{}", attention.size());
     shown["search.what"] = fmt::format("{} {} {}", word, mode, threshold);

@@ -20,7 +20,7 @@ void say_second_hat(Harness& harness, const std::string& sentence) {
     model.request.source = "bear";
     model.request.prompt = sentence;
     model.request.target = "hat";
-    model.reach.present = "hat";
+    model.scope.present = "hat";
     harness.frame(3);
 }
 
@@ -84,15 +84,15 @@ DOCTEST_TEST_CASE("the panel says which label an edit uses where another one is 
     auto& model = harness.application.model();
     model.request.prompt = "a golden bear";
     model.request.target = "golden";
-    model.reach = {"bear", 120, true, false, "hat", ""};
+    model.scope = {"bear", 120, true, false, "hat", ""};
     harness.frame(3);
-    DOCTEST_REQUIRE(harness.find("prompt.reach") != nullptr);
-    DOCTEST_CHECK(harness.asks("prompt.reach.other", "set_reach search"));
+    DOCTEST_REQUIRE(harness.find("prompt.scope") != nullptr);
+    DOCTEST_CHECK(harness.asks("prompt.scope.other", "set_scope search"));
     model.request.source = "penguin";  // not known, and no label is named so
     model.request.prompt = "a golden penguin";
-    model.reach = {"cut out", 120, false, false, "", ""};
+    model.scope = {"cut out", 120, false, false, "", ""};
     harness.frame(3);
-    DOCTEST_CHECK(harness.asks("prompt.reach.other", "set_reach label"));
+    DOCTEST_CHECK(harness.asks("prompt.scope.other", "set_scope label"));
 }
 
 DOCTEST_TEST_CASE("a scene is exported in a format from a menu, and its name follows") {

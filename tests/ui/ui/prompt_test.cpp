@@ -134,20 +134,20 @@ DOCTEST_TEST_CASE(
     model.request.prompt = "a golden bear";
     model.request.target = "golden";
     harness.frame(2);
-    DOCTEST_REQUIRE(harness.find("prompt.reach") != nullptr);
-    DOCTEST_CHECK(harness.find("prompt.reach.other") == nullptr);  // there is no label to use
-    model.reach = {"hat", 416, false, false};
+    DOCTEST_REQUIRE(harness.find("prompt.scope") != nullptr);
+    DOCTEST_CHECK(harness.find("prompt.scope.other") == nullptr);  // there is no label to use
+    model.scope = {"hat", 416, false, false};
     harness.frame(2);
-    DOCTEST_CHECK(harness.asks("prompt.reach.other", "set_reach label"));
-    model.reach.by_label = true;
+    DOCTEST_CHECK(harness.asks("prompt.scope.other", "set_scope label"));
+    model.scope.by_label = true;
     harness.frame(2);
-    DOCTEST_CHECK(harness.asks("prompt.reach.other", "set_reach search"));
-    DOCTEST_CHECK(harness.rect("prompt.reach").y < harness.rect("prompt.edit").y);
+    DOCTEST_CHECK(harness.asks("prompt.scope.other", "set_scope search"));
+    DOCTEST_CHECK(harness.rect("prompt.scope").y < harness.rect("prompt.edit").y);
     DOCTEST_CHECK(harness.rect("prompt.edit").visible);
     model.request.source = "crane";  // unknown: there is nothing to search for
     harness.frame(2);
-    DOCTEST_CHECK(harness.find("prompt.reach.other") == nullptr);
-    DOCTEST_CHECK(harness.find("prompt.reach") != nullptr);
+    DOCTEST_CHECK(harness.find("prompt.scope.other") == nullptr);
+    DOCTEST_CHECK(harness.find("prompt.scope") != nullptr);
 }
 
 DOCTEST_TEST_CASE("a search that labelled nothing shows its pictures and the ways on") {
@@ -227,7 +227,7 @@ DOCTEST_TEST_CASE("another method is another sentence: a word that is only drawn
     model.request.prompt = "a bear wearing a crown";
     model.request.target = "crown";
     model.request.mode = "add";
-    model.drawn_words = {"crown"};
+    model.generated_vocabulary = {"crown"};
     harness.frame(2);
     DOCTEST_CHECK(harness.rect("prompt.edit").enabled);
     model.request.method = "sds";

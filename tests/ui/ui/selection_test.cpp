@@ -28,7 +28,7 @@ DOCTEST_TEST_CASE(
     harness.frame(3);
     harness.click("adjust.open");
     harness.frame(3);
-    DOCTEST_CHECK(harness.find("adjust.reach") != nullptr);
+    DOCTEST_CHECK(harness.find("adjust.scope") != nullptr);
     DOCTEST_CHECK_FALSE(harness.rect("adjust.reset").enabled);
     const auto slider = harness.rect("adjust.saturation");
     harness.drag({slider.x + slider.width / 3, slider.y + slider.height / 2},

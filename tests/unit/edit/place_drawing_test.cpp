@@ -88,7 +88,7 @@ public:
             rooms.push_back(view.mask.count());
             corners.push_back(view.original.data.front());
             // All of the scene stays to be seen.
-            DOCTEST_CHECK(view.backdrop.picture.data == view.original.data);
+            DOCTEST_CHECK(view.clean_plate.picture.data == view.original.data);
         }
         return targets;
     }

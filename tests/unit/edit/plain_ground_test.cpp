@@ -61,7 +61,7 @@ EditView red_view() {
     view.view.camera = Camera::look_at({0.5, 0, -2}, {0.5, 0.7, 2}, Up, 0.8, 32, 24);
     view.rendered = Image(32, 24, 3);
     for (std::size_t i = 0; i < view.rendered.data.size(); i += 3) view.rendered.data[i] = 1;
-    view.original = view.backdrop.picture = view.rendered;
+    view.original = view.clean_plate.picture = view.rendered;
     view.mask = Mask(32, 24);
     view.mask.at(16, 12) = 1;
     return view;
@@ -114,7 +114,7 @@ DOCTEST_TEST_CASE("only rounds that begin a new thing, and restyles, are shown t
     const auto& shown = tells.shown[0][0];
     DOCTEST_CHECK(shown.rendered.data == picture_of(ground_of("a red cat"), view.view.camera).data);
     DOCTEST_CHECK(shown.original.data == shown.rendered.data);
-    DOCTEST_CHECK(shown.backdrop.picture.data == shown.rendered.data);
+    DOCTEST_CHECK(shown.clean_plate.picture.data == shown.rendered.data);
     Recorder silent(false);  // its pictures could not be cut out: the scene after all
     asked(silent, anew);
     DOCTEST_REQUIRE(silent.shown.size() == 2);
@@ -151,8 +151,8 @@ DOCTEST_TEST_CASE(
 
 DOCTEST_TEST_CASE("to what something is added the plain ground is shown only where the scene has nothing") {
     auto view = red_view();
-    view.backdrop.depth = Image(32, 24, 1);
-    view.backdrop.depth.at(16, 12, 0) = 4;
+    view.clean_plate.depth = Image(32, 24, 1);
+    view.clean_plate.depth.at(16, 12, 0) = 4;
     EditViewsRequest anew;
     anew.anew = true;
     Recorder model(true);
@@ -164,7 +164,7 @@ DOCTEST_TEST_CASE("to what something is added the plain ground is shown only whe
         DOCTEST_CHECK(shown.rendered.at(16, 12, c) == view.rendered.at(16, 12, c));
         DOCTEST_CHECK(shown.rendered.at(15, 12, c) == plain.at(15, 12, c));
     }
-    DOCTEST_CHECK(shown.backdrop.picture.data == shown.rendered.data);
+    DOCTEST_CHECK(shown.clean_plate.picture.data == shown.rendered.data);
 }
 
 namespace {

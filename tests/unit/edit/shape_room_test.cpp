@@ -40,17 +40,17 @@ const Vec3 Up{0, -1, 0}, Front{0, 0, -1};
 /// A floor from the horizon down; the thing has left a hole in it and stood up into the sky.
 edit::CleanPlate floor_with_hole(Mask& mask) {
     constexpr int Side = 32;
-    edit::CleanPlate backdrop{Image(Side, Side, 3), Image(Side, Side, 1)};
+    edit::CleanPlate clean_plate{Image(Side, Side, 3), Image(Side, Side, 1)};
     mask = Mask(Side, Side);
     for (int y = 0; y < Side; ++y)
         for (int x = 0; x < Side; ++x) {
             const bool ground = y >= 16, hole = x >= 12 && x < 20 && y >= 20 && y < 26;
             mask.at(x, y) = x >= 10 && x < 22 && y >= 6 && y < 28 ? 1 : 0;
             if (!ground || hole) continue;
-            backdrop.depth.at(x, y, 0) = 10.0f - 0.2f * static_cast<float>(y);
-            backdrop.picture.at(x, y, 1) = 0.25f + 0.01f * static_cast<float>(y);
+            clean_plate.depth.at(x, y, 0) = 10.0f - 0.2f * static_cast<float>(y);
+            clean_plate.picture.at(x, y, 1) = 0.25f + 0.01f * static_cast<float>(y);
         }
-    return backdrop;
+    return clean_plate;
 }
 
 }  // namespace
@@ -99,38 +99,38 @@ DOCTEST_TEST_CASE("rows too faint to be seen ask for no room") {
 DOCTEST_TEST_CASE(
     "holes in the ground are filled from around them, sky stays sky, what is there stays as it is") {
     Mask mask;
-    auto backdrop = floor_with_hole(mask);
-    const auto before = backdrop;
-    DOCTEST_CHECK(edit::fill_holes(backdrop, mask, Image(32, 32, 1, 1.0f)) == 8 * 6);
+    auto clean_plate = floor_with_hole(mask);
+    const auto before = clean_plate;
+    DOCTEST_CHECK(edit::fill_holes(clean_plate, mask, Image(32, 32, 1, 1.0f)) == 8 * 6);
     for (int y = 0; y < 32; ++y)
         for (int x = 0; x < 32; ++x) {
             const bool hole = x >= 12 && x < 20 && y >= 20 && y < 26;
             if (!hole) {
-                DOCTEST_CHECK(backdrop.depth.at(x, y, 0) == before.depth.at(x, y, 0));
-                DOCTEST_CHECK(backdrop.picture.at(x, y, 1) == before.picture.at(x, y, 1));
+                DOCTEST_CHECK(clean_plate.depth.at(x, y, 0) == before.depth.at(x, y, 0));
+                DOCTEST_CHECK(clean_plate.picture.at(x, y, 1) == before.picture.at(x, y, 1));
                 continue;
             }
-            DOCTEST_CHECK(backdrop.filled.at(x, y) == 1);
-            DOCTEST_CHECK(backdrop.depth.at(x, y, 0) == doctest::Approx(10 - 0.2 * y).epsilon(0.1));
-            DOCTEST_CHECK(backdrop.picture.at(x, y, 1) == doctest::Approx(0.25 + 0.01 * y).epsilon(0.1));
+            DOCTEST_CHECK(clean_plate.filled.at(x, y) == 1);
+            DOCTEST_CHECK(clean_plate.depth.at(x, y, 0) == doctest::Approx(10 - 0.2 * y).epsilon(0.1));
+            DOCTEST_CHECK(clean_plate.picture.at(x, y, 1) == doctest::Approx(0.25 + 0.01 * y).epsilon(0.1));
         }
-    DOCTEST_CHECK(edit::fill_holes(backdrop, mask, Image(32, 32, 1, 1.0f)) == 0);
+    DOCTEST_CHECK(edit::fill_holes(clean_plate, mask, Image(32, 32, 1, 1.0f)) == 0);
 }
 
 DOCTEST_TEST_CASE(
     "the rim of a hole that is seen through in part is filled, too: its colour is not that of the ground") {
     Mask mask;
-    auto backdrop = floor_with_hole(mask);
+    auto clean_plate = floor_with_hole(mask);
     Image alpha(32, 32, 1, 1.0f);
     for (int y = 19; y < 27; ++y)
         for (int x = 11; x < 21; ++x) {
             alpha.at(x, y, 0) = 0.6f;
-            backdrop.picture.at(x, y, 1) *= 0.6f;  // black behind the scene
+            clean_plate.picture.at(x, y, 1) *= 0.6f;  // black behind the scene
         }
-    DOCTEST_CHECK(edit::fill_holes(backdrop, mask, alpha) == 10 * 8);
+    DOCTEST_CHECK(edit::fill_holes(clean_plate, mask, alpha) == 10 * 8);
     for (int y = 19; y < 27; ++y)
         for (int x = 11; x < 21; ++x)
-            DOCTEST_CHECK(backdrop.picture.at(x, y, 1) == doctest::Approx(0.25 + 0.01 * y).epsilon(0.05));
+            DOCTEST_CHECK(clean_plate.picture.at(x, y, 1) == doctest::Approx(0.25 + 0.01 * y).epsilon(0.05));
 }
 
 DOCTEST_TEST_CASE(
@@ -146,7 +146,7 @@ DOCTEST_TEST_CASE(
         edit::EditView view;
         view.view.camera = orbit_camera(orbit, v * 1.05, Side, Side);
         const Camera& camera = view.view.camera;
-        edit::CleanPlate backdrop{Image(Side, Side, 3, 0.5f), Image(Side, Side, 1)};
+        edit::CleanPlate clean_plate{Image(Side, Side, 3, 0.5f), Image(Side, Side, 1)};
         Mask mask(Side, Side);
         for (int y = 0; y < Side; ++y)
             for (int x = 0; x < Side; ++x) {
@@ -155,10 +155,10 @@ DOCTEST_TEST_CASE(
                 const Vec3 p = from - to * (from.y / to.y);
                 const bool hole = std::hypot(p.x, p.z) < 0.4;
                 mask.at(x, y) = std::hypot(p.x, p.z) < 0.6 ? 1 : 0;
-                backdrop.depth.at(x, y, 0) = hole ? 0.0f : static_cast<float>(camera.to_camera(p).z);
+                clean_plate.depth.at(x, y, 0) = hole ? 0.0f : static_cast<float>(camera.to_camera(p).z);
             }
-        DOCTEST_REQUIRE(edit::fill_holes(backdrop, mask, Image(Side, Side, 1, 1.0f)) > 0);
-        view.backdrop = std::move(backdrop);
+        DOCTEST_REQUIRE(edit::fill_holes(clean_plate, mask, Image(Side, Side, 1, 1.0f)) > 0);
+        view.clean_plate = std::move(clean_plate);
         views.push_back(std::move(view));
     }
     const auto rows = edit::ground_hole_fill(views, 0);
@@ -179,11 +179,11 @@ DOCTEST_TEST_CASE(
     DOCTEST_CHECK(wide == doctest::Approx(0.4).epsilon(0.15));
     for (auto& view : views) {  // where all but one show what lies behind there was no ground
         if (&view == &views.front()) continue;
-        std::fill(view.backdrop.filled.data.begin(), view.backdrop.filled.data.end(), std::uint8_t{0});
-        for (auto& z : view.backdrop.depth.data) z = 10;
+        std::fill(view.clean_plate.filled.data.begin(), view.clean_plate.filled.data.end(), std::uint8_t{0});
+        for (auto& z : view.clean_plate.depth.data) z = 10;
     }
     DOCTEST_CHECK(edit::ground_hole_fill(views, 0).size() == 0);
-    for (auto& view : views) view.backdrop.filled = {};
+    for (auto& view : views) view.clean_plate.filled = {};
     DOCTEST_CHECK(edit::ground_hole_fill(views, 0).size() == 0);
 }
 

@@ -39,15 +39,15 @@ private:
     double threshold_;
 };
 
-edit::EditView grey_view(float backdrop) {
+edit::EditView grey_view(float clean_plate) {
     edit::EditView view;
     view.mask = Mask(Side, Side);
     std::fill(view.mask.data.begin(), view.mask.data.end(), std::uint8_t{1});
-    view.backdrop.picture = Image(Side, Side, 3, backdrop);
+    view.clean_plate.picture = Image(Side, Side, 3, clean_plate);
     return view;
 }
 
-/// A picture that differs from a black backdrop within a radius.
+/// A picture that differs from a black clean plate within a radius.
 Image disc_picture(double radius, float colour) {
     Image picture(Side, Side, 3);
     for (int y = 0; y < Side; ++y)
@@ -57,7 +57,7 @@ Image disc_picture(double radius, float colour) {
 }
 
 /// Radius of the disc that has as many pixels as the outline covers.
-double outline_radius(double threshold, Image picture, float backdrop = 0) {
+double outline_radius(double threshold, Image picture, float clean_plate = 0) {
     const edit::EditPlan plan;
     const auto request = test::asked("bear", "a cat on the grass", "cat");
     SlopingAttention attention(threshold);
@@ -65,12 +65,12 @@ double outline_radius(double threshold, Image picture, float backdrop = 0) {
     Image outline;
     const Image before = picture;
     edit::EditedViews drawn{{std::move(picture)}, {}, {}};
-    DOCTEST_REQUIRE(finder.take_out(grey_view(backdrop), drawn, 0, 1, &outline));
+    DOCTEST_REQUIRE(finder.take_out(grey_view(clean_plate), drawn, 0, 1, &outline));
     const Image& after = drawn.images.front();
     double covered = 0;
     for (const float share : outline.data) covered += share;
     DOCTEST_CHECK(after.at(Side / 2, Side / 2, 0) == before.at(Side / 2, Side / 2, 0));  // the thing stays,
-    DOCTEST_CHECK(after.at(1, 1, 0) == backdrop);  // what is beyond it becomes the backdrop
+    DOCTEST_CHECK(after.at(1, 1, 0) == clean_plate);  // what is beyond it becomes the clean plate
     return std::sqrt(covered / 3.141592653589793);
 }
 
@@ -82,7 +82,8 @@ constexpr double Pixel = 1;        // the softened rim is one wide
 }  // namespace
 
 DOCTEST_TEST_CASE(
-    "the new thing reaches as far as it differs from the backdrop, where the word is seen but not clearly") {
+    "the new thing reaches as far as it differs from the clean_plate, where the word is seen but not "
+    "clearly") {
     for (const auto& [threshold, radius] :
          {std::pair{0.5, 19.0}, std::pair{0.5, 20.5}, std::pair{0.7, 15.0}, std::pair{0.7, 17.0}}) {
         DOCTEST_REQUIRE(radius > radius_of(1.2 * threshold) + Pixel / 2);
@@ -147,7 +148,7 @@ DOCTEST_TEST_CASE("what differs where the word is not seen is not of the new thi
     }
 }
 
-DOCTEST_TEST_CASE("a thing of the backdrop's colour is where the word is seen clearly") {
+DOCTEST_TEST_CASE("a thing of the clean_plate's colour is where the word is seen clearly") {
     for (const double threshold : {0.3, 0.5, 0.7}) {
         const double radius = outline_radius(threshold, Image(Side, Side, 3, 0.5f), 0.5f);
         DOCTEST_CHECK(radius == doctest::Approx(radius_of(std::min(1.2 * threshold, (1 + threshold) / 2)))

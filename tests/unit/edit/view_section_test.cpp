@@ -66,7 +66,7 @@ DOCTEST_TEST_CASE("a section shows what the view shows there, and goes back to w
     DOCTEST_REQUIRE(section.side < Side);
     const auto part = cut_out_section(view, section);
     DOCTEST_CHECK(part.mask.count() == view.mask.count());
-    DOCTEST_CHECK(part.backdrop.picture.data.empty());
+    DOCTEST_CHECK(part.clean_plate.picture.data.empty());
     DOCTEST_CHECK(part.rendered.at(3, 5, 1) == view.rendered.at(section.left + 3, section.top + 5, 1));
     DOCTEST_CHECK(part.depth.at(3, 5, 0) == view.depth.at(section.left + 3, section.top + 5, 0));
     DOCTEST_CHECK(with_section(view.rendered, part.rendered, section).data == view.rendered.data);

@@ -125,26 +125,26 @@ DOCTEST_TEST_CASE(
 DOCTEST_TEST_CASE(
     "rows of what the old thing hid are told from those of the new one, and so are their descendants") {
     const auto scene = test::ball_scene(100, 0);
-    GaussianData seeds, hidden;
+    GaussianData seeds, hole_fill;
     for (std::size_t row = 0; row < 30; ++row) seeds.append_row(scene.set.to_data(), row);
-    for (std::size_t row = 30; row < 50; ++row) hidden.append_row(scene.set.to_data(), row);
+    for (std::size_t row = 30; row < 50; ++row) hole_fill.append_row(scene.set.to_data(), row);
     const auto request = restless_request();
     edit::WorkingSet set(scene.set, scene.first, {}, request, Extent);
     const auto marked = [&] {
         const auto snapshot = set.snapshot(scene.set, 0);
-        const auto bits = snapshot.hidden(), label = snapshot.label();
+        const auto bits = snapshot.hole_fill(), label = snapshot.label();
         DOCTEST_CHECK(bits.size() == snapshot.size());
         for (std::size_t row = 0; row < bits.size(); ++row) DOCTEST_CHECK(bits[row] <= label[row]);
         return std::count(bits.begin(), bits.end(), 1);
     };
     DOCTEST_CHECK(marked() == 0);
-    set.plant(seeds, hidden, -3);
+    set.plant(seeds, hole_fill, -3);
     DOCTEST_CHECK(set.table().complete());
     DOCTEST_CHECK(marked() == 20);
     const auto before = static_cast<std::size_t>(
         std::count(set.table().ancestor.begin(), set.table().ancestor.end(), edit::OfSeed));
     DOCTEST_CHECK(before == 30);
-    set.plant({}, hidden, -3);  // all that is born from here on descends from them, or from the base
+    set.plant({}, hole_fill, -3);  // all that is born from here on descends from them, or from the base
     Random random(3);
     step(set, request, random, 3);
     const auto count = set.densify(request, random, true);

@@ -204,7 +204,7 @@ DOCTEST_TEST_CASE(
         for (auto& [name, weight] : scene_input_weights(shapes.unet))
             if (name.starts_with("conv_inpaint.")) weight.normal_(0, 0.1);
         auto views = wall_views();
-        for (auto& view : views) view.backdrop.picture = Image(40, 40, 3, behind);
+        for (auto& view : views) view.clean_plate.picture = Image(40, 40, 3, behind);
         edit::EditViewsRequest input;
         input.steps = 2;
         input.anew = anew;
@@ -270,7 +270,7 @@ DOCTEST_TEST_CASE(
     auto shapes = *bundle;
     shapes.unet = with_scene_inputs(shapes.unet, false);
     auto views = wall_views();
-    for (auto& view : views) view.backdrop.picture = view.original;
+    for (auto& view : views) view.clean_plate.picture = view.original;
     const auto change_of = [&](bool anew, bool may_change, bool tells = true) {
         for (auto& view : views)
             std::fill(view.mask.data.begin(), view.mask.data.end(), std::uint8_t{may_change});
@@ -301,7 +301,7 @@ DOCTEST_TEST_CASE(
     auto shapes = *bundle;
     shapes.unet = with_scene_inputs(shapes.unet);
     auto views = wall_views();
-    for (auto& view : views) view.backdrop.picture = view.original;
+    for (auto& view : views) view.clean_plate.picture = view.original;
     edit::EditViewsRequest input;
     input.steps = 2;
     input.tells_changes = true;
@@ -338,7 +338,7 @@ DOCTEST_TEST_CASE(
     const auto plain = load_model(model.path(), "cpu");
     DOCTEST_CHECK_FALSE(plain->supports_scene_conditioning());
     auto views = wall_views();
-    for (auto& view : views) view.backdrop.picture = view.original;
+    for (auto& view : views) view.clean_plate.picture = view.original;
     const auto drawn = [&](const TextToImage& with, bool anew) {
         edit::EditViewsRequest input;
         input.steps = 2;

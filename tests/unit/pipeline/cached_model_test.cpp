@@ -252,8 +252,8 @@ DOCTEST_TEST_CASE("cached model: views drawn to find a place are kept, by all th
     Asked asked;
     std::vector<edit::EditView> views(2);
     for (auto& view : views) {
-        view.rendered = view.original = view.backdrop.picture = Image(6, 6, 3, 0.25f);
-        view.depth = view.backdrop.depth = Image(6, 6, 1, 2.0f);
+        view.rendered = view.original = view.clean_plate.picture = Image(6, 6, 3, 0.25f);
+        view.depth = view.clean_plate.depth = Image(6, 6, 1, 2.0f);
         view.mask = Mask(6, 6);
         view.view.camera.width = view.view.camera.height = 6;
     }
@@ -285,7 +285,7 @@ DOCTEST_TEST_CASE("cached model: views drawn to find a place are kept, by all th
     };
     DOCTEST_CHECK(changed([&] { views[1].rendered.data[5] = 0.5f; }));
     DOCTEST_CHECK(changed([&] { views[1].mask.data[5] = 1; }));
-    DOCTEST_CHECK(changed([&] { views[0].backdrop.picture.data[5] = 0.5f; }));
+    DOCTEST_CHECK(changed([&] { views[0].clean_plate.picture.data[5] = 0.5f; }));
     DOCTEST_CHECK(changed([&] { views[0].depth.data[5] = 1; }));
     DOCTEST_CHECK(changed([&] { views[0].azimuth = 0.5; }));
     DOCTEST_CHECK(changed([&] { views[0].elevation = 0.5; }));

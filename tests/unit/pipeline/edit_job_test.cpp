@@ -248,19 +248,19 @@ DOCTEST_TEST_CASE(
         DOCTEST_CHECK(sky(*search(false)) < 0.1f);
     }
     const auto whole = synth::generate({});
-    RunContext workplace(whole.scene, model, {});
-    workplace.look_for_ground(orbit_views({}, 4, 64, 64));
-    DOCTEST_CHECK_FALSE(workplace.ground("a bear").has_value());
+    RunContext context(whole.scene, model, {});
+    context.look_for_ground(orbit_views({}, 4, 64, 64));
+    DOCTEST_CHECK_FALSE(context.ground("a bear").has_value());
 }
 
 DOCTEST_TEST_CASE("the front is read off the scene where the recipe leaves it open") {
     auto recipe = check(bear_recipe(false));
     recipe.request.views = 8;
-    RunContext workplace(load_scene(assets_path() / "scenes/bear/scene.ply"), load_recipe_model({}),
-                         recipe.job);
+    RunContext context(load_scene(assets_path() / "scenes/bear/scene.ply"), load_recipe_model({}),
+                       recipe.job);
     const auto found = [&](const std::string& front) {
         recipe.job.front = front;
-        return locate(workplace, recipe, choose_views(workplace.scene(), recipe, {}), {}, {}).views;
+        return locate(context, recipe, choose_views(context.scene(), recipe, {}), {}, {}).views;
     };
     const Views read = found("");
     DOCTEST_REQUIRE(read.front_read);
@@ -434,35 +434,35 @@ DOCTEST_TEST_CASE("stages: each is a value that names what it follows from, and 
     written.request.views = 6;
     written.request.iterations = 3;
     const auto recipe = check(written);
-    RunContext workplace(load_scene(assets_path() / "scenes/bear/scene.ply"), load_recipe_model({}),
-                         recipe.job);
-    const Views views = choose_views(workplace.scene(), recipe, {});
-    DOCTEST_CHECK(choose_views(workplace.scene(), recipe, {}).key == views.key);
+    RunContext context(load_scene(assets_path() / "scenes/bear/scene.ply"), load_recipe_model({}),
+                       recipe.job);
+    const Views views = choose_views(context.scene(), recipe, {});
+    DOCTEST_CHECK(choose_views(context.scene(), recipe, {}).key == views.key);
     auto turned = recipe;
     turned.job.front = "90";
-    DOCTEST_CHECK(choose_views(workplace.scene(), turned, {}).key != views.key);  // the views have words now
+    DOCTEST_CHECK(choose_views(context.scene(), turned, {}).key != views.key);  // the views have words now
     DOCTEST_CHECK(views_on(nearer(views.orbit, 0.7), recipe).key != views.key);
 
-    const Located located = locate(workplace, recipe, views, {}, {});
+    const Located located = locate(context, recipe, views, {}, {});
     const auto bits = *located.result.label.bits;
     DOCTEST_REQUIRE_MESSAGE(located.found(), located.result.message);
-    const auto asked = workplace.questions();
+    const auto asked = context.questions();
     auto stricter = located.recipe;
-    stricter.request.attention_threshold = workplace.stated_threshold() + 0.2;
-    const Located again = locate_again(workplace, located, stricter, {});
-    DOCTEST_CHECK(workplace.questions() == asked);  // no network is asked for a threshold
+    stricter.request.attention_threshold = context.stated_threshold() + 0.2;
+    const Located again = locate_again(context, located, stricter, {});
+    DOCTEST_CHECK(context.questions() == asked);  // no network is asked for a threshold
     DOCTEST_CHECK(again.key != located.key);
     DOCTEST_CHECK(*again.result.label.bits != bits);
     DOCTEST_CHECK(*located.result.label.bits == bits);  // a value stays what it is
-    DOCTEST_CHECK(locate_again(workplace, again, located.recipe, {}).key == located.key);
+    DOCTEST_CHECK(locate_again(context, again, located.recipe, {}).key == located.key);
     DOCTEST_CHECK(with_label(located, std::vector<std::uint8_t>(bits.size(), 1)).key != located.key);
 
-    const auto plan = plan_of(workplace, located, recipe);
-    const Edited edited = edit_scene(workplace, located, plan, recipe, {}, {});
-    DOCTEST_CHECK(edit_scene(workplace, located, plan, recipe, {}, {}).key == edited.key);
+    const auto plan = plan_of(context, located, recipe);
+    const Edited edited = edit_scene(context, located, plan, recipe, {}, {});
+    DOCTEST_CHECK(edit_scene(context, located, plan, recipe, {}, {}).key == edited.key);
     auto slower = recipe;
     slower.request.rate_colour = 0.5 * slower.request.rate_colour;
-    const Edited other = edit_scene(workplace, located, plan, slower, {}, {});
+    const Edited other = edit_scene(context, located, plan, slower, {}, {});
     DOCTEST_CHECK(other.key != edited.key);
     DOCTEST_CHECK(!std::equal(other.result.set.sh().begin(), other.result.set.sh().end(),
                               edited.result.set.sh().begin()));

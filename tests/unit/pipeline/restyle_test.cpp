@@ -62,7 +62,7 @@ public:
     bool supports_scene_conditioning() const override { return model_->supports_scene_conditioning(); }
     bool supports_appearance_editing() const override { return true; }
     std::vector<std::string> known_words() const override { return model_->known_words(); }
-    std::vector<std::string> drawn_words() const override { return model_->drawn_words(); }
+    std::vector<std::string> generated_vocabulary() const override { return model_->generated_vocabulary(); }
     int image_size() const override { return model_->image_size(); }
     std::string name() const override { return model_->name(); }
     neural::BundleKind kind() const override { return model_->kind(); }
@@ -104,10 +104,10 @@ public:
     edit::EditedViews edit(const std::vector<edit::EditView>& views, const edit::EditViewsRequest& input,
                            const JobControl& job) override {
         const auto& first = views.front();
-        if (first.rendered.data == first.backdrop.picture.data) return guidance_->edit(views, input, job);
+        if (first.rendered.data == first.clean_plate.picture.data) return guidance_->edit(views, input, job);
         edit::EditedViews targets;
         for (const auto& view : views) {
-            targets.images.push_back(draws_lumps ? view.rendered : view.backdrop.picture);
+            targets.images.push_back(draws_lumps ? view.rendered : view.clean_plate.picture);
             if (draws_lumps)
                 for (std::size_t i = 0; i + 2 < targets.images.back().data.size(); i += 3)
                     std::swap(targets.images.back().data[i], targets.images.back().data[i + 2]);

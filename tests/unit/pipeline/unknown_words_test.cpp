@@ -158,7 +158,7 @@ DOCTEST_TEST_CASE(
     "does not judge it") {
     if (neural_library().empty() || !test::available(starter_model_path() / "model_index.json")) return;
     const auto model = load_recipe_model({});
-    const auto drawn = model->drawn_words(), known = model->known_words();
+    const auto drawn = model->generated_vocabulary(), known = model->known_words();
     DOCTEST_REQUIRE(std::find(drawn.begin(), drawn.end(), "frog") != drawn.end());
     DOCTEST_CHECK(std::find(known.begin(), known.end(), "frog") == known.end());
     for (const auto& word : drawn) DOCTEST_CHECK(std::find(known.begin(), known.end(), word) == known.end());

@@ -6,7 +6,7 @@
 #include "engine/base/fields.h"
 #include "engine/scene/label_ops.h"
 
-namespace reach_test {
+namespace edit_scope_test {
 
 namespace {
 
@@ -141,4 +141,4 @@ DOCTEST_TEST_CASE("the label of a thing that the model drew and cannot find says
     DOCTEST_CHECK(stands_alone(painted("label"), about("bear", "golden"), Known));
 }
 
-}  // namespace reach_test
+}  // namespace edit_scope_test

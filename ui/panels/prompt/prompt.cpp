@@ -41,11 +41,11 @@ void draw_unknown_source(Context& context) {
         dim_text(fmt::format("The model cannot find \"{}\": the label says where it is.", word));
         return;
     }
-    coloured_text(
-        palette::Warning,
-        language::vocabulary_contains(context.model.drawn_words, word) && !context.model.drawn_words.empty()
-            ? fmt::format("The model can draw \"{}\" but not find it.", word)
-            : fmt::format("The model does not know \"{}\" and cannot find it.", word));
+    coloured_text(palette::Warning,
+                  language::vocabulary_contains(context.model.generated_vocabulary, word) &&
+                          !context.model.generated_vocabulary.empty()
+                      ? fmt::format("The model can draw \"{}\" but not find it.", word)
+                      : fmt::format("The model does not know \"{}\" and cannot find it.", word));
     for (std::size_t i = 0; i < prompt.source_suggestions.size(); ++i) {
         const auto& suggestion = prompt.source_suggestions[i];
         const std::string text = fmt::format("Use \"{}\"", suggestion);
@@ -327,20 +327,20 @@ void draw_estimate(Context& context) {
 
 /// Which label the edit will change, or what it searches for; empty = that cannot be said yet.
 std::string reach_text(const Context& context) {
-    const auto& reach = context.model.reach;
+    const auto& scope = context.model.scope;
     const auto planned = as_planned(context);
     const auto word = language::normalised_prompt(planned.source.empty() ? planned.target : planned.source);
     if (!context.scene_open() || word.empty() || context.model.job.running) return {};
-    if (!reach.by_label && !context.state.prompt.source_known)
-        return reach.label.empty() ? std::string() : fmt::format("No label is named \"{}\".", word);
+    if (!scope.by_label && !context.state.prompt.source_known)
+        return scope.label.empty() ? std::string() : fmt::format("No label is named \"{}\".", word);
     if (edit::planned_mode(planned) == edit::EditMode::Add)
         return fmt::format(
             "Adds \"{}\" where a search places it.{}", language::normalised_prompt(planned.target),
-            reach.corrected ? " What was set by hand in the label does not count for that." : "");
-    if (reach.by_label)
+            scope.corrected ? " What was set by hand in the label does not count for that." : "");
+    if (scope.by_label)
         return fmt::format(
-            "May change: label \"{}\", {} splats{}.", reach.label, count_text(reach.splats),
-            reach.shown.empty() ? std::string() : fmt::format("; label \"{}\" stays", reach.shown));
+            "May change: label \"{}\", {} splats{}.", scope.label, count_text(scope.splats),
+            scope.shown.empty() ? std::string() : fmt::format("; label \"{}\" stays", scope.shown));
     return fmt::format("Will search for \"{}\" first.", word);
 }
 
@@ -355,12 +355,12 @@ std::string plan_text(const Context& context) {
 
 /// The other way; empty = there is none.
 std::string other_reach(const Context& context) {
-    const auto& reach = context.model.reach;
+    const auto& scope = context.model.scope;
     if (reach_text(context).empty() || edit::planned_mode(as_planned(context)) == edit::EditMode::Add)
         return {};
-    if (!reach.by_label)
-        return reach.label.empty() ? std::string()
-                                   : fmt::format("Use label \"{}\"", shortened(reach.label, context.em * 7));
+    if (!scope.by_label)
+        return scope.label.empty() ? std::string()
+                                   : fmt::format("Use label \"{}\"", shortened(scope.label, context.em * 7));
     return context.state.prompt.source_known ? "Ignore label" : "";
 }
 
@@ -386,16 +386,16 @@ void draw_reach(Context& context) {
     const bool in_line = !other.empty() && reach_in_line(text, other);
     if (in_line) ImGui::AlignTextToFramePadding();
     wrapped_text(text);
-    note(context, "prompt.reach");
+    note(context, "prompt.scope");
     if (other.empty()) return;
     if (in_line) ImGui::SameLine();
-    const bool by_label = context.model.reach.by_label;
+    const bool by_label = context.model.scope.by_label;
     if (button(context,
-               {.name = "prompt.reach.other",
+               {.name = "prompt.scope.other",
                 .text = other,
                 .tooltip = by_label ? "The words say what may change: they are looked for in all views"
                                     : "What this label marks may change, whatever the words find"}))
-        context.emit(command::SetReach{!by_label});
+        context.emit(command::SetScope{!by_label});
 }
 
 void draw_run(Context& context) {

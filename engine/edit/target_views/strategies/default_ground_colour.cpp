@@ -33,8 +33,9 @@ float median_luminance(const std::vector<EditView>& views) {
 
 }  // namespace
 
-std::optional<std::array<float, 3>> usual_look(const language::EditSentence& sentence,
-                                               language::EditMode mode, const ModelTraits& traits) {
+std::optional<std::array<float, 3>> default_ground_colour(const language::EditSentence& sentence,
+                                                          language::EditMode mode,
+                                                          const ModelTraits& traits) {
     if (mode != language::EditMode::Modify || language::is_described(sentence.prompt(), sentence.target()))
         return std::nullopt;
     const auto found = traits.ground_colours.find(sentence.target());

@@ -17,8 +17,8 @@ namespace gse::edit {
 /// Colour, display values in [0,1], of the ground that an edit makes of another ("snow" for the
 /// grass). None if it makes something else, if that ground has no usual colour, or if the sentence says its
 /// colour ("red sand").
-std::optional<std::array<float, 3>> usual_look(const language::EditSentence& sentence,
-                                               language::EditMode mode, const ModelTraits& traits);
+std::optional<std::array<float, 3>> default_ground_colour(const language::EditSentence& sentence,
+                                                          language::EditMode mode, const ModelTraits& traits);
 
 /// Share of the way to the colour that redrawn views have gone, in their changed pixels. 1 = all of it; below
 /// 0 = away from it. 1 if they began near it.

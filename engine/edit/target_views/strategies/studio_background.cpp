@@ -140,16 +140,17 @@ EditedViews OnPlainGround::draw_anew(const std::vector<EditView>& views, const E
                                      const JobControl& job) {
     auto plain = views;
     for (auto& view : plain) {
-        const auto& behind = view.backdrop;
-        view.backdrop.picture = shown_ == BeforePlain::Scene
-                                    ? before_plain(plain_, view.view.camera, behind.picture, behind.depth)
-                                    : picture_of(plain_, view.view.camera);
-        view.rendered = view.original = view.backdrop.picture;
+        const auto& behind = view.clean_plate;
+        view.clean_plate.picture = shown_ == BeforePlain::Scene
+                                       ? before_plain(plain_, view.view.camera, behind.picture, behind.depth)
+                                       : picture_of(plain_, view.view.camera);
+        view.rendered = view.original = view.clean_plate.picture;
     }
     auto drawn = guidance_.edit(plain, input, job);
     if (drawn.outlines.empty()) return guidance_.edit(views, input, job);
     for (std::size_t v = 0; v < views.size(); ++v)
-        move_before(views[v].backdrop.picture, plain[v].backdrop.picture, drawn.outlines[v], drawn.images[v]);
+        move_before(views[v].clean_plate.picture, plain[v].clean_plate.picture, drawn.outlines[v],
+                    drawn.images[v]);
     return drawn;
 }
 

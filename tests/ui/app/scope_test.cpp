@@ -6,7 +6,7 @@
 #include "engine/scene/label_ops.h"
 #include "tests/ui/app/session.h"
 
-namespace reach_test {
+namespace scope_test {
 
 using namespace gse;
 using namespace gse::test;
@@ -62,9 +62,9 @@ DOCTEST_TEST_CASE("what an addition left behind is not what the next edit of ano
     request.prompt = "a golden bear";
     app.run(command::SetRequest{request});
     app.update(session.preview);
-    DOCTEST_CHECK(app.model().reach.by_label);
-    DOCTEST_CHECK(app.model().reach.label == "bear");  // its own thing's label is used,
-    DOCTEST_CHECK(app.model().reach.shown == "hat");   // not the one that is shown
+    DOCTEST_CHECK(app.model().scope.by_label);
+    DOCTEST_CHECK(app.model().scope.label == "bear");  // its own thing's label is used,
+    DOCTEST_CHECK(app.model().scope.shown == "hat");   // not the one that is shown
     const auto hat = *active(app).bits;
     app.run(command::Edit{});
     DOCTEST_REQUIRE(session.idle());
@@ -104,24 +104,24 @@ DOCTEST_TEST_CASE("an addition beside a thing that the model does not know is no
     request.mode = "auto";
     app.run(command::SetRequest{request});
     app.update(session.preview);
-    DOCTEST_CHECK(app.model().reach.by_label);
-    DOCTEST_CHECK(app.model().reach.label == name);
-    DOCTEST_CHECK(app.model().reach.shown == "hat");
+    DOCTEST_CHECK(app.model().scope.by_label);
+    DOCTEST_CHECK(app.model().scope.label == name);
+    DOCTEST_CHECK(app.model().scope.shown == "hat");
     request.source = "hat";  // a follow-up about the addition
     app.run(command::SetRequest{request});
     app.update(session.preview);
-    DOCTEST_CHECK(app.model().reach.by_label);
-    DOCTEST_CHECK(app.model().reach.label == "hat");
-    DOCTEST_CHECK(app.model().reach.shown.empty());
+    DOCTEST_CHECK(app.model().scope.by_label);
+    DOCTEST_CHECK(app.model().scope.label == "hat");
+    DOCTEST_CHECK(app.model().scope.shown.empty());
     request.source = "panda";
     request.prompt = "a panda wearing a red hat";
     request.target = "hat";
     app.run(command::SetRequest{request});
     app.update(session.preview);
-    DOCTEST_CHECK(app.model().reach.present == "hat");  // a second one is asked about
+    DOCTEST_CHECK(app.model().scope.present == "hat");  // a second one is asked about
     app.run(command::Undo{});
     app.update(session.preview);
-    DOCTEST_CHECK(app.model().reach.present.empty());
+    DOCTEST_CHECK(app.model().scope.present.empty());
     app.shut_down();
 }
 
@@ -140,7 +140,7 @@ DOCTEST_TEST_CASE("the panel's word counts when Edit is pressed: another source 
     request.iterations = 2;
     app.run(command::SetRequest{request});
     app.update(session.preview);
-    DOCTEST_REQUIRE_FALSE(app.model().reach.by_label);
+    DOCTEST_REQUIRE_FALSE(app.model().scope.by_label);
     app.run(command::Edit{});
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK(active(app).name == "grass");
@@ -184,9 +184,9 @@ DOCTEST_TEST_CASE(
     const auto corrected = *active(app).bits;
     app.run(command::RenameLabel{app.document().state().active_label, "Bruno"});
     app.update(session.preview);
-    DOCTEST_CHECK(app.model().reach.by_label);
-    DOCTEST_CHECK(app.model().reach.label == "Bruno");
-    DOCTEST_CHECK(app.model().reach.splats == count_labelled(active(app)));
+    DOCTEST_CHECK(app.model().scope.by_label);
+    DOCTEST_CHECK(app.model().scope.label == "Bruno");
+    DOCTEST_CHECK(app.model().scope.splats == count_labelled(active(app)));
     app.run(command::Edit{});
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK(app.document().state().labels.size() == 1);
@@ -207,7 +207,7 @@ DOCTEST_TEST_CASE(
     app.run(command::Open{place.folder / "bruno.gsep"});
     DOCTEST_REQUIRE(session.idle());
     app.update(session.preview);
-    DOCTEST_CHECK(app.model().reach.by_label);  // the project keeps the connection
+    DOCTEST_CHECK(app.model().scope.by_label);  // the project keeps the connection
     app.shut_down();
 }
 
@@ -220,23 +220,23 @@ DOCTEST_TEST_CASE(
     app.run(command::AddLabel{"label"});
     app.run(command::Select{stroke_over_bear(20), ui::SetOperation::Add, true});
     app.update(session.preview);
-    DOCTEST_CHECK(app.model().reach.by_label);
-    app.run(command::SetReach{false});
+    DOCTEST_CHECK(app.model().scope.by_label);
+    app.run(command::SetScope{false});
     app.update(session.preview);
-    DOCTEST_CHECK_FALSE(app.model().reach.by_label);
-    app.run(command::SetReach{true});
+    DOCTEST_CHECK_FALSE(app.model().scope.by_label);
+    app.run(command::SetScope{true});
     app.update(session.preview);
-    DOCTEST_CHECK(app.model().reach.by_label);
+    DOCTEST_CHECK(app.model().scope.by_label);
     auto request = app.model().request;
     request.source = "grass";
     app.run(command::SetRequest{request});
     app.update(session.preview);
-    DOCTEST_CHECK_FALSE(app.model().reach.by_label);
+    DOCTEST_CHECK_FALSE(app.model().scope.by_label);
     app.run(command::OpenSample{});  // another document: nothing is labelled there
     DOCTEST_REQUIRE(session.until([&] { return app.document().state().labels.empty(); }));
     app.update(session.preview);
-    DOCTEST_CHECK(app.model().reach.label.empty());
+    DOCTEST_CHECK(app.model().scope.label.empty());
     app.shut_down();
 }
 
-}  // namespace reach_test
+}  // namespace scope_test

@@ -7,7 +7,7 @@
 
 #include "engine/edit/target_views/strategies/default_ground_colour.h"
 
-namespace usual_look_test {
+namespace default_ground_colour_test {
 
 using namespace gse;
 using Rgb = std::array<float, 3>;
@@ -16,7 +16,8 @@ constexpr double Rounding = 1e-5;  // of a few float operations on values up to 
 
 std::optional<Rgb> look(const char* prompt, const char* target,
                         edit::EditMode mode = edit::EditMode::Modify) {
-    return edit::usual_look({language::Sentence(prompt), "grass", target}, mode, edit::ModelTraits{});
+    return edit::default_ground_colour({language::Sentence(prompt), "grass", target}, mode,
+                                       edit::ModelTraits{});
 }
 
 /// A grey ramp of 8x8, times `light`; its lower half may change.
@@ -87,4 +88,4 @@ DOCTEST_TEST_CASE("how far pictures went towards a colour") {
     DOCTEST_CHECK(gone(0.86f, 0.8f) == 1);  // it began there
 }
 
-}  // namespace usual_look_test
+}  // namespace default_ground_colour_test
