@@ -36,8 +36,8 @@ std::vector<std::uint8_t> new_rows_apart(const edit::EditResult& result) {
     std::vector<std::uint8_t> old(result.set.size(), 0), apart;
     for (const auto row : result.base_to_new)
         if (row >= 0) old[static_cast<std::size_t>(row)] = 1;
-    for (std::size_t row = 0; row < old.size() && row < result.hidden.size(); ++row)
-        if (old[row] == 0) apart.push_back(result.hidden[row]);
+    for (std::size_t row = 0; row < old.size() && row < result.hole_fill.size(); ++row)
+        if (old[row] == 0) apart.push_back(result.hole_fill[row]);
     return apart;
 }
 

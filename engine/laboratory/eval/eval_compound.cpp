@@ -167,8 +167,8 @@ EvalCase case_of_step(const synth::SceneSpec& source, const language::plan::Step
 std::vector<synth::Part> parts_after(const std::vector<synth::Part>& before, const edit::EditResult& result,
                                      synth::Part part) {
     std::vector<synth::Part> parts(result.set.size(), part);
-    for (std::size_t row = 0; row < parts.size() && row < result.hidden.size(); ++row)
-        if (result.hidden[row] != 0) parts[row] = synth::Part::Ground;
+    for (std::size_t row = 0; row < parts.size() && row < result.hole_fill.size(); ++row)
+        if (result.hole_fill[row] != 0) parts[row] = synth::Part::Ground;
     for (std::size_t row = 0; row < before.size(); ++row)
         if (result.base_to_new[row] >= 0)
             parts[static_cast<std::size_t>(result.base_to_new[row])] = before[row];

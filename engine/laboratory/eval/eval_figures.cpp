@@ -195,7 +195,7 @@ void add_silhouette(const EvalSetting& setting, const edit::EditResult& result, 
                     pipeline::Painter& painter, Json& json) {
     PooledOverlap overlap;
     auto thing = result.label;
-    for (std::size_t row = 0; row < thing.size(); ++row) thing[row] &= result.hidden[row] == 0 ? 1 : 0;
+    for (std::size_t row = 0; row < thing.size(); ++row) thing[row] &= result.hole_fill[row] == 0 ? 1 : 0;
     for (std::size_t v = 0; v < seen.part.size(); ++v) {
         const Camera& camera = setting.held_out.views[v].camera;
         overlap.add(mask_of_rows(painter, result.set, thing, camera, PartShare), seen.part[v]);

@@ -60,7 +60,7 @@ public:
         json["rows_changed_outside"] = job_.result().changed_outside_label;
         json["rows_removed_lit"] = removed(0);
         json["rows_removed_far"] = removed(FarAway * extent_.longest());
-        json["rows_added"] = count_of(job_.result().hidden);
+        json["rows_added"] = count_of(job_.result().hole_fill);
         if (edit_.asked.things > 0) add_maps(json);
         if (const auto front = job_.front_read())
             json["front_error_degrees"] =
@@ -132,7 +132,7 @@ private:
             result.base_to_new.begin(), result.base_to_new.end(), [](std::int64_t row) { return row >= 0; }));
         const auto copies = static_cast<std::size_t>(edit_.asked.things - 1);
         const std::size_t rows =
-            copies > 0 ? (result.set.size() - staying - count_of(result.hidden)) / copies : 0;
+            copies > 0 ? (result.set.size() - staying - count_of(result.hole_fill)) / copies : 0;
         std::vector<RowPairs> list(copies);
         for (std::size_t copy = 0; copy < copies; ++copy) {
             std::size_t next = staying + copy * rows;

@@ -173,7 +173,7 @@ struct ShapeEdit {
     Figures figures(const edit::EditResult& result) {
         double both = 0, either = 0, before = 0, after = 0, squared = 0, outside = 0;
         auto thing = result.label;
-        for (std::size_t row = 0; row < thing.size(); ++row) thing[row] &= result.hidden[row] == 0 ? 1 : 0;
+        for (std::size_t row = 0; row < thing.size(); ++row) thing[row] &= result.hole_fill[row] == 0 ? 1 : 0;
         for (const auto& view : ring(source, 12, 0.5)) {
             const Mask wanted =
                 mask_of(*rasterizer, target.scene.gaussians, rows_of(target, part), view.camera);
@@ -234,7 +234,7 @@ DOCTEST_TEST_CASE("a thing becomes another: the outline, the colours, and nothin
         DOCTEST_CHECK(figures.error_removed > 0.7);
         DOCTEST_CHECK(figures.psnr_outside_db > 35);
         // All of the ground is there.
-        DOCTEST_CHECK(std::count(result.hidden.begin(), result.hidden.end(), std::uint8_t{1}) == 0);
+        DOCTEST_CHECK(std::count(result.hole_fill.begin(), result.hole_fill.end(), std::uint8_t{1}) == 0);
         DOCTEST_CHECK(result.changed_outside_label == 0);
         DOCTEST_CHECK(result.nonfinite == 0);
         DOCTEST_REQUIRE(run.views.inputs.size() == static_cast<std::size_t>(run.request.shape_rounds));
@@ -258,8 +258,8 @@ DOCTEST_TEST_CASE("the ground that went with the old thing is put back, flat and
     DOCTEST_CHECK(figures.outline_iou > 0.8);
     DOCTEST_CHECK(figures.error_removed > 0.7);
     std::size_t count = 0;
-    for (std::size_t row = 0; row < result.hidden.size(); ++row) {
-        if (result.hidden[row] == 0) continue;
+    for (std::size_t row = 0; row < result.hole_fill.size(); ++row) {
+        if (result.hole_fill[row] == 0) continue;
         ++count;
         DOCTEST_CHECK(std::abs(result.set.position()[row * 3 + 1] - middle.y) < 0.05);
     }

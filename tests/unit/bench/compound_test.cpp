@@ -49,7 +49,7 @@ edit::EditResult unchanged(std::size_t count) {
     for (std::size_t row = 0; row < count; ++row) data.position[row * 3] = static_cast<float>(row);
     result.set = GaussianSet(std::move(data));
     result.label.assign(count, 0);
-    result.hidden.assign(count, 0);
+    result.hole_fill.assign(count, 0);
     for (std::size_t row = 0; row < count; ++row)
         result.base_to_new.push_back(static_cast<std::int64_t>(row));
     return result;
@@ -110,7 +110,7 @@ DOCTEST_TEST_CASE("new splats belong to what the step makes, and ground that was
     using synth::Part;
     auto result = unchanged(4);
     result.base_to_new = {0, -1, 1};  // the middle one is gone; two are new
-    result.hidden[3] = 1;
+    result.hole_fill[3] = 1;
     const auto parts = parts_after({Part::Ground, Part::Object, Part::Object}, result, Part::Accessory);
     DOCTEST_CHECK(parts == std::vector<Part>{Part::Ground, Part::Object, Part::Accessory, Part::Ground});
 }
@@ -126,7 +126,7 @@ DOCTEST_TEST_CASE("splats of an earlier step count as lost when a later one touc
     for (std::size_t row = 0; row < 4; ++row) data.position[row * 3] = places[row];
     second.set = GaussianSet(std::move(data));
     second.label.assign(4, 0);
-    second.hidden.assign(4, 0);
+    second.hole_fill.assign(4, 0);
     const auto kept = kept_rows({{&first, {0, 1, 0, 0, 1}}, {&second, {}}}, 0);
     DOCTEST_CHECK(kept.rows == 4);
     DOCTEST_CHECK(kept.met == 1);   // row 1: the later step may change it

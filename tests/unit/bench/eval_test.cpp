@@ -188,7 +188,7 @@ DOCTEST_TEST_CASE("of a new thing the true scene is taken in the heading and siz
     edit::EditResult result;
     result.set = edited.scene.gaussians;
     result.label = rows_of(edited, synth::Part::Object);
-    result.hidden.assign(result.label.size(), 0);
+    result.hole_fill.assign(result.label.size(), 0);
     result.base_to_new.assign(setting.source.scene.gaussians.size(), -1);
     const auto perfect = edited_figures(setting, plan, result, {painter});
     DOCTEST_CHECK(perfect["silhouette_iou"].get<double>() == doctest::Approx(1));
@@ -202,12 +202,12 @@ DOCTEST_TEST_CASE("of a new thing the true scene is taken in the heading and siz
     DOCTEST_CHECK(perfect["mean_truth"]["old_left"].get<double>() < 0.5);
     const auto ground = rows_of(edited, synth::Part::Ground);  // what closes holes is no part of the thing
     for (std::size_t row = 0; row < ground.size(); ++row)
-        result.label[row] |= ground[row], result.hidden[row] = ground[row];
+        result.label[row] |= ground[row], result.hole_fill[row] = ground[row];
     DOCTEST_CHECK(edited_figures(setting, plan, result, {painter})["silhouette_iou"].get<double>() ==
                   doctest::Approx(1));
     result.set = setting.source.scene.gaussians;
     result.label = rows_of(setting.source, synth::Part::Object);
-    result.hidden.assign(result.label.size(), 0);
+    result.hole_fill.assign(result.label.size(), 0);
     std::iota(result.base_to_new.begin(), result.base_to_new.end(), std::int64_t{0});
     const auto nothing = edited_figures(setting, plan, result, {painter});
     DOCTEST_CHECK(nothing["silhouette_iou"].get<double>() < 0.9);

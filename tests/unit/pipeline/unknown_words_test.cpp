@@ -179,7 +179,7 @@ DOCTEST_TEST_CASE(
     const std::size_t stride = set.sh().size() / set.size();
     double green = 0, all = 0;
     for (std::size_t row = 0; row < set.size(); ++row) {
-        if (job.result().label[row] == 0 || job.result().hidden[row] != 0)
+        if (job.result().label[row] == 0 || job.result().hole_fill[row] != 0)
             continue;  // not the ground that the bear hid
         const float* sh = &set.sh()[row * stride];
         all += 1, green += sh[1] > sh[0] && sh[1] > sh[2] ? 1 : 0;
