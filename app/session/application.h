@@ -18,8 +18,8 @@
 #include "app/session/search_controller.h"
 #include "app/session/state/workspace.h"
 #include "app/session/view_controller.h"
-#include "ui/commands/command.h"
-#include "ui/view_model.h"
+#include "ui/model/command.h"
+#include "ui/model/view_model.h"
 
 namespace gse::app {
 

@@ -16,7 +16,7 @@
 #include "engine/neural/api/model_profile.h"
 #include "engine/pipeline/models/recipe_model.h"
 #include "engine/pipeline/recipe/recipe.h"
-#include "ui/model_settings.h"
+#include "ui/model/model_settings.h"
 
 namespace gse::app {
 

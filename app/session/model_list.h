@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "ui/view_model.h"
+#include "ui/model/view_model.h"
 
 namespace gse::app {
 

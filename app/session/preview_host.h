@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/scene/gaussian_set.h"
-#include "ui/view_model.h"
+#include "ui/model/view_model.h"
 
 namespace gse::app {
 

@@ -23,7 +23,7 @@
 #include "engine/pipeline/models/model_words.h"
 #include "engine/pipeline/models/neural_loader.h"
 #include "engine/scene/label_ops.h"
-#include "ui/sentence.h"
+#include "ui/state/sentence.h"
 #include "ui/widgets/controls.h"
 
 namespace gse::app {

@@ -21,9 +21,9 @@
 #include "engine/vulkan/device.h"
 #include "engine/vulkan/error.h"
 #include "engine/window/window.h"
-#include "ui/foreign_fonts.h"
-#include "ui/shell.h"
-#include "ui/theme.h"
+#include "ui/model/foreign_fonts.h"
+#include "ui/frame/shell.h"
+#include "ui/model/theme.h"
 
 namespace gse::app {
 namespace {

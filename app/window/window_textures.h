@@ -11,7 +11,7 @@
 #include "app/engine_names.h"
 #include "engine/vulkan/resources.h"
 #include "engine/window/window.h"
-#include "ui/view_model.h"
+#include "ui/model/view_model.h"
 
 namespace gse::app {
 

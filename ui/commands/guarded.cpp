@@ -12,8 +12,8 @@
 #include "engine/scene/framing.h"
 #include "engine/scene/label_ops.h"
 #include "engine/scene/viewpoints.h"
-#include "ui/sentence.h"
-#include "ui/state.h"
+#include "ui/state/sentence.h"
+#include "ui/state/state.h"
 
 namespace gse::ui {
 namespace {

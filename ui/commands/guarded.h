@@ -4,9 +4,9 @@
 #include <functional>
 #include <string>
 
-#include "ui/context.h"
+#include "ui/model/context.h"
 #include "ui/keys/keys.h"
-#include "ui/sentence.h"
+#include "ui/state/sentence.h"
 
 namespace gse::ui {
 

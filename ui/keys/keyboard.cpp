@@ -5,9 +5,8 @@
 
 #include <algorithm>
 
-#include "ui/context.h"
+#include "ui/model/context.h"
 #include "ui/keys/keys.h"
-#include "ui/state.h"
 
 namespace gse::ui {
 namespace {
@@ -57,13 +56,13 @@ void focus(Context& context, const FocusStop& stop) {
         g.NavNextActivateId = stop.id;
         g.NavNextActivateFlags = ImGuiActivateFlags_PreferInput | ImGuiActivateFlags_TryToPreserveState;
     }
-    context.state.keyboard.on = true;
+    context.keyboard.on = true;
 }
 
 /// Control `step` stops further among those that `wanted` accepts, around the end. Nothing when there is
 /// none.
 template <class Wanted> void move_focus(Context& context, int from, int step, Wanted&& wanted) {
-    const auto& stops = context.state.keyboard.stops;
+    const auto& stops = context.keyboard.stops;
     const int count = static_cast<int>(stops.size());
     for (int tried = 1; tried <= count; ++tried) {
         const int at = ((from + step * tried) % count + count) % count;
@@ -74,7 +73,7 @@ template <class Wanted> void move_focus(Context& context, int from, int step, Wa
 
 /// Start of Tab: the control that has the focus or was used last, else just before the prompt.
 int start_of(const Context& context, int step) {
-    const auto& stops = context.state.keyboard.stops;
+    const auto& stops = context.keyboard.stops;
     const ImGuiContext& g = *ImGui::GetCurrentContext();
     const bool used = focus_shown() || g.ActiveId != 0;
     const int here = used ? index_of(stops, g.NavId) : -1;
@@ -93,7 +92,7 @@ void tab(Context& context) {
 }
 
 void next_area(Context& context) {
-    const auto& stops = context.state.keyboard.stops;
+    const auto& stops = context.keyboard.stops;
     if (stops.empty() || keeper() != nullptr) return;
     const int from = start_of(context, 1), step = ImGui::GetIO().KeyShift ? -1 : 1;
     const ImGuiWindow* here =
@@ -103,7 +102,7 @@ void next_area(Context& context) {
 
 /// Notes that Alt was pressed and let go with nothing else between.
 void watch_alt(Context& context) {
-    auto& keyboard = context.state.keyboard;
+    auto& keyboard = context.keyboard;
     const auto& io = ImGui::GetIO();
     ImGuiContext& g = *ImGui::GetCurrentContext();
     g.NavWindowingToggleLayer = false;  // ImGui would toggle on Alt + wheel and Alt + drag too
@@ -142,8 +141,8 @@ void press_focused(Context& context) {
     }
     const bool enter = pressed(key::Enter) || pressed(key::KeypadEnter);
     if (!enter || !focus_shown() || g.ActiveId != 0) return;
-    const int at = index_of(context.state.keyboard.stops, g.NavId);
-    if (at >= 0 && context.state.keyboard.stops[static_cast<std::size_t>(at)].inputable) return;
+    const int at = index_of(context.keyboard.stops, g.NavId);
+    if (at >= 0 && context.keyboard.stops[static_cast<std::size_t>(at)].inputable) return;
     g.NavActivateId = g.NavActivateDownId = g.NavActivatePressedId = g.NavId;
     g.NavActivateInputId = 0;
     g.NavActivateFlags = ImGuiActivateFlags_None;
@@ -151,7 +150,7 @@ void press_focused(Context& context) {
 
 /// Left and Right in a menu lead to its neighbour in the bar, which ImGui leaves closed.
 void walk_menus(Context& context) {
-    auto& keyboard = context.state.keyboard;
+    auto& keyboard = context.keyboard;
     const ImGuiContext& g = *ImGui::GetCurrentContext();
     constexpr int Frames = 6;  // until ImGui has moved
     const ImGuiWindow* top = g.OpenPopupStack.Size > 0 ? g.OpenPopupStack.back().Window : nullptr;
@@ -165,7 +164,7 @@ void leave(Context& context) {
     ImGuiContext& g = *ImGui::GetCurrentContext();
     g.NavId = 0;
     g.NavDisableHighlight = true;
-    context.state.keyboard.on = false;
+    context.keyboard.on = false;
 }
 
 }  // namespace
@@ -173,7 +172,7 @@ void leave(Context& context) {
 bool pressed(int index, bool repeats) { return ImGui::IsKeyPressed(index, repeats); }
 
 void begin_keyboard(Context& context) {
-    auto& keyboard = context.state.keyboard;
+    auto& keyboard = context.keyboard;
     const auto& io = ImGui::GetIO();
     const ImGuiContext& g = *ImGui::GetCurrentContext();
     watch_alt(context);
@@ -197,8 +196,8 @@ void begin_keyboard(Context& context) {
 }
 
 void end_keyboard(Context& context) {
-    auto& keyboard = context.state.keyboard;
-    auto& asked = context.state.focus;
+    auto& keyboard = context.keyboard;
+    auto& asked = context.keyboard.asked;
     for (const auto& stop : keyboard.stops)
         if (!asked.empty() && stop.name == asked) {
             focus(context, stop);
@@ -218,7 +217,7 @@ void note_stop(Context& context, std::string_view name) {
     if ((g.CurrentWindow->Flags & ImGuiWindowFlags_ChildMenu) != 0 ||
         g.CurrentWindow->DC.NavLayerCurrent != ImGuiNavLayer_Main)
         return;  // menus have their own way
-    context.state.keyboard.stops.push_back({name, item.ID, g.CurrentWindow, item.Rect.Min, item.Rect.Max,
+    context.keyboard.stops.push_back({name, item.ID, g.CurrentWindow, item.Rect.Min, item.Rect.Max,
                                             (item.InFlags & ImGuiItemFlags_Inputable) != 0, false});
     if (!has_focus()) return;
     const float gap = context.em * 0.12f;
@@ -228,12 +227,12 @@ void note_stop(Context& context, std::string_view name) {
 }
 
 void takes_letters(Context& context) {
-    auto& stops = context.state.keyboard.stops;
+    auto& stops = context.keyboard.stops;
     if (!stops.empty() && stops.back().id == ImGui::GetItemID()) stops.back().typed = true;
 }
 
 void focus_last_item(Context& context) {
-    const auto& stops = context.state.keyboard.stops;
+    const auto& stops = context.keyboard.stops;
     if (!stops.empty() && stops.back().id == ImGui::GetItemID()) focus(context, stops.back());
 }
 
@@ -244,13 +243,13 @@ bool has_focus(const FocusStop& stop) {
 }
 
 bool has_focus(const Context& context, std::string_view name) {
-    const auto& stops = context.state.keyboard.stops;
+    const auto& stops = context.keyboard.stops;
     return std::any_of(stops.begin(), stops.end(),
                        [&](const FocusStop& stop) { return stop.name == name && has_focus(stop); });
 }
 
 void open_menu_by_key(Context& context, const char* menu) {
-    auto& keyboard = context.state.keyboard;
+    auto& keyboard = context.keyboard;
     const bool asked = keyboard.menu_asked == menu, walked_to = keyboard.menu_walk > 0 && has_focus();
     if (!asked && !walked_to) return;
     keyboard.menu_walk = 0;

@@ -32,6 +32,7 @@ struct KeyboardState {
     bool alt_alone = false;     // Alt is down and nothing else happened since
     int menu_walk = 0;          // frames in which a menu that gets the focus opens
     bool escape_taken = false;  // by leaving the focus, in this frame
+    std::string asked;          // widget that takes the keyboard next frame
     std::string menu_asked;     // to be opened with the next menu bar; empty = none
 };
 

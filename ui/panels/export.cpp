@@ -10,7 +10,7 @@
 #include "engine/io/formats/scene_formats.h"
 #include "ui/commands/guarded.h"
 #include "ui/panels/panels.h"
-#include "ui/state.h"
+#include "ui/state/state.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/fields.h"
 #include "ui/widgets/icons.h"

@@ -7,7 +7,7 @@
 #include "engine/scene/strength.h"
 #include "ui/commands/guarded.h"
 #include "ui/panels/panels.h"
-#include "ui/state.h"
+#include "ui/state/state.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/icons.h"
 #include "ui/widgets/tooltips.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "ui/panels/panels.h"
-#include "ui/state.h"
+#include "ui/state/state.h"
 #include "ui/widgets/controls.h"
 
 namespace gse::ui {

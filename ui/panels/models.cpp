@@ -8,7 +8,7 @@
 #include "ui/commands/guarded.h"
 #include "ui/keys/keyboard.h"
 #include "ui/panels/panels.h"
-#include "ui/state.h"
+#include "ui/state/state.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/file_browser.h"
 #include "ui/widgets/icons.h"

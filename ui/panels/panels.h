@@ -3,8 +3,8 @@
 
 #include <array>
 
-#include "ui/context.h"
-#include "ui/layout.h"
+#include "ui/model/context.h"
+#include "ui/model/layout.h"
 
 namespace gse::ui {
 

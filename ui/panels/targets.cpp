@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "ui/panels/panels.h"
-#include "ui/state.h"
+#include "ui/state/state.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/sheet.h"
 #include "ui/widgets/tooltips.h"

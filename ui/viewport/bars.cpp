@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "ui/commands/guarded.h"
-#include "ui/state.h"
-#include "ui/status.h"
+#include "ui/state/state.h"
+#include "ui/state/status.h"
 #include "ui/viewport/viewport.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/icons.h"

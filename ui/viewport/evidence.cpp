@@ -5,7 +5,7 @@
 
 #include "engine/scene/viewpoints.h"
 #include "ui/commands/guarded.h"
-#include "ui/state.h"
+#include "ui/state/state.h"
 #include "ui/viewport/viewport.h"
 #include "ui/widgets/controls.h"
 

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <optional>
 
-#include "ui/state.h"
+#include "ui/state/state.h"
 #include "ui/viewport/viewport.h"
 
 namespace gse::ui {

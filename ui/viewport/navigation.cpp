@@ -6,7 +6,7 @@
 #include "engine/scene/viewpoints.h"
 #include "ui/commands/guarded.h"
 #include "ui/keys/keys.h"
-#include "ui/state.h"
+#include "ui/state/state.h"
 #include "ui/viewport/viewport.h"
 
 namespace gse::ui {

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "ui/commands/guarded.h"
-#include "ui/glyphs.h"
-#include "ui/state.h"
+#include "ui/model/glyphs.h"
+#include "ui/state/state.h"
 #include "ui/viewport/viewport.h"
 #include "ui/widgets/controls.h"
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "ui/state.h"
+#include "ui/state/state.h"
 #include "ui/viewport/viewport.h"
 #include "ui/widgets/controls.h"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "ui/commands/guarded.h"
-#include "ui/state.h"
+#include "ui/state/state.h"
 #include "ui/viewport/viewport.h"
 
 namespace gse::ui {

@@ -7,10 +7,9 @@
 #include <cmath>
 
 #include "ui/commands/guarded.h"
-#include "ui/glyphs.h"
+#include "ui/model/glyphs.h"
 #include "ui/keys/keys.h"
-#include "ui/panels/panels.h"
-#include "ui/state.h"
+#include "ui/state/state.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/icons.h"
 
@@ -141,7 +140,6 @@ void bare_colours(Context& context) {
 
 void draw_viewport(Context& context) {
     bare_colours(context);
-    follow_placing(context);
     auto& state = context.state.viewport;
     draw_header(context);
     const ImVec2 space = ImGui::GetContentRegionAvail();

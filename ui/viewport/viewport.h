@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "ui/context.h"
+#include "ui/model/context.h"
 
 namespace gse::ui {
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "ui/glyphs.h"
+#include "ui/model/glyphs.h"
 #include "ui/widgets/controls.h"
 
 namespace gse::ui {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "ui/context.h"
+#include "ui/model/context.h"
 
 namespace gse::ui {
 

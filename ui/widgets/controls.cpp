@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ui/glyphs.h"
+#include "ui/model/glyphs.h"
 #include "ui/keys/keyboard.h"
 #include "ui/widgets/tooltips.h"
 

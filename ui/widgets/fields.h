@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "engine/base/fields.h"
-#include "ui/context.h"
+#include "ui/model/context.h"
 
 namespace gse::ui {
 

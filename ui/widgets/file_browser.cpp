@@ -10,7 +10,6 @@
 
 #include "ui/keys/keyboard.h"
 #include "ui/keys/keys.h"
-#include "ui/state.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/icons.h"
 
@@ -317,7 +316,7 @@ void FileBrowser::draw(Context& context) {
     entry_focused_ = false;
     if (ImGui::BeginChild("entries", {0, height}, true, ImGuiWindowFlags_NavFlattened)) draw_entries(context);
     ImGui::EndChild();
-    if (!done_) keys(context.state.keyboard.on && !entry_focused_);
+    if (!done_) keys(context.keyboard.on && !entry_focused_);
     draw_footer(context);
     if (done_ || !stays || ImGui::IsKeyPressed(key::Escape, false)) {
         open_ = false;

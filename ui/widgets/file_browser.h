@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "ui/context.h"
+#include "ui/model/context.h"
 #include "ui/widgets/folder_listing.h"
 
 namespace gse::ui {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "ui/context.h"
+#include "ui/model/context.h"
 
 namespace gse::ui {
 

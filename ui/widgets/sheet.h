@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 
-#include "ui/context.h"
+#include "ui/model/context.h"
 
 namespace gse::ui {
 

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-#include "ui/context.h"
+#include "ui/model/context.h"
 
 namespace gse::ui {
 

@@ -1,4 +1,5 @@
 // The search for a free place, among the edges of the controls.
+#include "ui/keys/keyboard.h"
 #include "ui/widgets/tooltips.h"
 
 #include <imgui_internal.h>
@@ -8,7 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include "ui/state.h"
 #include "ui/widgets/controls.h"
 
 namespace gse::ui {
@@ -85,7 +85,7 @@ void keep_controls(Context& context) {
     awaited() = false;
     auto& controls = kept_controls();
     controls.clear();
-    for (const auto& stop : context.state.keyboard.stops) {
+    for (const auto& stop : context.keyboard.stops) {
         const auto found = context.widgets.find(stop.name);
         if (stop.name == "viewport" || found == context.widgets.end() || !found->second.visible) continue;
         controls.push_back(found->second);

@@ -7,7 +7,7 @@
 #include <span>
 #include <string_view>
 
-#include "ui/context.h"
+#include "ui/model/context.h"
 
 namespace gse::ui {
 

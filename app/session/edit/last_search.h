@@ -12,7 +12,7 @@
 #include "app/session/state/stage.h"
 #include "engine/neural/api/api.h"
 #include "engine/pipeline/run/edit_job.h"
-#include "ui/view_model.h"
+#include "ui/model/view_model.h"
 
 namespace gse::app {
 

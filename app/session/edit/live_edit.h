@@ -16,7 +16,7 @@
 #include "engine/base/shared_queue.h"
 #include "engine/neural/api/network_use.h"
 #include "engine/pipeline/run/edit_job.h"
-#include "ui/view_model.h"
+#include "ui/model/view_model.h"
 
 namespace gse::app {
 

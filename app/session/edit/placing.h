@@ -7,7 +7,7 @@
 
 #include "engine/edit/placement/rearrangement.h"
 #include "engine/scene/document.h"
-#include "ui/view_model.h"
+#include "ui/model/view_model.h"
 
 namespace gse::app {
 

@@ -9,7 +9,7 @@
 
 #include "engine/edit/interfaces/snapshot.h"
 #include "engine/scene/gaussian_set.h"
-#include "ui/view_model.h"
+#include "ui/model/view_model.h"
 
 namespace gse::app {
 

@@ -12,8 +12,8 @@
 
 #include "engine/base/error.h"
 #include "engine/base/shared_queue.h"
-#include "ui/commands/command.h"
-#include "ui/view_model.h"
+#include "ui/model/command.h"
+#include "ui/model/view_model.h"
 
 namespace gse::app {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/scene/label_ops.h"
-#include "ui/commands/command.h"
+#include "ui/model/command.h"
 
 namespace gse::app {
 

@@ -13,7 +13,7 @@
 #include "engine/base/job_thread.h"
 #include "engine/scene/document.h"
 #include "engine/scene/gaussian_set.h"
-#include "ui/commands/command.h"
+#include "ui/model/command.h"
 
 namespace gse::app {
 

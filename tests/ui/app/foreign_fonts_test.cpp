@@ -4,7 +4,7 @@
 
 #include <numeric>
 
-#include "ui/foreign_fonts.h"
+#include "ui/model/foreign_fonts.h"
 
 namespace foreign_fonts_test {
 

@@ -6,7 +6,7 @@
 
 #include "engine/base/file.h"
 #include "tests/ui/app/session.h"
-#include "ui/model_settings.h"
+#include "ui/model/model_settings.h"
 
 namespace model_settings_test {
 

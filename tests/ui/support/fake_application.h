@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "engine/scene/document.h"
-#include "ui/commands/command.h"
-#include "ui/view_model.h"
+#include "ui/model/command.h"
+#include "ui/model/view_model.h"
 
 namespace gse::test {
 

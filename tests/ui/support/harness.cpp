@@ -5,7 +5,7 @@
 
 #include "tests/ui/support/soft_renderer.h"
 #include "ui/keys/keys.h"
-#include "ui/theme.h"
+#include "ui/model/theme.h"
 
 namespace gse::test {
 namespace {

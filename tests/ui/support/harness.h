@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "tests/ui/support/fake_application.h"
-#include "ui/shell.h"
+#include "ui/frame/shell.h"
 
 namespace gse::test {
 

@@ -6,7 +6,7 @@
 
 #include "tests/ui/support/harness.h"
 #include "ui/keys/keys.h"
-#include "ui/state.h"
+#include "ui/state/state.h"
 
 namespace gse::test::actions_test {
 namespace {

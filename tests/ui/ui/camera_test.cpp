@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "engine/base/random.h"
-#include "ui/viewport/camera_control.h"
+#include "ui/state/camera_control.h"
 
 namespace gse::ui::camera_test {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "tests/ui/support/harness.h"
-#include "ui/state.h"
+#include "ui/state/state.h"
 
 namespace gizmo_test {
 

@@ -4,8 +4,8 @@
 #include <doctest/doctest.h>
 
 #include "tests/ui/support/harness.h"
-#include "ui/glyphs.h"
-#include "ui/theme.h"
+#include "ui/model/glyphs.h"
+#include "ui/model/theme.h"
 
 namespace gse::test::glyphs_test {
 namespace {

@@ -6,8 +6,8 @@
 #include "engine/io/formats/scene_formats.h"
 #include "tests/ui/support/harness.h"
 #include "ui/keys/keys.h"
-#include "ui/sentence.h"
-#include "ui/state.h"
+#include "ui/state/sentence.h"
+#include "ui/state/state.h"
 
 namespace gse::test::offers_test {
 namespace {

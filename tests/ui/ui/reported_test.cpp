@@ -6,8 +6,8 @@
 #include "tests/test_paths.h"
 #include "tests/ui/support/harness.h"
 #include "ui/keys/keys.h"
-#include "ui/state.h"
-#include "ui/status.h"
+#include "ui/state/state.h"
+#include "ui/state/status.h"
 #include "ui/widgets/controls.h"
 
 namespace gse::test::reported_test {

@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "tests/ui/support/harness.h"
-#include "ui/state.h"
+#include "ui/state/state.h"
 
 namespace gse::test::steps_test {
 namespace {

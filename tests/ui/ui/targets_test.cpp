@@ -5,7 +5,7 @@
 
 #include "tests/ui/support/harness.h"
 #include "ui/keys/keys.h"
-#include "ui/state.h"
+#include "ui/state/state.h"
 
 namespace gse::test::targets_test {
 namespace {

@@ -9,7 +9,7 @@
 #include "engine/scene/framing.h"
 #include "tests/ui/support/harness.h"
 #include "ui/keys/keys.h"
-#include "ui/state.h"
+#include "ui/state/state.h"
 
 namespace gse::test::viewport_test {
 namespace {

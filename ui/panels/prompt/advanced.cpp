@@ -10,7 +10,7 @@
 
 #include "engine/edit/request/edit_method.h"
 #include "ui/panels/prompt/parts.h"
-#include "ui/state.h"
+#include "ui/state/state.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/fields.h"
 

@@ -1,7 +1,7 @@
 // Parts of the Prompt panel.
 #pragma once
 
-#include "ui/context.h"
+#include "ui/model/context.h"
 
 namespace gse::ui {
 

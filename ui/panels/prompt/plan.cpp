@@ -6,7 +6,7 @@
 
 #include "ui/commands/guarded.h"
 #include "ui/panels/prompt/parts.h"
-#include "ui/state.h"
+#include "ui/state/state.h"
 #include "ui/widgets/controls.h"
 
 namespace gse::ui {

@@ -15,9 +15,9 @@
 #include "ui/keys/keyboard.h"
 #include "ui/panels/panels.h"
 #include "ui/panels/prompt/parts.h"
-#include "ui/sentence.h"
-#include "ui/state.h"
-#include "ui/status.h"
+#include "ui/state/sentence.h"
+#include "ui/state/state.h"
+#include "ui/state/status.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/icons.h"
 

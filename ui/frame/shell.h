@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "ui/commands/command.h"
-#include "ui/context.h"
-#include "ui/layout.h"
-#include "ui/view_model.h"
+#include "ui/model/command.h"
+#include "ui/model/context.h"
+#include "ui/model/layout.h"
+#include "ui/model/view_model.h"
 
 namespace gse::ui {
 

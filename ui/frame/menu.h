@@ -1,7 +1,7 @@
 // Menu bar, tool bar and job bar: the frame around the panels.
 #pragma once
 
-#include "ui/context.h"
+#include "ui/model/context.h"
 
 namespace gse::ui {
 

@@ -1,5 +1,5 @@
 // The whole window: menu, tools, viewport and panels.
-#include "ui/shell.h"
+#include "ui/frame/shell.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -12,11 +12,11 @@
 
 #include "engine/base/file.h"
 #include "ui/commands/guarded.h"
+#include "ui/frame/menu.h"
 #include "ui/keys/keyboard.h"
-#include "ui/menu.h"
 #include "ui/panels/panels.h"
-#include "ui/sentence.h"
-#include "ui/state.h"
+#include "ui/state/sentence.h"
+#include "ui/state/state.h"
 #include "ui/viewport/viewport.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/splitter.h"
@@ -322,6 +322,7 @@ void Shell::draw_areas(Context& context) {
         ImGui::EndChild();
     };
     surface("tools", plan.tools, palette::Panel, [&] { draw_tool_bar(context); });
+    follow_placing(context);
     surface("viewport", plan.viewport, palette::Panel, [&] { draw_viewport(context); });
     if (plan.bottom_used)
         surface("bottom", plan.bottom, palette::Panel, [&] { draw_area(context, Area::Bottom); });
@@ -359,6 +360,7 @@ std::vector<Command> Shell::draw(const ViewModel& model, Textures& textures) {
                     commands_,
                     textures,
                     *state_,
+                    state_->keyboard,
                     widgets_,
                     current_fonts(),
                     em,

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "ui/view_model.h"
+#include "ui/model/view_model.h"
 
 namespace gse::ui {
 

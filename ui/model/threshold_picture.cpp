@@ -1,5 +1,5 @@
 // Pixels of an attention map above a threshold, drawn over the render. Fast enough to follow a slider.
-#include "ui/threshold_picture.h"
+#include "ui/model/threshold_picture.h"
 
 #include <algorithm>
 #include <array>

@@ -4,11 +4,11 @@
 #include <algorithm>
 
 #include "ui/commands/guarded.h"
+#include "ui/frame/menu.h"
 #include "ui/keys/keyboard.h"
 #include "ui/keys/keys.h"
-#include "ui/keys/keys_dialog.h"
-#include "ui/menu.h"
-#include "ui/state.h"
+#include "ui/panels/settings/keys_dialog.h"
+#include "ui/state/state.h"
 #include "ui/widgets/controls.h"
 
 namespace gse::ui {

@@ -1,5 +1,5 @@
 // The table of foreign characters, and their pictures in the atlas.
-#include "ui/glyphs.h"
+#include "ui/model/glyphs.h"
 
 #include <algorithm>
 #include <cmath>

@@ -15,7 +15,7 @@
 
 #include "engine/localize/row_property.h"
 #include "engine/scene/colour_adjustment.h"
-#include "ui/view_model.h"
+#include "ui/model/view_model.h"
 
 namespace gse::ui {
 

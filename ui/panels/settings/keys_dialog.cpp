@@ -1,12 +1,12 @@
 // Conventions, and one button per command that waits for keys.
-#include "ui/keys/keys_dialog.h"
+#include "ui/panels/settings/keys_dialog.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "ui/commands/guarded.h"
-#include "ui/state.h"
+#include "ui/state/state.h"
 #include "ui/widgets/controls.h"
 
 namespace gse::ui {

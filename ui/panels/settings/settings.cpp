@@ -6,9 +6,9 @@
 #include <cstdio>
 
 #include "ui/commands/guarded.h"
-#include "ui/keys/keys_dialog.h"
 #include "ui/panels/panels.h"
-#include "ui/state.h"
+#include "ui/panels/settings/keys_dialog.h"
+#include "ui/state/state.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/fields.h"
 

@@ -1,7 +1,7 @@
 // All keys in a window in the middle, where those of commands are chosen.
 #pragma once
 
-#include "ui/context.h"
+#include "ui/model/context.h"
 
 namespace gse::ui {
 

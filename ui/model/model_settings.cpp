@@ -1,5 +1,5 @@
 // Model settings in projects.
-#include "ui/model_settings.h"
+#include "ui/model/model_settings.h"
 
 #include <utility>
 

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "ui/glyphs.h"
+#include "ui/model/glyphs.h"
 
 namespace gse::ui {
 

@@ -1,5 +1,5 @@
 // Facts about a sentence before anything runs: known words, the target it implies, why it cannot be run.
-#include "ui/sentence.h"
+#include "ui/state/sentence.h"
 
 #include <fmt/format.h>
 

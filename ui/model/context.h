@@ -8,13 +8,14 @@
 #include <string>
 #include <string_view>
 
-#include "ui/commands/command.h"
-#include "ui/theme.h"
-#include "ui/view_model.h"
+#include "ui/model/command.h"
+#include "ui/model/theme.h"
+#include "ui/model/view_model.h"
 
 namespace gse::ui {
 
 struct UiState;
+struct KeyboardState;
 
 /// A widget's place on the screen, in the coordinates of the window.
 struct Rect {
@@ -32,6 +33,7 @@ struct Context {
     CommandSink& commands;
     Textures& textures;
     UiState& state;
+    KeyboardState& keyboard;  // of `state`: all that keys and widgets need of it
     WidgetMap& widgets;
     Fonts fonts;
     float em = 15;  // font size in pixels

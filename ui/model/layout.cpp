@@ -1,5 +1,5 @@
 // Places of panels, tabs in front and sizes of the areas; saved as JSON in the project.
-#include "ui/layout.h"
+#include "ui/model/layout.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // Look of the window: neutral greys, one accent, fonts of the system, all sizes from the font size.
-#include "ui/theme.h"
+#include "ui/model/theme.h"
 
 #include <array>
 #include <cmath>

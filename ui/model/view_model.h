@@ -25,7 +25,7 @@
 #include "engine/pipeline/report/evidence_pictures.h"
 #include "engine/scene/camera_key.h"
 #include "engine/scene/document.h"
-#include "ui/model_settings.h"
+#include "ui/model/model_settings.h"
 
 namespace gse::ui {
 

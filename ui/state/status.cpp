@@ -1,5 +1,5 @@
 // Sentences about the last job and its result.
-#include "ui/status.h"
+#include "ui/state/status.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // Forgetting of the window's state that belongs to one scene, in one place.
-#include "ui/state.h"
+#include "ui/state/state.h"
 
 #include <utility>
 

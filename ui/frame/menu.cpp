@@ -1,5 +1,5 @@
 // The menu bar: all commands of the window with their keys, and reasons for those that are off.
-#include "ui/menu.h"
+#include "ui/frame/menu.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 
 #include "ui/commands/guarded.h"
 #include "ui/keys/keyboard.h"
-#include "ui/state.h"
+#include "ui/state/state.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/tooltips.h"
 

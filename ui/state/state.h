@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "engine/localize/row_property.h"
-#include "ui/context.h"
+#include "ui/model/context.h"
 #include "ui/keys/keyboard.h"
 #include "ui/keys/keymap.h"
-#include "ui/layout.h"
-#include "ui/sentence.h"
-#include "ui/viewport/camera_control.h"
+#include "ui/model/layout.h"
+#include "ui/state/sentence.h"
+#include "ui/state/camera_control.h"
 #include "ui/widgets/chips.h"
 #include "ui/widgets/file_browser.h"
 #include "ui/widgets/histogram.h"
@@ -241,7 +241,6 @@ struct UiState {
     bool help_open = false, about_open = false;
     Asked asked;
     ModelsState models;
-    std::string focus;  // widget that takes the keyboard next frame
     bool animating = false;
     std::uint64_t document = 0;  // ViewModel::opened that the rest was of
 };

@@ -3,10 +3,10 @@
 #include <utility>
 
 #include "ui/commands/guarded.h"
+#include "ui/frame/menu.h"
 #include "ui/keys/keyboard.h"
 #include "ui/keys/keys.h"
-#include "ui/menu.h"
-#include "ui/state.h"
+#include "ui/state/state.h"
 #include "ui/viewport/viewport.h"
 
 namespace gse::ui {
@@ -120,7 +120,7 @@ void view_keys(Context& context) {
     if (hit(context, Shortcut::Tint)) toggle(context, &ViewSettings::tint_labels);
     if (hit(context, Shortcut::Wipe)) toggle_wipe(context);
     if (hit(context, Shortcut::Evidence)) step_evidence(context);
-    const bool arrows_free = !context.state.keyboard.on || has_focus(context, "viewport");
+    const bool arrows_free = !context.keyboard.on || has_focus(context, "viewport");
     if (ImGui::GetIO().KeyCtrl || ImGui::GetIO().KeyAlt) return;
     if (arrows_free && pressed(key::Left)) step(context, -1);
     if (arrows_free && pressed(key::Right)) step(context, 1);
@@ -130,7 +130,7 @@ void view_keys(Context& context) {
 void free_keys(Context& context) {
     if (hit(context, Shortcut::Prompt)) {
         show_panel(context.state, PanelId::Prompt);
-        context.state.focus = "prompt.sentence";
+        context.keyboard.asked = "prompt.sentence";
     }
     if (hit(context, Shortcut::Undo)) context.emit(command::Undo{});
     if (redo_hit(context)) context.emit(command::Redo{});
@@ -168,7 +168,7 @@ void escape(Context& context) {
 
 void handle_keys(Context& context) {
     const auto& io = ImGui::GetIO();
-    const bool dialog = context.state.keyboard.popup_before || context.state.files.is_open() ||
+    const bool dialog = context.keyboard.popup_before || context.state.files.is_open() ||
                         context.state.help_open || context.state.about_open ||
                         ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
     const bool typing = io.WantTextInput;
@@ -182,7 +182,7 @@ void handle_keys(Context& context) {
     if (io.KeyCtrl && !io.KeyAlt) control_keys(context);
     if (io.KeyShift && !io.KeyCtrl && enter_pressed()) return run_edit(context);
     if (typing) return;
-    if (pressed(key::Escape) && !io.KeyCtrl && !context.state.keyboard.escape_taken) escape(context);
+    if (pressed(key::Escape) && !io.KeyCtrl && !context.keyboard.escape_taken) escape(context);
     if (!io.KeySuper) free_keys(context);
 }
 

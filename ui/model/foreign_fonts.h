@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "ui/glyphs.h"
+#include "ui/model/glyphs.h"
 
 namespace gse::ui {
 

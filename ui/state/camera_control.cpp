@@ -1,6 +1,6 @@
 // Camera of the viewport: orbit, pan, zoom to the cursor, fly, frame. Glides to its target and then stands
 // still.
-#include "ui/viewport/camera_control.h"
+#include "ui/state/camera_control.h"
 
 #include <algorithm>
 #include <cmath>

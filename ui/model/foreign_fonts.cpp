@@ -1,5 +1,5 @@
 // Characters from other fonts: fontconfig finds the font, FreeType paints.
-#include "ui/foreign_fonts.h"
+#include "ui/model/foreign_fonts.h"
 
 #include <fontconfig/fontconfig.h>
 #include <ft2build.h>

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "ui/commands/guarded.h"
-#include "ui/menu.h"
-#include "ui/state.h"
-#include "ui/status.h"
+#include "ui/frame/menu.h"
+#include "ui/state/state.h"
+#include "ui/state/status.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/icons.h"
 
