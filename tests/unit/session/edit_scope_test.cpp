@@ -12,7 +12,7 @@ namespace {
 
 using namespace gse;
 using app::label_says;
-using app::ReachChoice;
+using app::ScopeChoice;
 
 const std::vector<std::string> Known{"bear", "hat", "golden", "grass"};
 
@@ -52,7 +52,7 @@ DOCTEST_TEST_CASE(
 }
 
 DOCTEST_TEST_CASE("the artist's word goes first, for the source it was given for") {
-    const ReachChoice label{true, "label", "bear"}, search{false, "bear", "bear"}, any{true, "label", ""};
+    const ScopeChoice label{true, "label", "bear"}, search{false, "bear", "bear"}, any{true, "label", ""};
     DOCTEST_CHECK(label_says(painted("label"), about("bear", "golden"), Known, label));
     DOCTEST_CHECK_FALSE(label_says(painted("label"), about("grass", "golden"), Known, label));
     DOCTEST_CHECK_FALSE(label_says(painted("other"), about("bear", "golden"), Known, label));
@@ -72,11 +72,11 @@ DOCTEST_TEST_CASE(
     DOCTEST_CHECK_FALSE(app::is_addition(painted("hat"), ids));
     state.labels = {found("Bruno", "bear"), painted("cut out"), hat};
     state.active_label = 2;
-    const auto index = [&](const edit::EditRequest& request, const std::optional<ReachChoice>& choice) {
+    const auto index = [&](const edit::EditRequest& request, const std::optional<ScopeChoice>& choice) {
         return static_cast<int>(scope_label(state, request, Known, choice).value_or(99));
     };
     constexpr int searched = 99;
-    const ReachChoice for_crane{true, "cut out", "crane"}, never{false, "Bruno", "bear"};
+    const ScopeChoice for_crane{true, "cut out", "crane"}, never{false, "Bruno", "bear"};
     DOCTEST_CHECK(index(about("bear", "golden"), {}) == 0);
     DOCTEST_CHECK(index(about("bear", "golden"), never) == searched);
     DOCTEST_CHECK(index(about("hat", "blue"), {}) == 2);
