@@ -21,8 +21,8 @@
 #include "engine/vulkan/device.h"
 #include "engine/vulkan/error.h"
 #include "engine/window/window.h"
-#include "ui/model/foreign_fonts.h"
 #include "ui/frame/shell.h"
+#include "ui/model/foreign_fonts.h"
 #include "ui/model/theme.h"
 
 namespace gse::app {

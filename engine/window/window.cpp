@@ -141,8 +141,8 @@ Window::State::State(const WindowOptions& wanted) : options(wanted), wanted_scal
     make_device();
 }
 
-/// Maps a character for ImGui, which has 16 bits for it. The table of the panels (ui/model/glyphs.h) has codes for
-/// larger ones.
+/// Maps a character for ImGui, which has 16 bits for it. The table of the panels (ui/model/glyphs.h) has
+/// codes for larger ones.
 void Window::State::translate_texts() {
     if (!options.take_character || !options.take_text || !options.give_text) return;
     auto& io = ImGui::GetIO();

@@ -238,7 +238,7 @@ void ask_second(Context& context, const std::string& thing) {
                              if (!change.target.empty()) commands.push(command::Edit{});
                              show_panel(*state, change.target.empty() ? PanelId::Prompt : PanelId::Progress);
                              if (change.target.empty())
-                                 state->focus = "prompt.sentence";  // nothing is said of it yet
+                                 state->keyboard.asked = "prompt.sentence";  // nothing is said of it yet
                          }},
                         {"Add another", false,
                          [&commands, state = &context.state] {

@@ -4,8 +4,8 @@
 #include <functional>
 #include <string>
 
-#include "ui/model/context.h"
 #include "ui/keys/keys.h"
+#include "ui/model/context.h"
 #include "ui/state/sentence.h"
 
 namespace gse::ui {

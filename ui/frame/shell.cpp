@@ -356,18 +356,9 @@ std::vector<Command> Shell::draw(const ViewModel& model, Textures& textures) {
     const float em = ImGui::GetFontSize();
     if (em != styled_em_) apply_theme(ImGui::GetStyle(), em);
     styled_em_ = em;
-    Context context{model,
-                    commands_,
-                    textures,
-                    *state_,
-                    state_->keyboard,
-                    widgets_,
-                    current_fonts(),
-                    em,
-                    model.view,
-                    model.request,
-                    model.exports,
-                    model.model_settings};
+    Context context{model,         commands_,           textures, *state_,    state_->keyboard,
+                    widgets_,      current_fonts(),     em,       model.view, model.request,
+                    model.exports, model.model_settings};
     state_->animating = false;
     follow_document(model.opened);
     set_foreign_glyphs(&glyphs_);

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "ui/model/context.h"
 #include "ui/keys/keys.h"
+#include "ui/model/context.h"
 
 namespace gse::ui {
 namespace {
@@ -218,7 +218,7 @@ void note_stop(Context& context, std::string_view name) {
         g.CurrentWindow->DC.NavLayerCurrent != ImGuiNavLayer_Main)
         return;  // menus have their own way
     context.keyboard.stops.push_back({name, item.ID, g.CurrentWindow, item.Rect.Min, item.Rect.Max,
-                                            (item.InFlags & ImGuiItemFlags_Inputable) != 0, false});
+                                      (item.InFlags & ImGuiItemFlags_Inputable) != 0, false});
     if (!has_focus()) return;
     const float gap = context.em * 0.12f;
     g.CurrentWindow->DrawList->AddRect({item.Rect.Min.x - gap, item.Rect.Min.y - gap},

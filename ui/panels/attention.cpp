@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "ui/commands/guarded.h"
+#include "ui/model/threshold_picture.h"
 #include "ui/panels/panels.h"
 #include "ui/state/state.h"
-#include "ui/model/threshold_picture.h"
 #include "ui/viewport/viewport.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/icons.h"

@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "engine/localize/row_property.h"
-#include "ui/model/context.h"
 #include "ui/keys/keyboard.h"
 #include "ui/keys/keymap.h"
+#include "ui/model/context.h"
 #include "ui/model/layout.h"
-#include "ui/state/sentence.h"
 #include "ui/state/camera_control.h"
+#include "ui/state/sentence.h"
 #include "ui/widgets/chips.h"
 #include "ui/widgets/file_browser.h"
 #include "ui/widgets/histogram.h"

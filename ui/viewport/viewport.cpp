@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "ui/commands/guarded.h"
-#include "ui/model/glyphs.h"
 #include "ui/keys/keys.h"
+#include "ui/model/glyphs.h"
 #include "ui/state/state.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/icons.h"

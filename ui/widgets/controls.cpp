@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ui/model/glyphs.h"
 #include "ui/keys/keyboard.h"
+#include "ui/model/glyphs.h"
 #include "ui/widgets/tooltips.h"
 
 namespace gse::ui {

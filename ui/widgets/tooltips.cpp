@@ -1,6 +1,6 @@
 // The search for a free place, among the edges of the controls.
-#include "ui/keys/keyboard.h"
 #include "ui/widgets/tooltips.h"
+#include "ui/keys/keyboard.h"
 
 #include <imgui_internal.h>
 

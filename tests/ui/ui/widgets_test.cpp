@@ -13,9 +13,9 @@
 #include "tests/test_paths.h"
 #include "tests/ui/support/harness.h"
 #include "ui/keys/keys.h"
+#include "ui/model/threshold_picture.h"
 #include "ui/state/sentence.h"
 #include "ui/state/state.h"
-#include "ui/model/threshold_picture.h"
 #include "ui/widgets/controls.h"
 
 namespace gse::test::widgets_test {
