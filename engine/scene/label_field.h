@@ -23,6 +23,7 @@ struct LabelRule {
     double smoothness = 1.5;             // of the minimum cut, nats; 0 = no cut
     double island_share = 0;             // of the labelled ones: islands of no more take the label
     Vec3 up{0, -1, 0}, front{0, 0, -1};  // of the world: which way is down, for the ground below a thing
+    bool is_figure = false;              // it may stand on a pedestal, which is no part of it
 };
 
 /// A field with its rule: enough to make its label at any threshold.

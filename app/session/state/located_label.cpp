@@ -23,7 +23,7 @@ std::vector<float> weights_of(const Label& label, double threshold) {
 NamedLabel at_threshold(NamedLabel label, const GaussianSet& set, double threshold, ThreadPool* threads) {
     if (label.found == nullptr || label.found->field.probability.size() != set.size())
         return with_threshold(std::move(label), static_cast<float>(threshold));
-    const Label decided = edit::decide_label(label.name, set, *label.found, threshold, threads);
+    const Label decided = edit::decide_label(label.name, set, *label.found, threshold, threads).label;
     label.weight = std::make_shared<const std::vector<float>>(weights_of(decided, threshold));
     return with_threshold(std::move(label), static_cast<float>(threshold));
 }

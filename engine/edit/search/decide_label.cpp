@@ -6,13 +6,14 @@
 
 #include "engine/base/log.h"
 #include "engine/edit/placement/ground_rows.h"
+#include "engine/edit/placement/pedestal_rows.h"
 #include "engine/localize/graph_cut.h"
 #include "engine/localize/propagate_labels.h"
 
 namespace gse::edit {
 namespace {
 
-constexpr float GroundWeight = 0.5f;  // of the threshold: the most that ground below a thing keeps
+constexpr float SupportWeight = 0.5f;  // of the threshold: the most that ground or a pedestal keeps
 
 /// Weights on the side of the threshold where the bits are; of Gaussians that nobody knows they stay.
 std::vector<float> decided_weights(const LabelField& field, const std::vector<std::uint8_t>& bits,
@@ -26,10 +27,18 @@ std::vector<float> decided_weights(const LabelField& field, const std::vector<st
     return weights;
 }
 
+/// Rows that both have; none where `rows` is empty.
+std::vector<std::size_t> both(const std::vector<std::uint8_t>& rows, const std::vector<std::uint8_t>& bits) {
+    std::vector<std::size_t> result;
+    for (std::size_t row = 0; row < rows.size(); ++row)
+        if (rows[row] != 0 && bits[row] != 0) result.push_back(row);
+    return result;
+}
+
 }  // namespace
 
-Label decide_label(std::string name, const GaussianSet& set, const FoundField& found, double threshold,
-                   ThreadPool* threads) {
+DecidedLabel decide_label(std::string name, const GaussianSet& set, const FoundField& found, double threshold,
+                          ThreadPool* threads) {
     const LabelRule& rule = found.rule;
     const localize::SpreadParameters spread{.least_coverage = rule.least_coverage, .threshold = threshold};
     const LabelField field = localize::propagate_labels_knn(set.spans(), spread, found.field, threads);
@@ -39,15 +48,21 @@ Label decide_label(std::string name, const GaussianSet& set, const FoundField& f
                                       .island_share = rule.island_share};
     auto bits = localize::cut_label(set.spans(), cut, field, threads);
     auto weights = decided_weights(field, bits, threshold, rule.least_coverage);
-    const auto ground = ground_rows(set, bits, rule.up, rule.front);
-    for (const auto row : ground) {
-        bits[row] = 0;
-        weights[row] = std::min(weights[row], static_cast<float>(GroundWeight * threshold));
-    }
-    if (!ground.empty())
-        log::debug("{} splats of the ground below \"{}\" are left to it", ground.size(), name);
-    return {std::move(name), std::make_shared<const std::vector<float>>(std::move(weights)),
-            std::make_shared<const std::vector<std::uint8_t>>(std::move(bits))};
+    const auto leave = [&](const std::vector<std::size_t>& rows, const char* support) {
+        for (const auto row : rows) {
+            bits[row] = 0;
+            weights[row] = std::min(weights[row], static_cast<float>(SupportWeight * threshold));
+        }
+        if (!rows.empty())
+            log::debug("{} splats of the {} below \"{}\" are left to it", rows.size(), support, name);
+    };
+    leave(ground_rows(set, bits, rule.up, rule.front), "ground");
+    auto pedestal =
+        rule.is_figure ? pedestal_rows(set, bits, rule.up, rule.front) : std::vector<std::uint8_t>();
+    leave(both(pedestal, bits), "pedestal");
+    return {{std::move(name), std::make_shared<const std::vector<float>>(std::move(weights)),
+             std::make_shared<const std::vector<std::uint8_t>>(std::move(bits))},
+            std::move(pedestal)};
 }
 
 }  // namespace gse::edit

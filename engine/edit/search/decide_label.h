@@ -1,4 +1,5 @@
-// A label at a threshold: votes of the views, opinions of neighbours, minimum cut, ground below the thing.
+// A label at a threshold: votes of the views, opinions of neighbours, minimum cut, ground or a pedestal below
+// the thing.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +12,16 @@
 
 namespace gse::edit {
 
+/// A label, and the rows [N] of the pedestal that its object stands on; empty = none was found.
+struct DecidedLabel {
+    Label label;
+    std::vector<std::uint8_t> pedestal;
+};
+
 /// The label of a field's N Gaussians at a threshold in [0,1], as a search with that threshold makes it. Its
-/// weights are the field's probabilities; where neighbours or the ground decide otherwise than the threshold
+/// weights are the field's probabilities; where neighbours or a support decide otherwise than the threshold
 /// does, they lie a little beyond it. The result does not depend on the number of threads (null = one).
-Label decide_label(std::string name, const GaussianSet& set, const FoundField& found, double threshold,
-                   ThreadPool* threads = nullptr);
+DecidedLabel decide_label(std::string name, const GaussianSet& set, const FoundField& found, double threshold,
+                          ThreadPool* threads = nullptr);
 
 }  // namespace gse::edit

@@ -16,6 +16,7 @@
 #include "engine/edit/request/excluded_views.h"
 #include "engine/edit/search/decide_label.h"
 #include "engine/language/grammar.h"
+#include "engine/language/plan/words/lexicon.h"
 #include "engine/language/vocabulary.h"
 #include "engine/language/words.h"
 #include "engine/localize/clusters.h"
@@ -275,10 +276,17 @@ FoundWord WordSearch::fuse(const SoughtWord& word, const std::vector<ViewEvidenc
     FoundWord found;
     auto& [field, rule] = found.field;
     field = votes_.back_project(input_.gaussians.spans(), votes, input_.settings, tools_.rasterizer);
-    rule = {least_coverage(field, request().coverage_px), request().label_smoothness,
-            word.alone ? IslandShare : 0, input_.up, input_.front};
-    found.label =
+    rule = {least_coverage(field, request().coverage_px),
+            request().label_smoothness,
+            word.alone ? IslandShare : 0,
+            input_.up,
+            input_.front,
+            language::plan::names_figure(word.name)};
+    if (input_.pedestal != nullptr) leave_out(*input_.pedestal, field);
+    auto decided =
         decide_label(word.name, input_.gaussians, found.field, request().label_threshold, tools_.threads);
+    found.label = std::move(decided.label);
+    found.pedestal = std::move(decided.pedestal);
     if (input_.within != nullptr) keep_within(field, found.label);
     if (auto refused = refuse_label(word.name, found.label)) return nothing(word, *std::move(refused));
     found.verdict = judge({word.name, views, field, found.label, recognised(word.name),
@@ -290,6 +298,11 @@ FoundWord WordSearch::fuse(const SoughtWord& word, const std::vector<ViewEvidenc
 void WordSearch::limit(ViewEvidence& view, std::size_t v) const {
     if (within_.empty() || view.failed) return;
     for (std::size_t i = 0; i < view.mask.data.size(); ++i) view.mask.data[i] &= within_[v].data[i];
+}
+
+void WordSearch::leave_out(const std::vector<std::uint8_t>& rows, LabelField& field) {
+    for (std::size_t row = 0; row < rows.size(); ++row)
+        if (rows[row] != 0) field.probability[row] = 0;
 }
 
 void WordSearch::keep_within(LabelField& field, Label& label) const {

@@ -32,6 +32,7 @@ struct FoundWord {
     FoundField field;
     Label label;
     SearchVerdict verdict;
+    std::vector<std::uint8_t> pedestal = {};  // [N] or empty, see LocateResult
 };
 
 /// Calls some(begin, end, worker) for parts of [0, count): one after the other without threads.
@@ -82,6 +83,8 @@ private:
     /// Takes what is seen outside of LocateInput::within off the mask of view `v`.
     void limit(ViewEvidence& view, std::size_t v) const;
     /// Takes rows outside of LocateInput::within off.
+    /// Takes rows out of what the views said.
+    static void leave_out(const std::vector<std::uint8_t>& rows, LabelField& field);
     void keep_within(LabelField& field, Label& label) const;
     /// How well some of the pictures fit the word; negative where nobody can tell.
     double recognised(const std::string& word) const;

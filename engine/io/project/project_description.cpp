@@ -260,7 +260,8 @@ Json to_json(const ProjectDescription::LabelEntry& entry) {
                          {"smoothness", entry.rule.smoothness},
                          {"island_share", entry.rule.island_share},
                          {"up", to_json(entry.rule.up)},
-                         {"front", to_json(entry.rule.front)}};
+                         {"front", to_json(entry.rule.front)},
+                         {"figure", entry.rule.is_figure}};
     return json;
 }
 
@@ -274,6 +275,7 @@ void read_views(const Json& json, const std::string& name, ProjectDescription::L
     fields.number("least_coverage", entry.rule.least_coverage);
     fields.number("smoothness", entry.rule.smoothness);
     fields.number("island_share", entry.rule.island_share);
+    fields.flag("figure", entry.rule.is_figure);
     for (const auto& [key, axis] : {std::pair{"up", &entry.rule.up}, std::pair{"front", &entry.rule.front}}) {
         std::array<double, 3> values{axis->x, axis->y, axis->z};
         fields.numbers(key, values);

@@ -330,7 +330,11 @@ private:
 
     edit::LocateResult look(const CheckedRecipe& recipe, const Views& views,
                             const std::vector<std::uint8_t>& label) {
-        return search_from(context_, views, recipe, label.empty() ? nullptr : &label, control_);
+        auto found = search_from(context_, views, recipe, label.empty() ? nullptr : &label, control_, nullptr,
+                                 &pedestal_);
+        add_to(pedestal_, found.pedestal);
+        found.pedestal = pedestal_;
+        return found;
     }
 
     /// Search in few views from one distance.
@@ -534,6 +538,7 @@ private:
     const JobControl& control_;
     std::vector<double> distances_;  // shares of the fitted orbit's radius that are tried
     bool target_read_ = false;
+    std::vector<std::uint8_t> pedestal_;  // [N] or empty: under the thing, as searches so far found it
     std::optional<std::vector<std::uint8_t>> wearer_;  // [N] of what is worn, once it was looked for
 };
 
@@ -566,7 +571,9 @@ Located locate_again(RunContext& context, const Located& located, const CheckedR
         return finished(context, locate_part(context, std::move(again), control));
     }
     const auto* label = again.by_label() ? &again.label : nullptr;
-    again.result = search_from(context, again.views, recipe, label, control);
+    again.result =
+        search_from(context, again.views, recipe, label, control, nullptr, &located.result.pedestal);
+    add_to(again.result.pedestal, located.result.pedestal);
     if (edit::moves_worn_place(recipe.request.sentence(), again.result.mode))
         again.result.room = located.result.room;
     return finished(context, std::move(again));

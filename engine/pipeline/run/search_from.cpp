@@ -40,11 +40,19 @@ std::optional<edit::StudioBackground> ground_shown(RunContext& context, const Ch
     return recipe.guidance.plain_ground ? context.ground(recipe.request.sentence().before()) : std::nullopt;
 }
 
+void add_to(std::vector<std::uint8_t>& rows, const std::vector<std::uint8_t>& more) {
+    if (rows.empty()) rows = more;
+    else
+        for (std::size_t row = 0; row < more.size(); ++row) rows[row] |= more[row];
+}
+
 edit::LocateResult search_from(RunContext& context, const Views& views, const CheckedRecipe& recipe,
                                const std::vector<std::uint8_t>* label, const JobControl& control,
-                               const std::vector<std::uint8_t>* within) {
+                               const std::vector<std::uint8_t>* within,
+                               const std::vector<std::uint8_t>* pedestal) {
     auto input = question(context, recipe, views, label);
     input.within = within;
+    input.pedestal = pedestal;
     input.ground = label == nullptr ? ground_shown(context, recipe, views) : std::nullopt;
     auto tools = context.tools(views, input.ground, control);
     const auto drawing = context.place_drawing(recipe.request.sentence());

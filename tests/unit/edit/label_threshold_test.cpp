@@ -29,7 +29,7 @@ DOCTEST_TEST_CASE("a label at another threshold is that of a fresh vote at it") 
         DOCTEST_CAPTURE(threshold);
         const auto fresh = search(threshold);
         if (fresh.problem == edit::SearchProblem::NothingLabelled) continue;
-        const auto slid = edit::decide_label(found.word, fixture.scene.set, found.found, threshold);
+        const auto slid = edit::decide_label(found.word, fixture.scene.set, found.found, threshold).label;
         DOCTEST_CHECK(*slid.bits == *fresh.label.bits);
         DOCTEST_CHECK(test::same_bytes(*slid.weight, *fresh.label.weight));
         const auto by_weight = make_label("ball", *found.label.weight, static_cast<float>(threshold));
@@ -50,7 +50,7 @@ DOCTEST_TEST_CASE("weights of a label lie on the side of the threshold where its
     const auto found = edit::locate(fixture.input(request), fixture.tools());
     std::size_t moved = 0;
     for (const double threshold : {0.25, 0.4, 0.6}) {
-        const auto label = edit::decide_label("ball", fixture.scene.set, found.found, threshold);
+        const auto label = edit::decide_label("ball", fixture.scene.set, found.found, threshold).label;
         for (std::size_t row = 0; row < label.bits->size(); ++row) {
             const bool known = found.found.field.coverage[row] > found.found.rule.least_coverage;
             if (known) DOCTEST_CHECK(((*label.weight)[row] > threshold) == ((*label.bits)[row] != 0));

@@ -274,6 +274,13 @@ DOCTEST_TEST_CASE("token soup makes legal plans, in the order of the operations,
     }
 }
 
+DOCTEST_TEST_CASE("figures are animals, persons and their likenesses; furniture and vehicles are none") {
+    for (const char* noun : {"bear", "man", "women", "statue", "bust", "robot", "stone statue", "puppies"})
+        DOCTEST_CHECK_MESSAGE(plan::names_figure(noun), noun);
+    for (const char* noun : {"chair", "car", "house", "pedestal", "table", "lamp", "", "red"})
+        DOCTEST_CHECK_MESSAGE(!plan::names_figure(noun), noun);
+}
+
 DOCTEST_TEST_CASE("long texts are read in a time that grows with their length") {
     std::string text;
     for (int i = 0; i < 300; ++i) text += "a bear and ";

@@ -53,7 +53,7 @@ DOCTEST_TEST_CASE("a slid label is decided anew, back and forth, and corrections
     for (const double threshold : std::array{0.3, 0.4, 0.6, 0.7}) {
         DOCTEST_CAPTURE(threshold);
         const auto slid = app::at_threshold(corrected, set, threshold);
-        auto expected = *edit::decide_label("ball", set, *found.label.found, threshold).bits;
+        auto expected = *edit::decide_label("ball", set, *found.label.found, threshold).label.bits;
         expected[0] = 0;
         DOCTEST_CHECK(*slid.bits == expected);
         DOCTEST_CHECK(slid.threshold == static_cast<float>(threshold));

@@ -163,6 +163,7 @@ constexpr std::string_view ClassNames[] = {"spelling",
                                            "person",
                                            "animal",
                                            "thing",
+                                           "figure",
                                            "fire_words",
                                            "fire_verb",
                                            "meta_verb",
@@ -540,6 +541,13 @@ bool is_grammatical(std::string_view word) {
 std::uint32_t kinds_of(std::string_view word) {
     const auto found = tables().kinds.find(word);
     return found == tables().kinds.end() ? 0 : found->second;
+}
+
+bool names_figure(std::string_view noun) {
+    const auto last = noun.substr(noun.find_last_of(' ') + 1);
+    const auto word = word_of(std::string(last));
+    return (kinds_of(word.singular) & (Animal | Person)) != 0 || has(Class::figure, noun) ||
+           has(Class::figure, word.singular);
 }
 
 bool is_word(std::string_view word) {

@@ -27,7 +27,7 @@ enum class Class : std::uint16_t {
     plant_name, clothes_name, synonyms, ground, ground_name, place, backdrop, environment, weather_verb,
     time_word, style, style_word, style_effect, state, pose, where_pose, pose_manner, look_word,
     worn_adjective, unworn_adjective, worn, pair_noun, part, body_place, whole_part, held, ridden,
-    container, floating, covering, compound, masculine, feminine, person, animal, thing, fire_words,
+    container, floating, covering, compound, masculine, feminine, person, animal, thing, figure, fire_words,
     fire_verb, meta_verb, meta_noun, meta, question, question_word, injection, narrative, subordinate,
     do_not, whatever, never_mind, correction, same_noise, irregular, irregular_verb, foreign, foreign_weak,
     empty, except, what_stands, shade_of, contrast_change, dressed_as, only, unwanted, hour, viewer, wish,
@@ -92,6 +92,10 @@ bool is_grammatical(std::string_view word);
 
 /// Bits of Kind of one word; 0 for a word that is in no list.
 std::uint32_t kinds_of(std::string_view word);
+
+/// Tells whether a noun names an animal, a person or a likeness of one (a statue, a robot): what may stand on
+/// a pedestal.
+bool names_figure(std::string_view noun);
 
 /// Tells whether it is an English word, in any form.
 bool is_word(std::string_view word);
