@@ -35,8 +35,14 @@ constexpr std::array<Term, 11> Terms{
      {"grey", {0.50, 0.50, 0.50}},
      {"pink", {0.95, 0.60, 0.70}}}};
 
-/// CIE 1976 L*a*b* of sRGB under D65 (IEC 61966-2-1, CIE 15).
-Colour lab(const Colour& srgb) {
+double distance(const Colour& a, const Colour& b) {
+    const double l = LightnessWeight * (a[0] - b[0]);
+    return l * l + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]);
+}
+
+}  // namespace
+
+Colour lab_of(const Colour& srgb) {
     const auto linear = [](double v) {
         return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
     };
@@ -51,13 +57,6 @@ Colour lab(const Colour& srgb) {
     return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
 }
 
-double distance(const Colour& a, const Colour& b) {
-    const double l = LightnessWeight * (a[0] - b[0]);
-    return l * l + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]);
-}
-
-}  // namespace
-
 ColourVote::ColourVote(const std::vector<std::string>& known) {
     for (std::size_t i = 0; i < Terms.size(); ++i)
         if (language::vocabulary_contains(known, Terms[i].word)) terms_.push_back(i);
@@ -68,10 +67,10 @@ void ColourVote::add(const Image& picture, const Image& share) {
     GSE_CHECK_EQ(picture.data.size(), share.data.size() * 3);
     if (terms_.empty()) return;
     std::vector<Colour> colours;
-    for (const auto term : terms_) colours.push_back(lab(Terms[term].srgb));
+    for (const auto term : terms_) colours.push_back(lab_of(Terms[term].srgb));
     for (std::size_t i = 0; i < share.data.size(); ++i) {
         if (!(share.data[i] > Counts)) continue;
-        const Colour pixel = lab({picture.data[i * 3], picture.data[i * 3 + 1], picture.data[i * 3 + 2]});
+        const Colour pixel = lab_of({picture.data[i * 3], picture.data[i * 3 + 1], picture.data[i * 3 + 2]});
         const auto nearest = std::min_element(
             colours.begin(), colours.end(),
             [&](const auto& a, const auto& b) { return distance(pixel, a) < distance(pixel, b); });

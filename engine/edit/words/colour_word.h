@@ -3,6 +3,7 @@
 // sentence for all.
 #pragma once
 
+#include <array>
 #include <map>
 #include <string>
 #include <vector>
@@ -10,6 +11,15 @@
 #include "engine/base/image.h"
 
 namespace gse::edit {
+
+/// CIE 1976 L*a*b* of sRGB in [0,1] under D65 (IEC 61966-2-1, CIE 15).
+std::array<double, 3> lab_of(const std::array<double, 3>& srgb);
+
+/// Luma of a pixel of a picture [H,W,3] (Rec. 709 weights on display values).
+inline float luma_of(const Image& picture, std::size_t pixel) {
+    return 0.2126f * picture.data[pixel * 3] + 0.7152f * picture.data[pixel * 3 + 1] +
+           0.0722f * picture.data[pixel * 3 + 2];
+}
 
 /// A vote of pixels on the basic colour term (Berlin and Kay 1969) that is nearest to them, in CIELAB with
 /// lightness at half weight: shading changes it most. Only words of `known` where it is not empty. Black,

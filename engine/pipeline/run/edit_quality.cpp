@@ -78,6 +78,7 @@ std::optional<double> likeness_of(const neural::TextToImage& model, edit::ImageT
 }  // namespace
 
 bool EditQuality::is_poor() const {
+    if (look) return *look < LeastLook;
     return score ? *score < LeastScore : likeness && *likeness < LeastLikeness;
 }
 
@@ -121,6 +122,7 @@ nlohmann::ordered_json verdict_to_json(const EditQuality& verdict) {
     json["verdict"] = verdict.verdict;
     json["warns"] = verdict.warns;
     if (verdict.likeness) json["likeness"] = *verdict.likeness;
+    if (verdict.look) json["look"] = *verdict.look;
     return json;
 }
 

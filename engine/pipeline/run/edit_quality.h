@@ -24,10 +24,16 @@ struct EditQuality {
     /// like none is a lump. For such a ground: share of the way to its usual colour
     /// (edit/target_views/strategies/default_ground_colour.h).
     std::optional<double> likeness = {};
+    /// Share of the redrawn thing that has the colour or material asked for, where the encoder does not know
+    /// such scenes: there its score says nothing.
+    std::optional<double> look = {};
 
     /// True when another way of drawing is worth a try.
     bool is_poor() const;
 };
+
+/// Least EditQuality::look of an edit that shows what was asked.
+inline constexpr double LeastLook = 0.4;
 
 /// A picture before and after.
 using PicturePair = std::pair<const Image*, const Image*>;
@@ -40,7 +46,7 @@ EditQuality judge(const neural::TextToImage& model, const language::EditSentence
 EditQuality judge_targets(const neural::TextToImage& model, const language::EditSentence& sentence,
                           const edit::ViewTargets& round);
 
-/// JSON {"score", "verdict", "warns"}, and "likeness" if it was asked.
+/// JSON {"score", "verdict", "warns"}, and "likeness" and "look" where they were asked.
 nlohmann::ordered_json verdict_to_json(const EditQuality& verdict);
 
 }  // namespace gse::pipeline

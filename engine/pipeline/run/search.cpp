@@ -129,20 +129,6 @@ std::string key_of(const Located& located) {
     return hash.key().hex();
 }
 
-edit::Finding finding_of(const RunContext& context, const Located& located) {
-    const auto& result = located.result;
-    return {context.drawn(),
-            result.word,
-            thing_of(result),
-            located.views.views,
-            result.views,
-            located.views.orbit,
-            located.views.front,
-            render_settings(context.scene(), located.recipe.request),
-            result.on_ground ? context.ground(located.recipe.request.sentence().before()) : std::nullopt,
-            context.traits()};
-}
-
 /// Tells whether the views are those of what the words found, and not of a new thing's place.
 bool shows_finding(const Located& located) {
     return !located.by_label() && located.found() && located.result.mode != edit::EditMode::Add &&
@@ -543,6 +529,20 @@ private:
 };
 
 }  // namespace
+
+edit::Finding finding_of(const RunContext& context, const Located& located) {
+    const auto& result = located.result;
+    return {context.drawn(),
+            result.word,
+            thing_of(result),
+            located.views.views,
+            result.views,
+            located.views.orbit,
+            located.views.front,
+            render_settings(context.scene(), located.recipe.request),
+            result.on_ground ? context.ground(located.recipe.request.sentence().before()) : std::nullopt,
+            context.traits()};
+}
 
 Located locate(RunContext& context, const CheckedRecipe& recipe, const Views& views, const Hints& hints,
                const JobControl& control) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/edit/search/locate.h"
+#include "engine/edit/search/second_look.h"
 #include "engine/pipeline/run/run_context.h"
 #include "engine/pipeline/run/views.h"
 
@@ -53,6 +54,9 @@ Located locate_by_label(RunContext& context, const Located& located, std::vector
 
 /// The label corrected by hand, [N] 0 or 1 (modify mode).
 Located with_label(const Located& located, const std::vector<std::uint8_t>& bits);
+
+/// What a search found, for a second look at it. Refers to its arguments.
+edit::Finding finding_of(const RunContext& context, const Located& located);
 
 /// Question that a recipe puts to its views. Refers to its arguments.
 edit::LocateInput question(const RunContext& context, const CheckedRecipe& recipe, const Views& views,

@@ -9,6 +9,7 @@
 #include "engine/base/log.h"
 #include "engine/edit/placement/head.h"
 #include "engine/edit/target_views/strategies/default_ground_colour.h"
+#include "engine/edit/target_views/strategies/look_correction.h"
 #include "engine/edit/target_views/strategies/whole_thing.h"
 #include "engine/edit/words/colour_word.h"
 #include "engine/language/description.h"
@@ -16,6 +17,7 @@
 #include "engine/language/words.h"
 #include "engine/pipeline/models/recipe_model.h"
 #include "engine/pipeline/models/segmenters.h"
+#include "engine/pipeline/run/search.h"
 
 namespace gse::pipeline {
 namespace {
@@ -64,6 +66,18 @@ EditQuality judge_drawn(const neural::TextToImage& model, const language::EditSe
             "The pictures show the colour of {}, which the model's encoder hardly sees (score {:.2f}).",
             sentence.target(), *verdict.score);
     }
+    return verdict;
+}
+
+/// Judges by the look itself, where the encoder does not know such scenes.
+EditQuality judge_look(const std::string& word, double share) {
+    EditQuality verdict;
+    verdict.look = share;
+    verdict.warns = share < LeastLook;
+    verdict.verdict = fmt::format(
+        "{:.0f} % of the redrawn thing looks {}. The model's encoder does not know "
+        "such scenes and is not asked.",
+        100 * share, word);
     return verdict;
 }
 
@@ -158,7 +172,18 @@ void ViewCandidate::add_editors(const DrawStrategy& strategy, const std::optiona
                               scene_edit_.context.drawn(), located.within, plan.settings);
     if (strategy.ground == DrawStrategy::Ground::Plain && ground)
         add<edit::OnPlainGround>(*editors_.back(), ground->plain, shown_before(plan, recipe));
+    if (const auto look = look_asked(); look && strategy.ground != DrawStrategy::Ground::DefaultColour)
+        corrected_ = &add<edit::LookCorrection>(*editors_.back(), *look);
     if (drawn != nullptr) add<CachedViews>(*editors_.back(), *drawn);
+}
+
+std::optional<edit::Look> ViewCandidate::look_asked() const {
+    const auto& [context, scene, located, plan, recipe, observer, control] = scene_edit_;
+    const auto look =
+        plan.mode == edit::EditMode::Modify && !remap_ ? edit::look_named(request_.target()) : std::nullopt;
+    // On things like those that it learned from the model knows better.
+    return look && !edit::encoder_knows(finding_of(context, located), context.recognition()) ? look
+                                                                                             : std::nullopt;
 }
 
 void ViewCandidate::draw() {
@@ -173,6 +198,8 @@ void ViewCandidate::draw() {
 EditQuality ViewCandidate::judge() const {
     const auto& model = scene_edit_.context.model();
     const auto mode = scene_edit_.plan.mode;
+    if (corrected_ != nullptr && corrected_->share())
+        return judge_look(request_.target(), *corrected_->share());
     return remap_ ? judge_undyed(model, request_, mode, *remap_, remapped_)
                   : judge_drawn(model, request_.sentence(), mode, *sheet_, scene_edit_.context.traits());
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/edit/target_views/strategies/colour_remap.h"
+#include "engine/edit/target_views/strategies/look_correction.h"
 #include "engine/pipeline/run/draw_strategy.h"
 
 namespace gse::pipeline {
@@ -44,6 +45,8 @@ private:
     template <class Editor, class... Parts> Editor& add(Parts&&... parts);
     void add_editors(const DrawStrategy& strategy, const std::optional<edit::GroundUnder>& ground,
                      std::vector<CachedPictures>* drawn);
+    /// Look that the sentence gives to what is there; none for a new thing, or one that a remap makes.
+    std::optional<edit::Look> look_asked() const;
     void show(const edit::ViewTargets& sheet);
 
     const SceneEdit& scene_edit_;
@@ -53,6 +56,7 @@ private:
     neural::SdsParameters settings_;
     std::vector<std::unique_ptr<edit::MultiViewEditor>> editors_;  // each draws with the one before it
     edit::DyedViews* remapped_ = nullptr;                          // one of them
+    edit::LookCorrection* corrected_ = nullptr;                    // another
     std::unique_ptr<edit::AttentionSource> attention_;
     std::unique_ptr<edit::Optimiser> optimiser_;
     std::optional<edit::ViewTargets> sheet_;

@@ -210,6 +210,10 @@ Verdict fault_of_meaning(const StepFigures& figures) {
     if (figures.likeness && *figures.likeness < LeastLikeness)
         return Fault{fmt::format("what came is like no known thing, and hardly like a {}", figures.news),
                      AnotherTry};
+    if (figures.look && *figures.look < LeastLook)
+        return Fault{fmt::format("only {:.0f} % of the {} looks {}", Percent * *figures.look, figures.thing,
+                                 figures.news),
+                     AnotherTry};
     if (!figures.pictures && !figures.scene) return {};
     const double score = std::max(figures.pictures.value_or(-1), figures.scene.value_or(-1));
     if (score >= LeastScore) return {};
@@ -241,8 +245,9 @@ StepFigures measure_step(EditJob& job) {
     if (const auto& verdict = job.edited().verdict) {
         figures.pictures = verdict->score;
         figures.likeness = verdict->likeness;
+        figures.look = verdict->look;
     }
-    if (edit::is_drawn(figures.mode))
+    if (edit::is_drawn(figures.mode) && !figures.look)
         figures.scene = judge(job.model(), sentence, sentence.prompt(), seen.pairs()).score;
     figures.changed = share(shares.changed, shares.thing);
     figures.spilled = share(shares.spilled, shares.outside);
@@ -282,6 +287,7 @@ nlohmann::ordered_json judgement_to_json(const StepJudgement& judgement) {
     json["score_pictures"] = score(figures.pictures);
     json["score_scene"] = score(figures.scene);
     if (figures.likeness) json["likeness"] = *figures.likeness;
+    if (figures.look) json["look"] = *figures.look;
     json["changed"] = figures.changed;
     json["spilled"] = figures.spilled;
     json["changed_rows_outside"] = figures.changed_rows;

@@ -20,6 +20,7 @@ struct StepFigures {
     std::optional<double> pictures;  // score of the redrawn views; none = nobody can tell
     std::optional<double> scene;     // score of renders of the result; none = nobody can tell
     std::optional<double> likeness;  // of what is drawn to a known thing, see EditQuality::likeness
+    std::optional<double> look;      // EditQuality::look, in place of the scores
     double changed = 0;              // pixels of the thing that changed clearly
     double spilled = 0;              // pixels outside the masks that changed clearly
     double old_left = 0;             // replace: pixels of the old thing that mainly show splats of it

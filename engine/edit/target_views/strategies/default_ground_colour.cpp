@@ -14,17 +14,12 @@ namespace {
 // these limits.
 constexpr float ShadePower = 0.5f, DarkestShade = 0.45f, BrightestShade = 1.12f;
 
-float luminance(const Image& picture, std::size_t pixel) {  // Rec. 709
-    return 0.2126f * picture.data[pixel * 3] + 0.7152f * picture.data[pixel * 3 + 1] +
-           0.0722f * picture.data[pixel * 3 + 2];
-}
-
 /// Median over the pixels of all masks; 0 if they hold nothing.
 float median_luminance(const std::vector<EditView>& views) {
     std::vector<float> values;
     for (const auto& view : views)
         for (std::size_t p = 0; p < view.mask.data.size(); ++p)
-            if (view.mask.data[p] != 0) values.push_back(luminance(view.original, p));
+            if (view.mask.data[p] != 0) values.push_back(luma_of(view.original, p));
     if (values.empty()) return 0;
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
@@ -74,7 +69,7 @@ EditedViews DefaultGroundColour::edit(const std::vector<EditView>& views, const 
         Image& image = targets.images.emplace_back(view.rendered);
         for (std::size_t p = 0; p < view.mask.data.size(); ++p) {
             if (view.mask.data[p] == 0) continue;
-            const float shade = std::clamp(std::pow(luminance(view.original, p) / median, ShadePower),
+            const float shade = std::clamp(std::pow(luma_of(view.original, p) / median, ShadePower),
                                            DarkestShade, BrightestShade);
             for (std::size_t c = 0; c < 3; ++c) image.data[p * 3 + c] = std::min(colour_[c] * shade, 1.0f);
         }
