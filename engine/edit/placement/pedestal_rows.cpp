@@ -14,15 +14,17 @@
 namespace gse::edit {
 namespace {
 
-constexpr double LowShare = 0.2;           // of the labelled rows: the lowest ones tell how walls stand
-constexpr int TurnStep = 5;                // degrees between directions that walls may have
-constexpr int Slices = 60;                 // over the label's height
-constexpr float SolidLogit = -0.85f;       // of the opacity (0.3) from which a row counts
-constexpr double Trim = 0.005;             // of the labelled rows, off at either end of an axis
-constexpr double Pad = 0.1;                // of the label's width: what stands so far out counts too
-constexpr double SliceTrim = 0.03;         // of a slice's rows, off at either end
-constexpr std::size_t LeastInSlice = 8;    // rows that tell a slice's bounds
-constexpr int BelowTop = 6;                // slices whose median is a prism's cross-section
+constexpr double LowShare = 0.2;         // of the labelled rows: the lowest ones tell how walls stand
+constexpr int TurnStep = 5;              // degrees between directions that walls may have
+constexpr int Slices = 60;               // over the label's height
+constexpr float SolidLogit = -0.85f;     // of the opacity (0.3) from which a row counts
+constexpr double Trim = 0.005;           // of the labelled rows, off at either end of an axis
+constexpr double Around = 0.35;          // of the label's width: what stands so far out counts too
+constexpr double Clipped = 0.03;         // of the section's width: so near the end of what counts it goes on
+constexpr double Seam = 0.1;             // of the section's width: rows of a pedestal beyond its walls
+constexpr double SliceTrim = 0.03;       // of a slice's rows, off at either end
+constexpr std::size_t LeastInSlice = 8;  // rows that tell a slice's bounds
+constexpr int BelowTop = 6;              // slices whose median is a prism's cross-section
 constexpr int AboveFrom = 2, AboveTo = 6;  // slices above a top: the object right above it
 constexpr double SameSide = 0.035;         // of the width: sides of one prism lie so near each other
 constexpr double MostAbove = 0.7;          // area of the object above, over the prism's
@@ -103,9 +105,9 @@ public:
         foot_ = quantile(heights, Trim);
         step_ = (quantile(std::move(heights), 1 - Trim) - foot_) / Slices;
         if (!(step_ > 0)) return;
-        const Rectangle place = bounds_of(labelled, Trim);
+        place_ = bounds_of(labelled, Trim);
         for (const auto& point : points)
-            if (place.has(point.at, Pad)) points_.push_back(point);
+            if (place_.has(point.at, Around)) points_.push_back(point);
         cut();
     }
     int lowest() const { return lowest_; }
@@ -119,6 +121,16 @@ public:
                                                                 : slices_[static_cast<std::size_t>(at)];
     }
     const std::vector<Point>& points() const { return points_; }
+    /// True where what a section bounds may go on beyond what counts.
+    bool clips(const Rectangle& section) const {
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            const double pad = Around * place_.width(axis), near = Clipped * section.width(axis);
+            if (section.low[axis] - (place_.low[axis] - pad) < near ||
+                place_.high[axis] + pad - section.high[axis] < near)
+                return true;
+        }
+        return false;
+    }
 
 private:
     void cut() {
@@ -138,6 +150,7 @@ private:
             if (rows[i].size() >= LeastInSlice) slices_[i].bounds = bounds_of(rows[i], SliceTrim);
     }
 
+    Rectangle place_;
     double foot_ = 0, step_ = 0;
     int lowest_ = 0;
     std::vector<Point> points_;  // at the label's place
@@ -250,7 +263,9 @@ bool has_walls(const SlicedColumn& column, const Prism& prism) {
 std::optional<Prism> highest_prism(const SlicedColumn& column) {
     for (int top = Slices * 2 / 3; top > column.lowest() + BelowTop / 2; --top) {
         const auto section = section_below(column, top);
-        if (!section || !column[top].bounds || !is_like(*column[top].bounds, *section)) continue;
+        if (!section || column.clips(*section) || !column[top].bounds ||
+            !is_like(*column[top].bounds, *section))
+            continue;
         const auto above = object_above(column, top, *section);
         if (!above) continue;
         const Prism prism{top, bottom_of(column, top, *section), *section, *above};
@@ -319,7 +334,7 @@ std::vector<std::uint8_t> pedestal_rows(const GaussianSet& set, const std::vecto
     std::vector<std::uint8_t> rows(bits.size(), 0);
     for (std::size_t row = 0; row < bits.size(); ++row) {
         const Vec3 p = place(row);
-        rows[row] = p.y < face && prism->section.has(p, Pad) ? 1 : 0;
+        rows[row] = p.y < face && prism->section.has(p, Seam) ? 1 : 0;
     }
     return rows;
 }

@@ -105,6 +105,12 @@ DOCTEST_TEST_CASE("a round belly below a head and legs is no pedestal") {
     DOCTEST_CHECK(bear.pedestal().empty());
 }
 
+DOCTEST_TEST_CASE("a label of the upper half alone does not make a pedestal of a wider lower half") {
+    Scene robed;
+    robed.box(0.3, 1, 2, 4000, true).box(0.7, 0, 1, 6000, false);
+    DOCTEST_CHECK(robed.pedestal().empty());
+}
+
 DOCTEST_TEST_CASE("a seat on legs whose feet were not labelled keeps its legs") {
     Scene chair;
     chair.box(0.6, 0.5, 0.7, 3000, true);
