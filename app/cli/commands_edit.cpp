@@ -159,11 +159,11 @@ void print_summary(const nlohmann::ordered_json& report, const std::filesystem::
           report["peak_rss_mb"].get<double>(),
           use_text({count("unet"), count("encoder"), count("decoder"), networks["tflop"].get<double>() * 1e12,
                     networks.value("cached", std::uint64_t{0})}));
-    print(
-        "edited scene   {}/scene.ply\nproject        {}/edit.gsep\nbefore, labels {}/source.ply\nfilm        "
-        "   {}/before_after.mp4\n"
-        "pictures       {}/before_after.png, {}/evidence/\nreport, recipe {}/report.json, {}/recipe.json\n",
-        text, text, text, text, text, text, text, text);
+    print("edited scene   {}/scene.ply\nproject        {}/edit.gsep\nbefore, labels {}/source.ply\n", text,
+          text, text);
+    if (report["files"].contains("before_after.mp4")) print("film           {}/before_after.mp4\n", text);
+    print("pictures       {}/before_after.png, {}/evidence/\nreport, recipe {}/report.json, {}/recipe.json\n",
+          text, text, text, text);
 }
 
 /// Ends an edit whose words were not found. What the search saw goes beside the place of the results, which
