@@ -372,11 +372,13 @@ void run_steps(const EditOptions& options, const EditSteps& steps, CommandContex
 void run_edit_command(EditOptions& options, CommandContext& context) {
     complete(options);
     EditSteps steps;
-    if (has_steps(options.recipe))
-        steps = steps_of_sentence(
-            options.recipe,
-            words_of_scene(options.recipe, options.scene_words, context.job(), answers(options)),
-            options.partly);
+    if (has_steps(options.recipe)) {
+        const auto& recipe = options.recipe;
+        const auto labels = names_in_scene(recipe);
+        const auto scene =
+            words_of_scene(recipe, options.scene_words, labels, context.job(), answers(options));
+        steps = steps_of_sentence(recipe, scene, options.partly, labels);
+    }
     if (steps.nothing_to_change) {
         if (options.json) print_json(plan_to_json(steps), 2);
         else print("Nothing to change: the sentence asks for nothing that is not there already.\n");
