@@ -71,7 +71,9 @@ DOCTEST_TEST_CASE("a thing that is dragged is one edit and one step of undo, and
     const auto at = app.document().position();
     DOCTEST_REQUIRE(app.model().placed);
     const Vec3 side = app.model().placed->side;
+    session.until([&] { return !session.preview.last.moving; }, 10);
     for (const double by : {0.1, 0.3, 0.5}) session.place(to_the_right(by));
+    DOCTEST_CHECK(session.preview.last.moving);  // its resolution may drop, as for the camera
     DOCTEST_CHECK(app.model().placing);
     DOCTEST_CHECK(app.document().position() == at + 1);
     DOCTEST_CHECK(session.state().stack.size() == 1);
@@ -96,6 +98,8 @@ DOCTEST_TEST_CASE("copies join the label; a change that cannot be made is said a
     settings.copies = 2;
     session.place(settings);
     DOCTEST_CHECK(session.state().current.size() == rows + labelled);
+    DOCTEST_CHECK(session.until(  // counted once nothing moves any more
+        [&] { return session.app.model().statistics.count == rows + labelled; }, 30));
     session.app.run(command::Undo{});
     session.app.update(session.preview);
     settings = {};
