@@ -159,11 +159,11 @@ void print_summary(const nlohmann::ordered_json& report, const std::filesystem::
           report["peak_rss_mb"].get<double>(),
           use_text({count("unet"), count("encoder"), count("decoder"), networks["tflop"].get<double>() * 1e12,
                     networks.value("cached", std::uint64_t{0})}));
-    print(
-        "edited scene   {}/scene.ply\nproject        {}/edit.gsep\nbefore, labels {}/source.ply\nfilm        "
-        "   {}/before_after.mp4\n"
-        "pictures       {}/before_after.png, {}/evidence/\nreport, recipe {}/report.json, {}/recipe.json\n",
-        text, text, text, text, text, text, text, text);
+    print("edited scene   {}/scene.ply\nproject        {}/edit.gsep\nbefore, labels {}/source.ply\n", text,
+          text, text);
+    if (report["files"].contains("before_after.mp4")) print("film           {}/before_after.mp4\n", text);
+    print("pictures       {}/before_after.png, {}/evidence/\nreport, recipe {}/report.json, {}/recipe.json\n",
+          text, text, text, text);
 }
 
 /// Ends an edit whose words were not found. What the search saw goes beside the place of the results, which
@@ -372,11 +372,13 @@ void run_steps(const EditOptions& options, const EditSteps& steps, CommandContex
 void run_edit_command(EditOptions& options, CommandContext& context) {
     complete(options);
     EditSteps steps;
-    if (has_steps(options.recipe))
-        steps = steps_of_sentence(
-            options.recipe,
-            words_of_scene(options.recipe, options.scene_words, context.job(), answers(options)),
-            options.partly);
+    if (has_steps(options.recipe)) {
+        const auto& recipe = options.recipe;
+        const auto labels = names_in_scene(recipe);
+        const auto scene =
+            words_of_scene(recipe, options.scene_words, labels, context.job(), answers(options));
+        steps = steps_of_sentence(recipe, scene, options.partly, labels);
+    }
     if (steps.nothing_to_change) {
         if (options.json) print_json(plan_to_json(steps), 2);
         else print("Nothing to change: the sentence asks for nothing that is not there already.\n");

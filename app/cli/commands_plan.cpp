@@ -16,6 +16,7 @@
 #include "engine/language/plan/plan_text.h"
 #include "engine/pipeline/models/model_words.h"
 #include "engine/pipeline/models/recipe_model.h"
+#include "engine/pipeline/scene/label_names.h"
 #include "engine/pipeline/scene/scene_loading.h"
 #include "engine/pipeline/steps/edit_steps.h"
 
@@ -102,18 +103,25 @@ void plan_file(const PlanOptions& options) {
     print("{} sentences planned, written to {}\n", planned, options.output.string());
 }
 
+/// Names of the scene's labels.
+std::vector<std::string> labels_of_scene(const PlanOptions& options) {
+    if (options.scene.empty()) return {};
+    return pipeline::label_names(load_scene(options.scene, options.reading).labels);
+}
+
 /// Words of the scene: those that were given, else its labels and the source.
-plan::SceneWords words_of_scene(const PlanOptions& options) {
+plan::SceneWords words_of_scene(const PlanOptions& options, const std::vector<std::string>& labels) {
     if (!options.words.empty()) return plan::scene_words(options.words);
     std::string words = options.source;
-    if (!options.scene.empty())
-        for (const auto& label : load_scene(options.scene, options.reading).labels.labels)
-            if (label.name != options.source) words += "; " + label.name;
+    for (const auto& label : labels)
+        if (label != options.source) words += "; " + label;
     return plan::scene_words(words);
 }
 
 /// The plan's steps, each told to the model or with the reason why it cannot be. Refusals have none.
-std::vector<edit::PlannedStep> steps_for_model(const plan::Plan& made, const PlanOptions& options) {
+std::vector<edit::PlannedStep> steps_for_model(const plan::Plan& made, const plan::SceneWords& scene,
+                                               const std::vector<std::string>& labels,
+                                               const PlanOptions& options) {
     edit::EditRequest request;
     request.source = options.source;
     request.prompt = options.prompt;
@@ -121,8 +129,8 @@ std::vector<edit::PlannedStep> steps_for_model(const plan::Plan& made, const Pla
     job.model = options.model;
     if (made.is_refusal()) return {};
     const auto model = pipeline::model_path(job);
-    return pipeline::known_to_model(
-        edit::planned_steps(made, words_of_scene(options), pipeline::model_ability(model)), request, model);
+    return pipeline::known_to_model(edit::planned_steps(made, scene, pipeline::model_ability(model)), request,
+                                    model, labels);
 }
 
 Json step_to_json(const edit::PlannedStep& planned) {
@@ -137,8 +145,10 @@ Json step_to_json(const edit::PlannedStep& planned) {
 }
 
 void plan_prompt(const PlanOptions& options) {
-    const auto made = plan::plan_sentence(options.prompt, words_of_scene(options), options.source);
-    auto steps = steps_for_model(made, options);
+    const auto labels = labels_of_scene(options);
+    const auto scene = words_of_scene(options, labels);
+    const auto made = plan::plan_sentence(options.prompt, scene, options.source);
+    auto steps = steps_for_model(made, scene, labels, options);
     if (steps.empty())
         for (const auto& step : made.steps) steps.push_back({step, std::nullopt, {}});
     Json list = Json::array();

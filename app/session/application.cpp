@@ -60,7 +60,7 @@ void Application::run(const ui::Command& command) {
 bool Application::busy() const {
     const auto& jobs = *workspace_.jobs;
     return jobs.works() || jobs.files.running() || files_.leaving() || workspace_.notices.shows_toasts() ||
-           view_.moving();
+           view_.moving() || files_.counts_later();
 }
 
 // Frames

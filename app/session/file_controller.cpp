@@ -428,7 +428,7 @@ void FileController::refresh() {
         if (!jobs.files.running()) recovery_.see_start_page();
         recovery_.refresh();
     } else {
-        counter_.refresh();
+        if (!parts_.view.moving()) counter_.refresh();  // not at every step of a drag
         if (workspace_.options.autosave && !jobs.saver.running()) {
             if (!unsaved()) {
                 if (recovery_.stale()) recovery_.discard();

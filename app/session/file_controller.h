@@ -43,6 +43,8 @@ public:
     /// Writes what is not saved to the recovery folder. `asked`: the artist said what becomes of it.
     void shut_down(bool asked);
     bool leaving() const { return leaving_.has_value(); }
+    /// True while the splats are to be counted once nothing moves any more.
+    bool counts_later() const { return !workspace_.document.empty() && counter_.behind(); }
 
 private:
     /// The edit is being stopped.

@@ -221,6 +221,7 @@ template <> void PlaceController::on(const command::PlaceThing& one) {
         const std::string name = next.stack.back().name;
         workspace_.document.apply(name, std::move(next), fmt::format("place{}", step_->id));
         step_->revision = workspace_.document.revision();
+        view_.set_camera(view_.camera());  // the resolution may drop, as while it moves
     } catch (const Error& error) {
         if (!goes_on) step_.reset();
         workspace_.notices.report(error);

@@ -96,8 +96,8 @@ void SearchController::refresh_reading() {
 
 void SearchController::follow_document() {
     last_.set_undone(!workspace_.document.includes(last_.step()));
-    const auto& stack = workspace_.document.state().stack;
-    sentence_.set_said(language::words_said(applied_sentences(stack)), things_made(stack));
+    const auto& state = workspace_.document.state();
+    sentence_.set_said(language::words_said(applied_sentences(state.stack)), things_added(state));
 }
 
 EditRecipe SearchController::recipe() const {
@@ -168,8 +168,10 @@ std::shared_ptr<MeasuredRun> SearchController::begin_run() {
 
 SearchGround SearchController::ground(const EditRecipe& recipe) const {
     const auto& state = workspace_.document.state();
-    return {workspace_.scene(), state.views, last_.of(state.current) ? last_.tuning(recipe) : std::nullopt,
-            sentence_.said()};
+    SearchGround ground{workspace_.scene(), state.views,
+                        last_.of(state.current) ? last_.tuning(recipe) : std::nullopt, sentence_.said()};
+    ground.scene.labels = label_set(state);
+    return ground;
 }
 
 SearchGround SearchController::ground(const StepChain& chain) const {
@@ -177,6 +179,7 @@ SearchGround SearchController::ground(const StepChain& chain) const {
     SearchGround ground{workspace_.scene(), state.views, std::nullopt, sentence_.said()};
     ground.scene.gaussians = state.current;
     ground.scene.extra = current_columns(state);
+    ground.scene.labels = label_set(state);
     ground.said.insert(ground.said.end(), chain.words().begin(), chain.words().end());
     ground.found = chain.source_found();
     return ground;

@@ -17,7 +17,7 @@
 
 namespace gse::app {
 
-constexpr double MovingSeconds = 0.25;  // after the last movement of the camera the picture is refined
+constexpr double MovingSeconds = 0.25;  // after the last movement the picture is refined
 
 class ViewController {
 public:
@@ -39,7 +39,7 @@ public:
     void draw_nothing() { shown_ = {}; }
     void show(ui::ViewportPart& model) const;
 
-    /// The camera moves, or did a moment ago.
+    /// The camera moves, or what is drawn does under a hand, or did a moment ago.
     bool moving() const;
     const Camera& camera() const { return camera_; }  // wanted
     Camera shown_camera() const;                      // of the picture on the screen

@@ -282,6 +282,9 @@ private:
     /// Replaces the rows in the shadow by lit copies. Cells in deep shadow become part of the hole.
     void light_again(Chart& chart, BitGrid& hole, const BitGrid& foot) {
         const auto shade = find_shade(chart, rows_, hole, foot, ShadowReach * body_.size / chart.cell);
+        auto& measured = healed_.shadow_measured;
+        measured.cell = std::max(measured.cell, chart.cell);
+        for (const auto i : chart.own) measured.rows.push_back({rows_[i].at, shade.gain[i]});
         for (std::size_t i = 0; i < hole.cells.size(); ++i)
             if (shade.deep.cells[i] != 0) hole.cells[i] = 1;
         clear_hole(chart, hole);

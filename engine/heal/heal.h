@@ -44,13 +44,24 @@ struct HealedSurface {
     bool copied = false;     // false = filled with plain colour, since there was too little to copy from
 };
 
+/// Light on the ground around a thing's foot, as its shadow leaves it.
+struct Shadow {
+    struct Row {
+        Vec3 at;       // world
+        Vec3 gain{1};  // factor per channel that lights the row again; 1 = it is in no shadow
+    };
+    std::vector<Row> rows;
+    double cell = 0;  // distance between neighbours, world units
+};
+
 struct Healed {
     std::vector<std::uint8_t> removed;  // [N] the thing, what it held, its shadow, garbage beneath it
     GaussianData added;                 // of the scene's SH degree
     std::vector<HealedSurface> surfaces;
     // Rows of `removed` beside the thing: held parts, rows that were lit again, remains in foot and holes.
     std::size_t carried = 0, shadow = 0, cleared = 0;
-    std::string open;  // sentence on what stays open; empty = nothing
+    Shadow shadow_measured;  // of the surface that it stood on; without rows = none was looked for
+    std::string open;        // sentence on what stays open; empty = nothing
 };
 
 /// Removes the rows of `thing` and continues the surfaces that it stood on or hid. Other rows stay as they

@@ -402,4 +402,12 @@ std::size_t count_labelled(const NamedLabel& label) {
         std::count_if(label.bits->begin(), label.bits->end(), [](auto bit) { return bit != 0; }));
 }
 
+LabelSet label_set(const DocumentState& state) {
+    const auto none = std::make_shared<const std::vector<float>>(state.current.size(), 0.0f);
+    LabelSet set;
+    for (const NamedLabel& label : state.labels)
+        set.labels.push_back({label.name, label.weight ? label.weight : none, label.bits});
+    return set;
+}
+
 }  // namespace gse

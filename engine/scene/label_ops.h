@@ -84,4 +84,7 @@ WeightHistogram weight_histogram(const NamedLabel& label);
 
 std::size_t count_labelled(const NamedLabel& label);
 
+/// Labels of a state as those of a scene with its current rows, in their order.
+LabelSet label_set(const DocumentState& state);
+
 }  // namespace gse

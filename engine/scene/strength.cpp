@@ -6,9 +6,14 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "engine/base/check.h"
 #include "engine/math/sh.h"
+#include "engine/scene/transform/transformed.h"
+#include "engine/scene/transform/turn_share.h"
 
 namespace gse {
 namespace {
@@ -113,6 +118,23 @@ struct Entry {
     std::size_t row = Absent;  // of the set before
 };
 
+/// The changed rows of the delta at a strength, where they turn as one; nothing where they do not. `entries`
+/// are those rows in their order.
+std::optional<GaussianData> turned_rows(const GaussianSpans& before, std::span<const Entry> entries,
+                                        const SceneDelta& delta, double strength) {
+    std::vector<std::size_t> from(delta.changed.size());
+    for (std::size_t k = 0; k < from.size(); ++k) from[k] = entries[k].row;
+    const auto turn = common_turn(before, from, delta.changed_rows);
+    if (!turn || strength > 1) return turn ? std::optional(delta.changed_rows) : std::nullopt;
+    GaussianData rows;
+    rows.sh_degree = std::max(before.sh_degree, delta.changed_rows.sh_degree);
+    for (std::size_t k = 0; k < from.size(); ++k)
+        rows.append_row(from[k] == Absent ? row_of(spans(delta.changed_rows), k, rows.sh_degree)
+                                          : row_of(before, from[k], rows.sh_degree),
+                        0);
+    return transformed(std::move(rows), share_of_turn(*turn, strength));
+}
+
 }  // namespace
 
 SceneDelta with_strength(const GaussianSet& before, std::span<const RowId> ids, const SceneDelta& delta,
@@ -135,11 +157,13 @@ SceneDelta with_strength(const GaussianSet& before, std::span<const RowId> ids, 
         if (back[k] == Absent) mixed.removed.push_back(delta.removed[k]);
         else entries.push_back({delta.removed[k], true, k, back[k]});
     }
+    const auto turned = turned_rows(rows, entries, delta, strength);
     std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.id < b.id; });
     for (const Entry& entry : entries) {
         GaussianData row = entry.removed ? row_of(rows, entry.row, degree)
                                          : row_of(spans(delta.changed_rows), entry.k, degree);
         if (entry.removed) row.opacity_logit[0] = fainter(row.opacity_logit[0], 1 - strength);
+        else if (turned) row = row_of(spans(*turned), entry.k, degree);
         else if (entry.row != Absent) mix_row(rows, entry.row, row, strength);
         mixed.changed.push_back(entry.id);
         mixed.changed_rows.append_row(row, 0);

@@ -14,7 +14,8 @@ constexpr double MostStrength = 2;
 ///
 /// Below 1, changed rows lie between before and after. Positions, log-scales and colours lie on the straight
 /// line. Rotations are normalised quaternions, and opacities follow the covered area. Added rows are fainter
-/// by the strength; removed ones come back faintly by the rest.
+/// by the strength; removed ones come back faintly by the rest. Rows that turn as one, and change nothing
+/// else, go along their turn (share_of_turn()).
 ///
 /// Above 1, colours go on along their line, as far as a file can hold them. All other values stay. Rows that
 /// the delta does not name stay out of it.

@@ -9,7 +9,8 @@ import subprocess
 import time
 import unittest
 
-from program import PROGRAM, SHARED, ProgramTest, can_mount, run, run_in_namespace
+from program import (PROGRAM, SHARED, ProgramTest, can_mount, grid_rows, ply_bytes, run,
+                     run_in_namespace)
 
 ASSETS = pathlib.Path(__file__).resolve().parents[2] / "assets"
 MODEL = ASSETS / "models/starter"
@@ -73,6 +74,27 @@ class Edits(ProgramTest):
         self.edit(again, "--use-label", "--keep-failed", scene=out / "edit.gsep")
         first, second = (json.loads((folder / "report.json").read_text()) for folder in (out, again))
         self.assertEqual(second["labelled"], first["labelled"] + first["added"] - first["removed"])
+
+    def test_the_name_of_a_label_is_a_word_and_a_project_goes_on_with_its_edits(self):
+        """A second scene put into the sample, turned and removed by its name."""
+        guest = self.write("gizmo.ply", ply_bytes(grid_rows(8)))
+        both, turned, gone = (self.folder / name for name in ["both.ply", "turned", "gone"])
+        merged = run("merge", ASSETS / "scenes/bear/scene.ply", guest, "--up-b", "-y", "--out", both)
+        self.assertEqual(merged.returncode, 0, merged.stderr)
+        plan = run("plan", both, "--source", "gizmo", "--prompt", "rotate the gizmo")
+        self.assertNotIn("cannot be done", plan.stdout)
+        for scene, prompt, folder in [(both, "rotate the gizmo 90 degrees", turned),
+                                      (turned / "edit.gsep", "remove the gizmo", gone)]:
+            edit = run("edit", scene, "--source", "gizmo", "--prompt", prompt, "--out", folder,
+                       "--views", 8, "--image-size", 64, "--turntable-frames", 0)
+            self.assertEqual(edit.returncode, 0, edit.stderr)
+            self.assertNotIn("does not know", edit.stderr)
+            self.assertFalse((folder / "before_after.mp4").exists())
+        fewer = self.info(both)["splats"] - self.info(gone / "scene.ply")["splats"]
+        self.assertGreater(fewer, 400)   # of 512: some fill the hole
+        project = json.loads(run("project", gone / "edit.gsep", "--json").stdout)
+        self.assertEqual(len(project["edits"]), 2)
+        self.assertEqual(pathlib.Path(project["scene"]).name, "both.ply")
 
     def test_bad_values_stay_and_count_nowhere(self):
         scene = SHARED / "data/hostile/bear_bad_values.ply"

@@ -120,7 +120,7 @@ SUB_ROOMS = {
         "models": {"recipe"},
         "select": {"scene"},
         "run": {"recipe", "scene", "models", "select"},
-        "steps": {"recipe", "models", "run"},
+        "steps": {"recipe", "scene", "models", "run"},
         "report": {"recipe", "scene", "models", "run"},
     },
 }

@@ -6,8 +6,8 @@
 namespace gse::app {
 
 void SceneCounter::refresh() {
+    if (!behind()) return;
     const auto& current = workspace_.document.state().current;
-    if (counted_.shares_all_with(current)) return;
     auto statistics = std::make_shared<SceneStatistics>();
     auto done = [this, statistics, opened = workspace_.opened](const Error*) {
         if (opened == workspace_.opened) statistics_ = *statistics;

@@ -12,6 +12,8 @@ public:
     explicit SceneCounter(Workspace& workspace) : workspace_(workspace) {}
     /// Counts the document's splats where they are others than those counted last. Once per frame.
     void refresh();
+    /// True while the document's splats are others than those counted last.
+    bool behind() const { return !counted_.shares_all_with(workspace_.document.state().current); }
     /// They were counted when the document was read.
     void take(const GaussianSet& counted, const SceneStatistics& statistics);
     const SceneStatistics& statistics() const { return statistics_; }

@@ -14,7 +14,7 @@ namespace gse::app {
 ProjectData project_of(EditJob& job, const nlohmann::ordered_json& report);
 
 /// The project with another edit on its stack, of a job on the scene that it shows. An empty project becomes
-/// project_of().
+/// project_of(). A job on a project file goes on with the edits of that project.
 ProjectData project_with(const ProjectData& earlier, EditJob& job, const nlohmann::ordered_json& report);
 
 }  // namespace gse::app

@@ -137,6 +137,16 @@ bool is_addition(const NamedLabel& label, const std::vector<RowId>& row_ids) {
     return any;
 }
 
+std::vector<std::string> things_added(const DocumentState& state) {
+    auto things = things_made(state.stack);
+    for (const NamedLabel& label : state.labels) {
+        auto name = language::normalised_prompt(label.name);
+        if (state.row_ids && is_addition(label, *state.row_ids) && !language::contains(things, name))
+            things.push_back(std::move(name));
+    }
+    return things;
+}
+
 namespace {
 
 /// The artist's word about a label for this source; nothing = none was said.

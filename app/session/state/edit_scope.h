@@ -68,6 +68,10 @@ std::vector<language::EditSentence> applied_sentences(const std::vector<EditNode
 /// Things that the edits of a stack have put into the scene.
 std::vector<std::string> things_made(const std::vector<EditNode>& stack);
 
+/// Things that edits have put into the scene: those of sentences, and those that labels of added rows are
+/// named for.
+std::vector<std::string> things_added(const DocumentState& state);
+
 /// Search settings of the active label: thresholds and excluded views. A negative attention threshold = not
 /// by a search.
 struct FoundWith {

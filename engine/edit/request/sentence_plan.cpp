@@ -7,6 +7,7 @@
 #include <array>
 #include <utility>
 
+#include "engine/language/grammar.h"
 #include "engine/language/plan/plan_sentence.h"
 #include "engine/language/plan/plan_text.h"
 #include "engine/language/plan/words/lexicon.h"
@@ -151,6 +152,16 @@ plan::SceneWords assumed_scene(const EditRequest& request, const std::vector<std
             }
     for (const auto& noun : made) add(noun, false);
     return scene;
+}
+
+std::vector<std::string> words_naming(const EditRequest& request) {
+    auto words = language::words_of(request.source);
+    for (const auto& term : language::noun_terms(language::words_of(request.prompt), {}))
+        if (language::says_something(term))
+            for (auto& word : language::words_of(term)) words.push_back(std::move(word));
+    std::sort(words.begin(), words.end());
+    words.erase(std::unique(words.begin(), words.end()), words.end());
+    return words;
 }
 
 std::string with_source(const std::string& words, const EditRequest& request) {

@@ -26,6 +26,9 @@ struct PlannedStep {
 language::plan::SceneWords assumed_scene(const EditRequest& request,
                                          const std::vector<std::string>& made = {});
 
+/// Words of source and sentence that name or describe something, each once.
+std::vector<std::string> words_naming(const EditRequest& request);
+
 /// The scene's words with the request's source first, where none of them names it.
 std::string with_source(const std::string& words, const EditRequest& request);
 

@@ -9,6 +9,7 @@
 #include "engine/edit/words/dye_words.h"
 #include "engine/language/lexicon.h"
 #include "engine/language/vocabulary.h"
+#include "engine/language/words.h"
 
 namespace gse::edit {
 namespace {
@@ -58,14 +59,17 @@ void require_findable(const CheckedRequest& request, const std::vector<std::stri
 }  // namespace
 
 void require_known_words(const CheckedRequest& request, const std::vector<std::string>& known,
-                         const std::vector<std::string>& drawn, bool labelled_by_hand) {
+                         const std::vector<std::string>& drawn, bool labelled_by_hand,
+                         const std::vector<std::string>& labels) {
     const auto say = language::promptable_vocabulary(known, drawn);
     if (request.whole_scene() && !known.empty())
         throw Error(ErrorCode::InvalidArgument,
                     "the look of a whole scene is drawn by models of an open vocabulary alone",
                     "choose a model such as Stable Diffusion or InstructPix2Pix");
-    if (!labelled_by_hand && !request.whole_scene()) require_findable(request, known, say);
-    require_anchor(request, known);
+    const bool labelled =
+        labelled_by_hand || (request.part_of().empty() && language::contains(labels, request.source()));
+    if (!labelled && !request.whole_scene()) require_findable(request, known, say);
+    if (!language::contains(labels, request.anchor())) require_anchor(request, known);
     if (request.is_rearranged()) return;
     const auto target = language::unknown_word(say, request.target());
     if (!target.empty())

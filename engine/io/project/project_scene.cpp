@@ -1,9 +1,8 @@
 // The scene that a project shows: its splats with the edits that are on, and its labels.
 #include <algorithm>
-#include <memory>
-#include <vector>
 
 #include "engine/io/project/project_file.h"
+#include "engine/scene/label_ops.h"
 
 namespace gse {
 
@@ -13,10 +12,8 @@ Scene scene_of_project(const ProjectData& project) {
     scene.gaussians = state.current;
     scene.info = state.info;
     scene.extra = current_columns(state);
-    const auto none = std::make_shared<const std::vector<float>>(state.current.size(), 0.0f);
+    scene.labels = label_set(state);
     auto& labels = scene.labels.labels;
-    for (const NamedLabel& label : state.labels)
-        labels.push_back({label.name, label.weight ? label.weight : none, label.bits});
     if (state.active_label > 0 && state.active_label < static_cast<int>(labels.size()))
         std::rotate(labels.begin(), labels.begin() + state.active_label,
                     labels.begin() + state.active_label + 1);

@@ -160,9 +160,12 @@ void add_inside(const HeldOut& seen, Json& json) {
 }
 
 void add_outside(const HeldOut& seen, Json& json) {
-    OutsideFigures outside;
-    for (std::size_t v = 0; v < seen.before.size(); ++v)
+    OutsideFigures outside, of_truth;
+    for (std::size_t v = 0; v < seen.before.size(); ++v) {
         outside.add(seen.before[v], seen.after[v], seen.traces[v]);
+        of_truth.add(seen.truth[v], seen.after[v], seen.traces[v]);
+    }
+    json["truth_psnr_outside_db"] = of_truth.psnr_db();
     json["psnr_outside_db"] = outside.psnr_db();
     json["ssim_outside"] = outside.ssim();
     json["leak_rate"] = outside.leak_rate();

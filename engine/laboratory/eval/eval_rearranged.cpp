@@ -58,10 +58,10 @@ public:
     Json figures() {
         Json json{{"label_iou", label_iou()}, {"labelled", count_of(label_)}};
         json["rows_changed_outside"] = job_.result().changed_outside_label;
+        if (edit_.asked.things > 0) add_maps(json);
         json["rows_removed_lit"] = removed(0);
         json["rows_removed_far"] = removed(FarAway * extent_.longest());
         json["rows_added"] = count_of(job_.result().hole_fill);
-        if (edit_.asked.things > 0) add_maps(json);
         if (const auto front = job_.front_read())
             json["front_error_degrees"] =
                 std::abs(std::remainder(*front - synth::turn_of(edit_.source), 2 * std::numbers::pi)) * 180 /
@@ -100,10 +100,10 @@ private:
         return either > 0 ? both / either : 0;
     }
 
-    /// Number of rows that are gone, and neither labelled nor in the thing's shadow, and farther from its
-    /// foot than `distance`.
+    /// Number of rows that are gone, and neither labelled nor in the thing's shadow before or after, and
+    /// farther from its foot than `distance`.
     std::size_t removed(double distance) const {
-        const Bits dark = shadowed_rows(scene_);
+        const Bits dark = shadowed_rows(scene_, places_);
         std::size_t count = 0;
         for (std::size_t row = 0; row < label_.size(); ++row) {
             if (label_[row] != 0 || dark[row] != 0 || job_.result().base_to_new[row] >= 0) continue;

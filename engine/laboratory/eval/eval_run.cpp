@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "engine/base/error.h"
 #include "engine/base/process_memory.h"
@@ -17,6 +18,7 @@
 #include "engine/laboratory/eval/eval_sheet.h"
 #include "engine/laboratory/eval/eval_suite.h"
 #include "engine/laboratory/eval/eval_summary.h"
+#include "engine/laboratory/eval/rearranged_truth.h"
 #include "engine/language/words.h"
 #include "engine/pipeline/report/edit_output.h"
 #include "engine/pipeline/steps/step_judgement.h"
@@ -203,6 +205,8 @@ private:
         Json entry = case_json(edit, index);
         const auto recipe = this->recipe(edit);
         EvalSetting setting = make_setting(edit, recipe.request, run_.parameters.held_out_views);
+        if (run_.parameters.scanned && edit.kind == "replace")
+            setting.source = bench::scanned(std::move(setting.source), tools().painter.rasterizer());
         pipeline::EditJob job(recipe, input(setting), quiet());
         try {
             job.locate();

@@ -23,6 +23,7 @@ struct EvalParameters {
     bool ablations = false;
     int ablation_edits = 6;
     bool drawn_words = false;
+    bool scanned = false;
     // Above the scores of pictures in which something else changed (`gseditpro-lab bench clip`).
     double success_direction = 0.25;
     int sheet_rows = 6;
@@ -36,6 +37,8 @@ struct EvalParameters {
           "Nothing is drawn for \"remove\", \"resize\", \"move\", \"rotate\" and \"duplicate\".");
         f("drawn_words", self.drawn_words,
           "Name added and replacing objects by words that the bundled model draws and does not look for.");
+        f("scanned", self.scanned,
+          "Begin replacements with scenes that lack the ground which no view of a scan shows.");
         f("mode", self.mode,
           "Mode the edits are asked for: auto, or right (modify, replace or add, as each needs).");
         f("held_out_views", self.held_out_views,

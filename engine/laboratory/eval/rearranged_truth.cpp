@@ -193,8 +193,10 @@ synth::SynthScene directional_scene(const synth::SceneSpec& spec) {
     return scene;
 }
 
-std::vector<std::uint8_t> shadowed_rows(const synth::SynthScene& scene) {
-    const GaussianSet ground = synth::ground_under(scene.spec, {});
+std::vector<std::uint8_t> shadowed_rows(const synth::SynthScene& scene,
+                                        const std::vector<synth::Placing>& places) {
+    const GaussianSet ground = synth::ground_under(scene.spec, {}),
+                      later = synth::ground_under(scene.spec, places);
     const GaussianSet& set = scene.scene.gaussians;
     const std::size_t stride = set.empty() ? Channels : set.sh().size() / set.size();
     std::vector<std::uint8_t> dark(set.size(), 0);
@@ -202,8 +204,11 @@ std::vector<std::uint8_t> shadowed_rows(const synth::SynthScene& scene) {
     for (std::size_t row = 0; row < set.size() && scene.parts[row] == synth::Part::Ground; ++row, ++lit) {
         while (lit < ground.size() && at(ground.position(), lit) != at(set.position(), row)) ++lit;
         GSE_CHECK(lit < ground.size());
-        for (std::size_t c = 0; c < Channels; ++c)
-            if (ground.sh()[lit * Channels + c] - set.sh()[row * stride + c] > LeastDarker) dark[row] = 1;
+        for (std::size_t c = 0; c < Channels; ++c) {
+            const float light = ground.sh()[lit * Channels + c];
+            if (light - std::min(set.sh()[row * stride + c], later.sh()[lit * Channels + c]) > LeastDarker)
+                dark[row] = 1;
+        }
     }
     return dark;
 }

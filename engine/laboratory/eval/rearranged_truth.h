@@ -57,8 +57,9 @@ synth::Placing asked_map(const EvalCase& edit, const ThingExtent& thing, const F
 /// Scene of a case with colours of the object that depend on the direction: SH degree 1.
 synth::SynthScene directional_scene(const synth::SceneSpec& spec);
 
-/// [N] 1 for rows of the ground that the object's shadow darkens.
-std::vector<std::uint8_t> shadowed_rows(const synth::SynthScene& scene);
+/// [N] 1 for rows of the ground that the object's shadow darkens, here or where it goes.
+std::vector<std::uint8_t> shadowed_rows(const synth::SynthScene& scene,
+                                        const std::vector<synth::Placing>& places = {});
 
 /// Scene without the ground that no view of a scan around the thing shows.
 synth::SynthScene scanned(synth::SynthScene scene, raster::Rasterizer& rasterizer);

@@ -87,7 +87,8 @@ struct JobParameters {
           "sure of one. Empty = not known.");
         f("turntable_size", self.turntable_size, "Side of each half of the before/after film in pixels.",
           Range{16, 4096});
-        f("turntable_frames", self.turntable_frames, "Frames of the before/after film.", Range{1, 10000});
+        f("turntable_frames", self.turntable_frames, "Frames of the before/after film; 0 = no film.",
+          Range{0, 10000});
     }
 
     /// True when the source may be any word, since the label is known without it.

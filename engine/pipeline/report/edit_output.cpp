@@ -124,12 +124,14 @@ void write_before_after(const fs::path& folder, EditJob& job) {
         const Image before = job.painter().paint(job.drawn().spans(), camera, settings).colour;
         return side_by_side(before, job.painter().paint(job.drawn_result().spans(), camera, settings).colour);
     };
-    VideoWriter film(folder / "before_after.mp4", 2 * side + 2, side, 24);
-    for (int frame = 0; frame < frames; ++frame) {
-        film.add(pair(2 * std::numbers::pi * frame / frames));
-        job.control().report("film", frame + 1, frames);
+    if (frames > 0) {
+        VideoWriter film(folder / "before_after.mp4", 2 * side + 2, side, 24);
+        for (int frame = 0; frame < frames; ++frame) {
+            film.add(pair(2 * std::numbers::pi * frame / frames));
+            job.control().report("film", frame + 1, frames);
+        }
+        film.finish();
     }
-    film.finish();
     // Four directions under each other, before on the left and after on the right.
     constexpr int directions = 4;
     Image sheet(2 * side + 2, directions * side, 3);

@@ -23,6 +23,7 @@
 #include "engine/pipeline/models/neural_loader.h"
 #include "engine/pipeline/models/probe.h"
 #include "engine/pipeline/run/scene_words.h"
+#include "engine/pipeline/scene/label_names.h"
 #include "engine/pipeline/scene/scene_loading.h"
 #include "engine/pipeline/select/cut_out.h"
 
@@ -98,7 +99,7 @@ void warn_unknown_words(const std::vector<std::string>& words, const std::vector
 
 EditJob::EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCache> cache)
     : recipe_(check(std::move(recipe))), control_(std::move(control)) {
-    check_recipe(nullptr);
+    check_recipe();
     if (recipe_.job.use_label && !recipe_.job.cut_out.empty())
         throw Error(ErrorCode::InvalidArgument, "--use-label and --cut-out both say what may change",
                     "leave one of them out");
@@ -113,6 +114,7 @@ EditJob::EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCach
     for (const auto& note : notes) log::warning("{}", note);
     if (recipe_.job.use_label) hints_.label = label_of(scene, recipe_.job.scene);
     times_.end();
+    check_words(nullptr, scene.labels);
     GivenCameras given;
     given.cameras = std::move(cameras);
     times_.begin("load_model");
@@ -137,7 +139,8 @@ EditJob::EditJob(EditRecipe recipe, EditJobInput input, JobControl control)
         model = std::move(input.tuned->model);
         tuning_ = std::move(input.tuned->report);
     }
-    check_recipe(model.get());
+    check_recipe();
+    check_words(model.get(), input.scene.labels);
     GSE_CHECK(input.view_words.empty() || input.view_words.size() == input.cameras.size());
     GivenCameras given;
     for (std::size_t i = 0; i < input.view_words.size(); ++i)
@@ -146,23 +149,35 @@ EditJob::EditJob(EditRecipe recipe, EditJobInput input, JobControl control)
     begin(std::move(input.scene), std::move(model), std::move(input.segmenters), given);
 }
 
-void EditJob::check_recipe(const neural::TextToImage* model) const {
+void EditJob::check_recipe() const {
     check_fields(recipe_.job);
     check_fields(recipe_.guidance);
     check_fields(recipe_.attention);
     check_fields(recipe_.dreambooth);
-    const auto known = model != nullptr ? model->known_words() : model_words(model_path(recipe_.job));
-    const auto drawn = !edit::method_of(recipe_.request).draws_views() ? std::vector<std::string>{}
-                       : model != nullptr ? edit::with_dyes(model->generated_vocabulary(), known)
-                                          : generated_vocabulary(model_path(recipe_.job));
-    edit::require_known_words(recipe_.request, known, drawn,
-                              recipe_.job.brings_label() || !hints_.label.empty());
     check_length();
     parse_colour(recipe_.request.background);
     parse_up(recipe_.job.up, {});
     parse_front(recipe_.job.front);
     parse_front(recipe_.job.looked_from, "--looked-from");
     raster::require_rasterizer(recipe_.job.rasterizer);
+}
+
+/// Checks the words, after it has taken the label that one of them is the name of. A word that the model can
+/// find is looked for all the same.
+void EditJob::check_words(const neural::TextToImage* model, const LabelSet& labels) {
+    const auto known = model != nullptr ? model->known_words() : model_words(model_path(recipe_.job));
+    const auto drawn = !edit::method_of(recipe_.request).draws_views() ? std::vector<std::string>{}
+                       : model != nullptr ? edit::with_dyes(model->generated_vocabulary(), known)
+                                          : generated_vocabulary(model_path(recipe_.job));
+    const auto& source = recipe_.request.source();
+    const bool looked_for = hints_.label.empty() && hints_.found.empty() && recipe_.request.part_of().empty();
+    if (looked_for && !recipe_.job.brings_label()) {
+        if (const Label* label = label_for(labels, source, known)) hints_.label = *label->bits;
+        else if (label_named(labels, source) != nullptr)
+            log::info("\"{}\" is looked for by its word; --use-label takes the label of that name", source);
+    }
+    edit::require_known_words(recipe_.request, known, drawn,
+                              recipe_.job.brings_label() || !hints_.label.empty(), label_names(labels));
 }
 
 /// The text encoder has so many places; what stands behind them has no effect.
@@ -195,21 +210,28 @@ std::vector<std::string> telling_words(const language::Sentence& sentence) {
     return words;
 }
 
+/// Words that the model is told and must know, each once. `labelled`: the source is found without it.
+std::vector<std::string> told_words(const edit::CheckedRequest& request, bool labelled) {
+    if (request.is_rearranged()) return {};  // nothing is drawn, and what is looked for was checked
+    auto words = telling_words(request.sentence().sentence());
+    const auto of_source = language::words_of(request.source());
+    if (!request.whole_scene()) words.insert(words.end(), of_source.begin(), of_source.end());
+    // A part is told by its thing's shape, where it has no word.
+    if (labelled || !request.part_of().empty())
+        for (const auto& word : of_source) std::erase(words, word);
+    std::sort(words.begin(), words.end());
+    words.erase(std::unique(words.begin(), words.end()), words.end());
+    return words;
+}
+
 }  // namespace
 
 void EditJob::begin(Scene scene, std::shared_ptr<neural::TextToImage> model, Segmenters segmenters,
                     const GivenCameras& given) {
     context_ =
         std::make_unique<RunContext>(std::move(scene), std::move(model), recipe_.job, std::move(segmenters));
-    auto words = telling_words(recipe_.request.sentence().sentence());
-    for (auto& word : language::words_of(recipe_.request.source())) words.push_back(std::move(word));
-    if (!recipe_.request.part_of().empty())  // a part is told by its thing's shape, where it has no word
-        for (const auto& part : language::words_of(recipe_.request.source())) std::erase(words, part);
-    if (recipe_.request.whole_scene()) words = telling_words(recipe_.request.sentence().sentence());
-    std::sort(words.begin(), words.end());
-    words.erase(std::unique(words.begin(), words.end()), words.end());
     const auto known = context_->model().known_words();
-    warn_unknown_words(words,
+    warn_unknown_words(told_words(recipe_.request, !hints_.label.empty() || !hints_.found.empty()),
                        edit::method_of(recipe_.request).draws_views()
                            ? language::promptable_vocabulary(
                                  known, edit::with_dyes(context_->model().generated_vocabulary(), known))

@@ -148,7 +148,8 @@ public:
     const JobControl& control() const { return control_; }
 
 private:
-    void check_recipe(const neural::TextToImage* model) const;
+    void check_recipe() const;
+    void check_words(const neural::TextToImage* model, const LabelSet& labels);
     void check_length() const;
     void begin(Scene scene, std::shared_ptr<neural::TextToImage> model, Segmenters segmenters,
                const GivenCameras& given);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "engine/base/check.h"
@@ -12,9 +13,11 @@
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/edit/placement/rearrangement.h"
+#include "engine/heal/carried_shade.h"
 #include "engine/heal/heal.h"
 #include "engine/language/grammar.h"
 #include "engine/localize/clusters.h"
+#include "engine/pipeline/scene/label_names.h"
 #include "engine/scene/delta.h"
 #include "engine/scene/transform/joined_sets.h"
 #include "engine/scene/transform/transformed.h"
@@ -107,10 +110,11 @@ std::vector<Mask> touched_masks(const SceneEdit& edit, const RowChange& change,
     return masks;
 }
 
-/// Rows that go with the thing, and rows that fill its hole.
-heal::Healed healed(const SceneEdit& edit, const Bits& thing) {
+/// Rows that go with the thing, and rows that fill its hole. `lit`: its shadow goes, too.
+heal::Healed healed(const SceneEdit& edit, const Bits& thing, bool lit = true) {
     heal::HealSettings settings;
     settings.seed = edit.recipe.request.seed;
+    settings.shadow = lit;
     edit.control.report("healing the hole", 0, 0);
     return heal::remove_and_heal({edit.scene, thing, edit.located.views.orbit.up, edit.control}, settings);
 }
@@ -142,18 +146,24 @@ RowChange removal(const SceneEdit& edit) {
     return change;
 }
 
-/// Rows of the other thing of the words; empty where there is none. Throws Error (NotFound) where no view
-/// shows it.
-Bits anchor_rows(const SceneEdit& edit) {
-    const auto& request = edit.recipe.request;
-    if (request.anchor().empty()) return {};
+/// Rows of the other thing of the words, looked for.
+Bits found_anchor(const SceneEdit& edit) {
     CheckedRecipe recipe = edit.recipe;
-    recipe.request = request.search_for_anchor();
+    recipe.request = edit.recipe.request.search_for_anchor();
     Views views = edit.located.views;
     if (views.automatic) views = choose_views(edit.context.scene(), recipe, {});
     const Located found = locate(edit.context, recipe, views, {}, edit.control);
     edit::require_found(found.result);
-    Bits rows = *found.result.label.bits;
+    return *found.result.label.bits;
+}
+
+/// Rows of the other thing of the words; empty where there is none. Throws Error (NotFound) where no view
+/// shows it.
+Bits anchor_rows(const SceneEdit& edit) {
+    const auto& anchor = edit.recipe.request.anchor();
+    if (anchor.empty()) return {};
+    const Label* named = label_for(edit.context.scene().labels, anchor, edit.context.model().known_words());
+    Bits rows = named != nullptr ? *named->bits : found_anchor(edit);
     for (std::size_t row = 0; row < rows.size(); ++row)
         if (edit.plan.label[row] != 0) rows[row] = 0;
     return rows;
@@ -163,6 +173,64 @@ Bits anchor_rows(const SceneEdit& edit) {
 Bits moving_rows(const SceneEdit& edit) {
     if (!edit.recipe.request.part_of().empty()) return edit.plan.label;
     return heal::with_held_parts({edit.scene, edit.plan.label, edit.located.views.orbit.up, edit.control});
+}
+
+/// Height along `up` that few of the rows are below.
+double lowest_of(const GaussianSet& set, const Bits& rows, const Vec3& up) {
+    std::vector<double> heights;
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+        const auto p = set.position().subspan(row * 3, 3);
+        if (const double height = dot(up, Vec3{p[0], p[1], p[2]}); rows[row] != 0 && std::isfinite(height))
+            heights.push_back(height);
+    }
+    return heights.empty() ? 0 : edit::quantile(std::move(heights), edit::BoundsTrim);
+}
+
+/// Map of the shadow of a thing under a map of the thing. It moves and grows, and does not turn: the light
+/// stays where it is.
+Affine map_of_shadow(const SceneEdit& edit, const Bits& thing, const Vec3& foot, const Affine& place) {
+    const Vec3 up = normalized(edit.located.views.orbit.up);
+    const double lifted =
+        lowest_of(transformed(edit.scene, thing, place), thing, up) - lowest_of(edit.scene, thing, up);
+    const Vec3 shift = place(foot) - foot;
+    return Affine::move_by(shift + up * (lifted - dot(shift, up))) *
+           Affine::scale_about(std::cbrt(std::abs(place.determinant())), foot);
+}
+
+/// True for a map under which a thing stands where it stood, as large as before.
+bool keeps_foot(const edit::UprightBounds& thing, const Affine& place) {
+    constexpr double Near = 0.02;  // of the height, and of the size
+    return length(place(thing.foot) - thing.foot) < Near * thing.height &&
+           std::abs(std::cbrt(std::abs(place.determinant())) - 1) < Near;
+}
+
+/// Light of each row of the set in the shadows that the thing has at all its new places.
+std::vector<Vec3> light_on(const GaussianSet& set, const heal::Shadow& shadow,
+                           const std::vector<Affine>& places) {
+    std::vector<Vec3> light(set.size(), Vec3(1));
+    for (const auto& place : places) {
+        const auto shade = heal::carried_shade(shadow, place, set);
+        for (std::size_t row = 0; row < light.size(); ++row) light[row] = light[row] * shade[row];
+    }
+    return light;
+}
+
+/// Puts darker copies of rows in the place of those that come to lie in the shadow of the thing.
+void take_shadow_along(const SceneEdit& edit, const heal::Shadow& shadow, const std::vector<Affine>& places,
+                       RowChange& change) {
+    const auto on_healing = light_on(GaussianSet(change.healing), shadow, places),
+               on_scene = light_on(edit.scene, shadow, places);
+    GaussianData healing;
+    healing.sh_degree = edit.scene.sh_degree();
+    const GaussianSet filled(std::move(change.healing));
+    for (std::size_t row = 0; row < filled.size(); ++row)
+        heal::append_lit(filled, row, on_healing[row], healing);
+    for (std::size_t row = 0; row < on_scene.size(); ++row) {
+        if (change.gone[row] != 0 || change.moved[row] != 0 || on_scene[row] == Vec3(1)) continue;
+        change.gone[row] = 1;
+        heal::append_lit(edit.scene, row, on_scene[row], healing);
+    }
+    change.healing = std::move(healing);
 }
 
 /// Rows of the scene under maps of the thing, its anchor and its copies.
@@ -178,18 +246,28 @@ RowChange transformation(const SceneEdit& edit) {
         edit::rearrangement(edit.recipe.request, thing, anchor.empty() ? nullptr : &other,
                             edit::other_points(edit.scene, anchor.empty() ? label : known, thing.frame));
     RowChange change{Bits(label.size(), 0), edit.scene, label, no_rows(edit)};
-    if (places.leaves_place && heals(edit)) {
-        auto healing = healed(edit, label);
-        tell(healing);
-        change.healing = std::move(healing.added);
-        for (std::size_t row = 0; row < label.size(); ++row)
-            if (label[row] == 0) change.gone[row] = healing.removed[row];
+    std::vector<Affine> shadows;
+    for (const auto& place : places.copies)
+        shadows.push_back(map_of_shadow(edit, label, thing.standing.foot, place));
+    heal::Shadow shadow;
+    if (heals(edit) && (places.leaves_place || !shadows.empty())) {
+        const bool lit = !shadows.empty() || !keeps_foot(thing.standing, places.thing);
+        auto healing = healed(edit, label, lit);
+        shadow = std::move(healing.shadow_measured);
+        if (places.leaves_place) {
+            tell(healing);
+            shadows.push_back(map_of_shadow(edit, label, thing.standing.foot, places.thing));
+            change.healing = std::move(healing.added);
+            for (std::size_t row = 0; row < label.size(); ++row)
+                if (label[row] == 0) change.gone[row] = healing.removed[row];
+        }
     }
     change.changed = transformed(edit.scene, label, places.thing);
     if (places.anchor) {
         change.changed = transformed(change.changed, anchor, *places.anchor);
         change.moved = std::move(known);
     }
+    take_shadow_along(edit, shadow, shadows, change);
     const GaussianSet rows = edit.scene.filtered(label);
     for (const auto& place : places.copies) change.copies.push_back(transformed(rows, place));
     return change;

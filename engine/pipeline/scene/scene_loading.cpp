@@ -4,7 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
+#include <string_view>
+#include <system_error>
+#include <utility>
 
 #include "engine/base/error.h"
 #include "engine/base/log.h"
@@ -98,11 +102,30 @@ std::string surroundings_note(const SceneStatistics& statistics) {
                                    : "haze and sky");
 }
 
+namespace {
+
+/// True for a name that trainers and exporters give to any scene.
+bool names_nothing(const std::string& name) {
+    constexpr std::array<std::string_view, 7> Usual{"scene", "point_cloud", "splat", "splats",
+                                                    "model", "output",      "meta"};
+    return name.empty() || name.starts_with("iteration_") ||
+           std::find(Usual.begin(), Usual.end(), name) != Usual.end();
+}
+
+}  // namespace
+
 std::string name_of_thing(const std::filesystem::path& path) {
-    const auto last = path.filename().empty() ? path.parent_path().filename() : path.filename();
-    const std::string name = last.string();
-    const auto dot = name.find('.', 1);
-    return dot == std::string::npos ? name : name.substr(0, dot);
+    std::error_code ignored;
+    auto place = std::filesystem::absolute(path, ignored).lexically_normal();
+    if (!place.has_filename()) place = place.parent_path();
+    std::string first;
+    for (; place.has_relative_path(); place = place.parent_path()) {
+        std::string name = place.filename().string();
+        name.resize(std::min(name.size(), name.find('.', 1)));
+        if (!names_nothing(name)) return name;
+        if (first.empty()) first = std::move(name);
+    }
+    return first;
 }
 
 Scene load_standing_scene(const std::filesystem::path& path, const std::string& up,

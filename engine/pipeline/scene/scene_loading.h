@@ -47,7 +47,8 @@ std::string up_note(const SceneInfo& info, const std::optional<UpGuess>& guess);
 /// Sentence on haze and sky far around the scene; empty = there is neither.
 std::string surroundings_note(const SceneStatistics& statistics);
 
-/// Name of the thing in a scene's file, without its endings: "guitar" for "guitar.compressed.ply".
+/// Name of the thing in a scene's file, without its endings: "guitar" for "guitar.compressed.ply". Of a file
+/// that trainers name alike it is that of the folder: "guitar" for "guitar/point_cloud.ply".
 std::string name_of_thing(const std::filesystem::path& path);
 
 /// A scene for pictures from around it. Up is guessed where neither its file nor cameras beside it say it.

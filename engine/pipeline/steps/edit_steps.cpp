@@ -10,10 +10,15 @@
 #include "engine/base/log.h"
 #include "engine/edit/request/edit_method.h"
 #include "engine/edit/request/vocabulary.h"
+#include "engine/io/formats/scene_formats.h"
+#include "engine/io/project/load_scene.h"
+#include "engine/io/project/project_file.h"
 #include "engine/language/plan/plan_text.h"
+#include "engine/language/vocabulary.h"
 #include "engine/language/words.h"
 #include "engine/pipeline/models/model_words.h"
 #include "engine/pipeline/models/recipe_model.h"
+#include "engine/pipeline/scene/label_names.h"
 #include "engine/scene/row_values.h"
 
 namespace gse::pipeline {
@@ -35,12 +40,30 @@ void require_all(const EditSteps& steps) {
         undone->problem.remedy + (steps.steps.size() > 1 ? ", or use --partly to make the other steps" : ""));
 }
 
+/// True for a project, and a file whose format keeps labels.
+bool keeps_labels(const std::filesystem::path& scene) {
+    if (is_project_file(scene)) return true;
+    const io::SceneFormat* format = format_written_to(scene);
+    return format != nullptr && format->keeps_labels;
+}
+
 }  // namespace
 
-plan::SceneWords words_of_scene(const EditRecipe& recipe, const std::string& given, const JobControl& control,
+std::vector<std::string> names_in_scene(const EditRecipe& recipe) {
+    const auto known = model_words(model_path(recipe.job));
+    const auto words = edit::words_naming(recipe.request);
+    const bool all = std::all_of(words.begin(), words.end(), [&](const auto& word) {
+        return language::vocabulary_contains(known, word);
+    });
+    if (all || !keeps_labels(recipe.job.scene)) return {};
+    return label_names(load_scene(recipe.job.scene, {.activated = recipe.job.activated}).labels);
+}
+
+plan::SceneWords words_of_scene(const EditRecipe& recipe, const std::string& given,
+                                const std::vector<std::string>& labels, const JobControl& control,
                                 std::shared_ptr<DiskCache> cache) {
     if (!given.empty()) return plan::scene_words(edit::with_source(given, recipe.request));
-    auto scene = edit::assumed_scene(recipe.request);
+    auto scene = edit::assumed_scene(recipe.request, labels);
     if (!edit::pictures_decide(recipe.request)) return scene;
     EditRecipe looking = recipe;
     looking.request = edit::source_alone(looking.request);
@@ -53,7 +76,8 @@ bool has_steps(const EditRecipe& recipe) {
     return edit::is_planned(recipe.request) && !recipe.job.brings_label();
 }
 
-EditSteps steps_of_sentence(const EditRecipe& recipe, const plan::SceneWords& scene, bool partly) {
+EditSteps steps_of_sentence(const EditRecipe& recipe, const plan::SceneWords& scene, bool partly,
+                            const std::vector<std::string>& labels) {
     EditSteps result{edit::plan_of(recipe.request, scene), scene, {}};
     if (edit::is_told_as_typed(recipe.request, result.plan)) return {};
     result.nothing_to_change = result.plan.steps.front().operation == plan::Operation::None;
@@ -62,7 +86,7 @@ EditSteps steps_of_sentence(const EditRecipe& recipe, const plan::SceneWords& sc
     const auto model = model_path(recipe.job);
     result.model = model_ability(model);
     result.steps =
-        known_to_model(edit::planned_steps(result.plan, scene, result.model), recipe.request, model);
+        known_to_model(edit::planned_steps(result.plan, scene, result.model), recipe.request, model, labels);
     const bool any = std::any_of(result.steps.begin(), result.steps.end(),
                                  [](const auto& step) { return step.words.has_value(); });
     if (!partly || !any) require_all(result);
@@ -73,14 +97,16 @@ EditSteps steps_of_sentence(const EditRecipe& recipe, const plan::SceneWords& sc
 
 std::vector<edit::PlannedStep> known_to_model(std::vector<edit::PlannedStep> steps,
                                               const edit::EditRequest& request,
-                                              const std::filesystem::path& folder) {
+                                              const std::filesystem::path& folder,
+                                              const std::vector<std::string>& labels) {
     const auto known = model_words(folder), drawn = generated_vocabulary(folder);
     if (known.empty()) return steps;
     for (auto& step : steps) try {
             if (!step.words) continue;
             const auto valid = edit::check(edit::request_of(request, *step.words));
             const bool draws = edit::method_of(valid).draws_views();
-            edit::require_known_words(valid, known, draws ? drawn : std::vector<std::string>{}, false);
+            edit::require_known_words(valid, known, draws ? drawn : std::vector<std::string>{}, false,
+                                      labels);
         } catch (const Error& error) {
             step.words.reset();
             step.problem = {error.message(), error.hint()};
@@ -98,9 +124,10 @@ EditJobInput next_input(EditJob& job, std::vector<std::string> said, const std::
     EditJobInput input;
     input.scene = job.scene();
     const auto& result = job.result();
-    input.scene.extra = gathered(input.scene.extra, sources_of(result.base_to_new, result.set.size()));
+    const auto sources = sources_of(result.base_to_new, result.set.size());
+    input.scene.extra = gathered(input.scene.extra, sources);
+    input.scene.labels = gathered(input.scene.labels, sources);
     input.scene.gaussians = result.set;
-    input.scene.labels = {};
     if (!job.automatic_views()) input.cameras = job.views();
     input.model = job.shared_model();
     input.said = std::move(said);

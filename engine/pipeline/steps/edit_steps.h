@@ -26,23 +26,31 @@ struct EditSteps {
     language::plan::ModelAbility model = {};
 };
 
+/// Names of the labels of the recipe's scene, as sentences write them. The file is read only where the model
+/// does not know each word of the sentence, and where the format keeps labels. Throws Error as load_scene()
+/// does.
+std::vector<std::string> names_in_scene(const EditRecipe& recipe);
+
 /// The scene's words for a recipe: `given` ("red bear; grass"), else the source and what pictures of the
-/// scene tell where they decide.
+/// scene tell where they decide. Things that `labels` are named for are there, too.
 language::plan::SceneWords words_of_scene(const EditRecipe& recipe, const std::string& given,
-                                          const JobControl& control, std::shared_ptr<DiskCache> cache);
+                                          const std::vector<std::string>& labels, const JobControl& control,
+                                          std::shared_ptr<DiskCache> cache);
 
 /// False for a recipe whose target, mode or label was chosen: its sentence runs as it is.
 bool has_steps(const EditRecipe& recipe);
 
-/// Plans the sentence of a recipe that has_steps(). Throws Error (InvalidArgument): the sentence is refused,
-/// or a step cannot be done and `partly` is false.
-EditSteps steps_of_sentence(const EditRecipe& recipe, const language::plan::SceneWords& scene, bool partly);
+/// Plans the sentence of a recipe that has_steps(). What one of `labels` is named for need not be found.
+/// Throws Error (InvalidArgument): the sentence is refused, or a step cannot be done and `partly` is false.
+EditSteps steps_of_sentence(const EditRecipe& recipe, const language::plan::SceneWords& scene, bool partly,
+                            const std::vector<std::string>& labels = {});
 
 /// Steps that name a word which the model in `folder` cannot find or draw become steps that cannot be done.
-/// `request` has the settings.
+/// `request` has the settings. What one of `labels` is named for need not be found.
 std::vector<edit::PlannedStep> known_to_model(std::vector<edit::PlannedStep> steps,
                                               const edit::EditRequest& request,
-                                              const std::filesystem::path& folder);
+                                              const std::filesystem::path& folder,
+                                              const std::vector<std::string>& labels = {});
 
 /// The recipe of one step that has words.
 EditRecipe recipe_of_step(EditRecipe recipe, const edit::PlannedStep& step);

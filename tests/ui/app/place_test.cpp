@@ -2,7 +2,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/io/project/load_scene.h"
+#include "engine/io/scene/scene_file.h"
 #include "engine/pipeline/models/installed.h"
+#include "engine/scene/label_ops.h"
 #include "tests/ui/app/session.h"
 
 namespace place_test {
@@ -68,7 +71,9 @@ DOCTEST_TEST_CASE("a thing that is dragged is one edit and one step of undo, and
     const auto at = app.document().position();
     DOCTEST_REQUIRE(app.model().placed);
     const Vec3 side = app.model().placed->side;
+    session.until([&] { return !session.preview.last.moving; }, 10);
     for (const double by : {0.1, 0.3, 0.5}) session.place(to_the_right(by));
+    DOCTEST_CHECK(session.preview.last.moving);  // its resolution may drop, as for the camera
     DOCTEST_CHECK(app.model().placing);
     DOCTEST_CHECK(app.document().position() == at + 1);
     DOCTEST_CHECK(session.state().stack.size() == 1);
@@ -93,6 +98,8 @@ DOCTEST_TEST_CASE("copies join the label; a change that cannot be made is said a
     settings.copies = 2;
     session.place(settings);
     DOCTEST_CHECK(session.state().current.size() == rows + labelled);
+    DOCTEST_CHECK(session.until(  // counted once nothing moves any more
+        [&] { return session.app.model().statistics.count == rows + labelled; }, 30));
     session.app.run(command::Undo{});
     session.app.update(session.preview);
     settings = {};
@@ -179,7 +186,7 @@ DOCTEST_TEST_CASE("a scene that is put in is labelled by its name, placed, and t
     const auto& state = app.document().state();
     DOCTEST_CHECK(state.current.size() == 2 * rows);
     DOCTEST_REQUIRE(state.active_label >= 0);
-    DOCTEST_CHECK(state.labels.at(static_cast<std::size_t>(state.active_label)).name == "scene");
+    DOCTEST_CHECK(state.labels.at(static_cast<std::size_t>(state.active_label)).name == "bear");
     DOCTEST_CHECK(app.model().labelled == rows);
     DOCTEST_CHECK(app.model().placed);
     app.run(command::PutIn{fs::path("/nowhere/guitar.ply")});
@@ -190,6 +197,147 @@ DOCTEST_TEST_CASE("a scene that is put in is labelled by its name, placed, and t
     app.run(command::Undo{});
     app.update(session.preview);
     DOCTEST_CHECK(app.document().state().current.size() == rows);
+}
+
+namespace {
+
+/// Scene file "guitar.ply": the red splats of the sample alone, and all of one colour.
+fs::path guest_file(const fs::path& folder) {
+    Scene scene = load_scene(pipeline::assets_path() / "scenes/bear/scene.ply");
+    const auto stride = scene.gaussians.sh().size() / scene.gaussians.size();
+    std::vector<unsigned char> keep(scene.gaussians.size());
+    for (std::size_t row = 0; row < keep.size(); ++row) {
+        const float* sh = &scene.gaussians.sh()[row * stride];
+        keep[row] = sh[0] > sh[1] + 0.5f ? 1 : 0;
+    }
+    GaussianData data = scene.gaussians.filtered(keep).to_data();
+    for (std::size_t row = 0; row < data.size(); ++row)
+        for (std::size_t channel = 0; channel < 3; ++channel)
+            data.sh[row * stride + channel] = channel == 0 ? 0.5f : 0.0f;
+    scene.gaussians = GaussianSet(std::move(data));
+    scene.extra = {};
+    const fs::path path = folder / "guitar.ply";
+    save_scene(path, scene);
+    return path;
+}
+
+const NamedLabel* label_called(const DocumentState& state, const std::string& name) {
+    for (const auto& label : state.labels)
+        if (label.name == name) return &label;
+    return nullptr;
+}
+
+/// The rows of the state that the label does not mark.
+GaussianSet others(const DocumentState& state, const NamedLabel& label) {
+    std::vector<unsigned char> keep(state.current.size());
+    for (std::size_t row = 0; row < keep.size(); ++row) keep[row] = (*label.bits)[row] == 0 ? 1 : 0;
+    return state.current.filtered(keep);
+}
+
+bool equal_rows(const GaussianSet& a, const GaussianSet& b) {
+    bool equal = a.size() == b.size();
+    for (std::size_t row = 0; equal && row < a.size(); ++row)
+        equal = same_row(a.spans(), row, b.spans(), row);
+    return equal;
+}
+
+/// Asks for the sentence about the guitar, quickly.
+void ask(app::Application& app, const std::string& prompt) {
+    auto request = app.model().request;
+    request.source = "guitar";
+    request.prompt = prompt;
+    request.target.clear();
+    request.method = "views";
+    request.edited_views = 2;
+    app.run(command::SetRequest{request});
+}
+
+/// Makes the edit and applies it.
+void edit_and_apply(Session& session, const std::string& prompt) {
+    auto& app = session.app;
+    ask(app, prompt);
+    app.update(session.preview);
+    DOCTEST_CHECK(app.model().scope.by_label);
+    DOCTEST_CHECK(app.model().scope.label == "guitar");
+    app.run(command::Edit{});
+    DOCTEST_REQUIRE(session.settled());
+    DOCTEST_REQUIRE(app.model().result_waiting);
+    app.run(command::ApplyResult{});
+    app.update(session.preview);
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("a scene that is put in is edited by its name, saved, exported in one file, and undone") {
+    if (!networks()) return;
+    const Place place;
+    const fs::path guest = guest_file(place.folder), project = place.folder / "both.gsep";
+    Session session;
+    session.open_bear();
+    auto& app = session.app;
+    const auto host = app.document().state().current;
+    app.run(command::PutIn{guest});
+    DOCTEST_REQUIRE(session.idle());
+    app.update(session.preview);
+    const auto together = app.document().state().current;
+    edit_and_apply(session, "make the guitar blue");
+    const DocumentState blue = app.document().state();
+    DOCTEST_REQUIRE(label_called(blue, "guitar") != nullptr);
+    DOCTEST_CHECK(equal_rows(others(blue, *label_called(blue, "guitar")), host));
+    edit_and_apply(session, "make the guitar smaller");
+    const DocumentState state = app.document().state();
+    DOCTEST_REQUIRE(state.stack.size() == 3);
+    const NamedLabel* guitar = label_called(state, "guitar");
+    DOCTEST_REQUIRE(guitar != nullptr);
+    DOCTEST_CHECK(count_labelled(*guitar) > 0);
+    app.run(command::SaveProject{project});
+    DOCTEST_REQUIRE(session.idle());
+
+    Session again;
+    again.app.run(command::Open{project});
+    DOCTEST_REQUIRE(again.until([&] { return again.app.model().document != nullptr; }));
+    const auto& read = again.app.document().state();
+    DOCTEST_CHECK(equal_rows(read.current, state.current));
+    DOCTEST_REQUIRE(label_called(read, "guitar") != nullptr);
+    auto exports = again.app.model().exports;
+    exports.scene_path = (place.folder / "both.ply").string();
+    exports.with_labels = true;
+    again.app.run(command::SetExports{exports});
+    again.app.run(command::ExportScene{});
+    DOCTEST_REQUIRE(again.idle());
+    const Scene written = load_scene(place.folder / "both.ply");
+    DOCTEST_CHECK(equal_rows(written.gaussians, state.current));
+    DOCTEST_REQUIRE(written.labels.labels.size() == 1);
+    DOCTEST_CHECK(written.labels.labels[0].name == "guitar");
+
+    app.run(command::Undo{});
+    app.run(command::Undo{});
+    app.update(session.preview);
+    DOCTEST_CHECK(app.document().state().current.shares_all_with(together));
+    app.run(command::Undo{});
+    app.update(session.preview);
+    DOCTEST_CHECK(app.document().state().current.shares_all_with(host));
+}
+
+DOCTEST_TEST_CASE("a sentence may name what was put in as the other thing") {
+    if (!networks()) return;
+    const Place place;
+    const fs::path guest = guest_file(place.folder);
+    Session session;
+    session.open_bear();
+    auto& app = session.app;
+    app.run(command::PutIn{guest});
+    DOCTEST_REQUIRE(session.idle());
+    app.update(session.preview);
+    ask(app, "move the bear to the left of the guitar");
+    auto request = app.model().request;
+    request.source = "bear";
+    app.run(command::SetRequest{request});
+    app.update(session.preview);
+    app.run(command::Edit{});
+    DOCTEST_REQUIRE(session.settled());
+    DOCTEST_CHECK_FALSE(says_error(app));
+    DOCTEST_CHECK(app.model().result_waiting);
 }
 
 }  // namespace place_test

@@ -2,11 +2,16 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "engine/base/random.h"
 #include "engine/math/sh.h"
 #include "engine/scene/delta.h"
 #include "engine/scene/strength.h"
+#include "engine/scene/transform/transformed.h"
+#include "engine/scene/transform/turn_share.h"
 
 namespace strength_test {
 
@@ -128,6 +133,82 @@ DOCTEST_TEST_CASE("a weaker edit over rows that an earlier one no longer brings 
     DOCTEST_CHECK(ids == std::vector<RowId>{0, 3, RowId{1} << EditIdShift});
     DOCTEST_CHECK(same_row(set.spans(), 1, some.spans(), 1));
     DOCTEST_CHECK(!same_row(set.spans(), 0, some.spans(), 0));
+}
+
+namespace {
+
+/// Rows with a turn, a move and a scale done to them by an edit of the stack.
+struct Turned {
+    GaussianSet before;
+    std::vector<RowId> ids;
+    Affine map;
+    SceneDelta delta;
+
+    explicit Turned(const Affine& placement) : map(placement) {
+        Random random(5);
+        GaussianData data;
+        data.sh_degree = 2;
+        data.resize(40);
+        for (auto* column : {&data.position, &data.log_scale, &data.rotation, &data.opacity_logit, &data.sh})
+            for (float& value : *column) value = static_cast<float>(random.normal());
+        before = GaussianSet(std::move(data));
+        std::vector<std::int64_t> kept(before.size());
+        std::iota(kept.begin(), kept.end(), std::int64_t{0});
+        ids.assign(kept.begin(), kept.end());
+        delta = make_delta(before, ids, transformed(before, map), kept, 1);
+    }
+    GaussianSet at(double strength) const {
+        return apply_delta(before, ids, with_strength(before, ids, delta, strength)).first;
+    }
+};
+
+double farthest(const GaussianSet& a, const GaussianSet& b) {
+    double most = 0;
+    for (std::size_t i = 0; i < a.position().size(); ++i)
+        most = std::max(most, std::abs(static_cast<double>(a.position()[i]) - b.position()[i]));
+    for (std::size_t i = 0; i < a.sh().size(); ++i)
+        most = std::max(most, std::abs(static_cast<double>(a.sh()[i]) - b.sh()[i]));
+    return most;
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("a thing that an edit turns goes along its turn, about the same place") {
+    const Vec3 axis{0.2, 1, -0.1}, foot{1, -2, 0.5};
+    for (const double angle : {0.3, 1.5, -2.8}) {
+        const Turned edit(Affine::turn_about(axis, angle, foot));
+        for (const double strength : {0.25, 0.5, 0.9}) {
+            const auto wanted = transformed(edit.before, Affine::turn_about(axis, strength * angle, foot));
+            DOCTEST_CHECK(farthest(edit.at(strength), wanted) < 2 * Rounding);
+        }
+        DOCTEST_CHECK(edit.at(MostStrength).size() == edit.before.size());
+        DOCTEST_CHECK(farthest(edit.at(MostStrength), edit.at(1)) == 0);  // nothing has another colour
+    }
+}
+
+DOCTEST_TEST_CASE("half of a turn with a move and a scale, done twice, is all of it") {
+    const Affine all = Affine::move_by({0.5, 0.2, -1}) * Affine::scale_about(1.7, {3, 1, 0}) *
+                       Affine::turn_about({1, 1, 0}, 2, {0, 1, 0});
+    const Affine half = share_of_turn(all, 0.5), whole = half * half;
+    for (const Vec3& p : {Vec3{0, 0, 0}, Vec3{1, 2, 3}, Vec3{-4, 0, 1}})
+        DOCTEST_CHECK(length(whole(p) - all(p)) < 1e-9);
+    const Turned edit(all);
+    DOCTEST_CHECK(farthest(edit.at(0.5), transformed(edit.before, half)) < 2 * Rounding);
+}
+
+DOCTEST_TEST_CASE("a mirror image, and rows of which one is another, have no common turn") {
+    const Turned mirrored(Affine::mirror_at({1, 0, 0}, {0, 0, 0}));
+    std::vector<std::size_t> from(mirrored.before.size());
+    std::iota(from.begin(), from.end(), std::size_t{0});
+    const auto before = mirrored.before.spans();
+    DOCTEST_CHECK_FALSE(common_turn(before, from, mirrored.delta.changed_rows));
+    Turned turned(Affine::turn_about({0, 1, 0}, 1, {}));
+    DOCTEST_CHECK(common_turn(before, from, turned.delta.changed_rows));
+    turned.delta.changed_rows.position[30] += 0.01f;
+    DOCTEST_CHECK_FALSE(common_turn(before, from, turned.delta.changed_rows));
+    turned.delta.changed_rows.position[30] -= 0.01f;
+    turned.delta.changed_rows.sh[0] += 0.01f;
+    DOCTEST_CHECK_FALSE(common_turn(before, from, turned.delta.changed_rows));
 }
 
 }  // namespace strength_test
