@@ -3,11 +3,13 @@ import importlib.util
 import json
 import os
 import pathlib
+import signal
+import subprocess
 import sys
 import unittest
 from unittest import mock
 
-from program import PROGRAM, SHARED, ProgramTest, run_laboratory
+from program import LABORATORY, PROGRAM, SHARED, ProgramTest, run_laboratory
 
 ASSETS = pathlib.Path(__file__).resolve().parents[2] / "assets"
 MODEL = ASSETS / "models/starter"
@@ -113,6 +115,36 @@ class RealSuites(ProgramTest):
         self.assertIn("by word, unknown nouns: 1 runs, 0 done, 0 kept out, 1 refused (1 word not known)",
                       process.stdout)
         self.assertEqual((self.folder / "out/eval.txt").read_text(), process.stdout.split("\nfigures")[0])
+
+    def test_steps_follow_each_other_and_nothing_to_change_is_a_refusal(self):
+        suite = tiny_suite()
+        task = suite["tasks"][0]
+        suite["tasks"] = [{**task, "name": "two", "prompt": "a blue bear wearing a yellow hat"},
+                          {**task, "name": "same", "prompt": "a bear"}]
+        self.suite.write_text(json.dumps(suite))
+        _, report = self.evaluate("--real-modes", "word")
+        two, same = [task["runs"]["word"] for task in report["tasks"]]
+        self.assertEqual((two["ending"], two["steps"]), ("done", 2))
+        self.assertGreater(two["new_rows"], 0)
+        self.assertGreater(two["labelled"], 0)
+        self.assertEqual((same["ending"], same["cause"]), ("refused", "other"))
+        self.assertIn("there already", same["message"])
+
+    def test_ctrl_c_keeps_the_tasks_that_are_done(self):
+        arguments = [LABORATORY, "eval", "--real", self.suite, "--real-root", self.root, "--out",
+                     self.folder / "out", *QUICK, "--real-modes", "word"]
+        process = subprocess.Popen([str(argument) for argument in arguments], stderr=subprocess.PIPE,
+                                   stdout=subprocess.DEVNULL, text=True)
+        for line in process.stderr:
+            if line.startswith("bear.hat"):
+                break
+        process.send_signal(signal.SIGINT)
+        rest = process.stderr.read()
+        self.assertEqual(process.wait(timeout=300), 130, rest)
+        report = json.loads((self.folder / "out/eval.json").read_text())
+        self.assertTrue(report["stopped"])
+        self.assertEqual([task["task"] for task in report["tasks"]], ["bear.blue"])
+        self.assertTrue((self.folder / "out" / report["tasks"][0]["sheet"]).is_file())
 
     def test_wrong_suites_leave_nothing(self):
         before = self.folder_listing()

@@ -255,28 +255,29 @@ DOCTEST_TEST_CASE("an addition that adds nothing is in no place, and a low place
     Json unchanged = run_of("done", 0.95);
     unchanged["seen_change_in_truth"] = 0.1;
     unchanged["front_error"] = 120.0;
-    Json near = run_of("done", 0.95);
+    Json near = run_of("done", 0.95), turned = near;
+    turned["front_error"] = 47.0;
     near["front_error"] = 10.0;
     const auto report = report_of({task_of("in", true, "add", {{"box", add(0.9)}}),
                                    task_of("beside", true, "add", {{"box", add(0.2)}}),
                                    task_of("nothing", true, "add", {{"box", add(-1)}}),
                                    task_of("same", true, "recolour", {{"box", unchanged}}),
-                                   task_of("good", true, "recolour", {{"box", near}})});
+                                   task_of("good", true, "recolour", {{"box", near}, {"word", turned}})});
     const auto summary = real_summary(report);
-    const auto& box = summary["groups"][0];
+    const auto& box = summary["groups"][1];
     DOCTEST_CHECK(box["places"] == 3);
     DOCTEST_CHECK(box["place_mean"] == doctest::Approx(1.1 / 3));
     DOCTEST_CHECK(box["place_low"] == 2);
     DOCTEST_CHECK(box["silent"] == 3);
-    DOCTEST_CHECK(summary["front"]["runs"] == 2);
-    DOCTEST_CHECK(summary["front"]["within_15"] == 1);
-    DOCTEST_CHECK(summary["front"]["beyond_90"] == 1);
-    DOCTEST_CHECK(summary["front"]["error_mean"] == doctest::Approx(65));
+    DOCTEST_CHECK(summary["front"]["box"]["runs"] == 2);
+    DOCTEST_CHECK(summary["front"]["box"]["within_15"] == 1);
+    DOCTEST_CHECK(summary["front"]["box"]["beyond_90"] == 1);
+    DOCTEST_CHECK(summary["front"]["box"]["error_mean"] == doctest::Approx(65));
     auto whole = report;
     whole["summary"] = summary;
     const auto table = real_table(whole);
     for (const char* text :
-         {"beside, box: place 0.20", "same, box: seen change 0.10", "1 right, 0 wrong, 1 asked",
+         {"beside, box: place 0.20", "same, box: seen change 0.10", "1 right, 0 wrong, 1 asked", "  s: 47\n",
           "t: asked (-y guessed, z is true)", "a.png, row 1: in: bear > \"a bear\" (add)"})
         DOCTEST_CHECK_MESSAGE(table.find(text) != std::string::npos, text);
 }

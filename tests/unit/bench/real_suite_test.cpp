@@ -231,7 +231,7 @@ DOCTEST_TEST_CASE("refusals fall into classes by their sentence") {
     DOCTEST_CHECK(refusal_cause("the model does not know the word \"skull\"") == "word not known");
     DOCTEST_CHECK(refusal_cause("the model can draw \"robot\" but not find it") == "word not known");
     DOCTEST_CHECK(refusal_cause("the model drew the car into 0 of 12 views") == "not drawn");
-    DOCTEST_CHECK(refusal_cause("the sentence asks for nothing") == "refused");
+    DOCTEST_CHECK(refusal_cause("the sentence asks for nothing") == "other");
 }
 
 }  // namespace real_suite_test

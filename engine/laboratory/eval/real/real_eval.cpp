@@ -76,7 +76,7 @@ public:
         try {
             for (std::size_t i = 0; i < tasks_.size(); ++i) {
                 check_stop();
-                job_.report("editing scanned scenes", static_cast<int>(i), static_cast<int>(tasks_.size()));
+                job_.report(tasks_[i]->name, static_cast<int>(i), static_cast<int>(tasks_.size()));
                 report["tasks"].push_back(evaluate(*tasks_[i]));
             }
         } catch (const Error& error) {  // what was reached is kept

@@ -222,7 +222,7 @@ std::string refusal_cause(const std::string& message) {
     if (has("does not know the word") || has("but not find it")) return "word not known";
     if (has("model drew")) return "not drawn";
     if (has("sure")) return "unsure";
-    return "refused";
+    return "other";
 }
 
 RealOutcome run_real_task(const pipeline::EditRecipe& recipe, const JobControl& control) {

@@ -71,7 +71,7 @@ struct RealOutcome {
     Rows label;  // [before] rows that any step may have changed
 };
 
-/// Class of a refusal: "word not known", "unsure", "not found", "no place", "not drawn", or "refused".
+/// Class of a refusal: "word not known", "unsure", "not found", "no place", "not drawn", or "other".
 std::string refusal_cause(const std::string& message);
 
 /// Makes the edit of a recipe. Several steps follow each other; one that is judged to have failed is kept

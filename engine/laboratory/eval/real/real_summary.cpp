@@ -144,17 +144,21 @@ Json up_json(const Json& scenes) {
     return counts;
 }
 
+/// Errors of fronts per mode: a box tells from where the artist looks.
 Json front_json(const Json& tasks) {
-    std::vector<double> errors;
+    std::map<std::string, std::vector<double>> modes;
     for (const auto& task : tasks)
-        for (const auto& run : task["runs"])
-            if (run.contains("front_error")) errors.push_back(run["front_error"].get<double>());
-    const auto count = [&](auto&& test) { return std::count_if(errors.begin(), errors.end(), test); };
-    Json entry{{"runs", errors.size()},
-               {"within_15", count([](double error) { return error <= FrontNear; })},
-               {"beyond_90", count([](double error) { return error > FrontFar; })}};
-    add_means(entry, "error", errors);
-    return entry;
+        for (const auto& [mode, run] : task["runs"].items())
+            if (run.contains("front_error")) modes[mode].push_back(run["front_error"].get<double>());
+    Json list = Json::object();
+    for (const auto& [mode, errors] : modes) {
+        const auto count = [&](auto&& test) { return std::count_if(errors.begin(), errors.end(), test); };
+        list[mode] = {{"runs", errors.size()},
+                      {"within_15", count([](double error) { return error <= FrontNear; })},
+                      {"beyond_90", count([](double error) { return error > FrontFar; })}};
+        add_means(list[mode], "error", errors);
+    }
+    return list;
 }
 
 std::string number(const Json& value, int digits = 2) {
@@ -206,6 +210,21 @@ std::string group_lines(const Json& group) {
                               group["silent"].get<int>(), number(group["seconds_median"], 1));
 }
 
+/// Errors of the fronts that sentences alone led to, scene by scene.
+std::string scene_fronts_text(const Json& report) {
+    std::string text;
+    for (const auto& scene : report["scenes"]) {
+        std::string errors;
+        for (const auto& task : report["tasks"])
+            if (task["scene"] == scene["scene"])
+                for (const auto& [mode, run] : task["runs"].items())
+                    if (mode != "box" && run.contains("front_error"))
+                        errors += " " + number(run["front_error"], 0);
+        if (!errors.empty()) text += fmt::format("  {}:{}\n", scene["scene"].get<std::string>(), errors);
+    }
+    return text;
+}
+
 std::string scenes_text(const Json& report) {
     const auto& up = report["summary"]["up"];
     auto text = fmt::format("\nup axis of {} scenes: {} right, {} wrong, {} asked\n", report["scenes"].size(),
@@ -215,13 +234,13 @@ std::string scenes_text(const Json& report) {
             text += fmt::format("  {}: {} ({} guessed, {} is true)\n", scene["scene"].get<std::string>(),
                                 axis["result"].get<std::string>(), axis["guess"].get<std::string>(),
                                 axis["truth"].get<std::string>());
-    const auto& front = report["summary"]["front"];
-    return text + fmt::format(
-                      "front, read in {} runs about the true up axis: error mean {} degrees, median {}; "
-                      "{} within {:.0f}, {} beyond {:.0f}\n",
-                      front["runs"].get<int>(), number(front["error_mean"], 0),
-                      number(front["error_median"], 0), front["within_15"].get<int>(), FrontNear,
-                      front["beyond_90"].get<int>(), FrontFar);
+    text += "front, of runs about the true up axis in which it was read:\n";
+    for (const auto& [mode, front] : report["summary"]["front"].items())
+        text += fmt::format(
+            "  by {}: {} runs, error mean {} degrees, median {}; {} within {:.0f}, {} beyond {:.0f}\n", mode,
+            front["runs"].get<int>(), number(front["error_mean"], 0), number(front["error_median"], 0),
+            front["within_15"].get<int>(), FrontNear, front["beyond_90"].get<int>(), FrontFar);
+    return text + scene_fronts_text(report);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ constexpr double LeastIou = 0.5, LeastPlace = 0.3, LeastSeenChange = 0.2;
 ///   runs in which something was made; an addition without a new splat has a place share of 0.
 /// - "silent": runs that are done, not amber, and below one of the limits, with what is low.
 /// - "up": scenes whose up axis is guessed right, guessed wrong, or asked for.
-/// - "front": runs in which the front was read about the true up axis, and their errors in degrees.
+/// - "front": by mode, runs in which the front was read about the true up axis, and their errors in degrees.
 nlohmann::ordered_json real_summary(const nlohmann::ordered_json& report);
 
 /// One line per run, the summary, and where each task is on the sheets.
