@@ -7,7 +7,9 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/laboratory/eval/real/real_summary.h"
 #include "engine/laboratory/figures/figures.h"
+#include "engine/laboratory/figures/real_tables.h"
 #include "tests/test_paths.h"
 
 namespace gse::bench {
@@ -49,6 +51,31 @@ DOCTEST_TEST_CASE("Figures of a suite stand in a column per seed, with their goa
     DOCTEST_CHECK(has(table, "| added: error removed | 50.0 % | 50.0 % | >= 40.0 % |"));
     DOCTEST_CHECK(has(table, "| splats outside the label that changed | 0 | 0 |  |"));
     DOCTEST_CHECK_FALSE(has(table, "becomes another"));  // nothing was measured of it
+}
+
+DOCTEST_TEST_CASE("Groups of scans stand in columns, and every task has a line") {
+    const Json refused{{"ending", "refused"}, {"cause", "unsure"}, {"confidence", 0.125},
+                       {"seconds", 1.0},      {"level", "amber"},  {"warned", false}};
+    const Json done{{"ending", "done"}, {"confidence", nullptr},
+                    {"seconds", 1.0},   {"level", ""},
+                    {"warned", false},  {"opacity", {{"iou", 0.75}, {"recall", 1.0}, {"precision", 0.75}}}};
+    Json scans{{"tasks",
+                {{{"task", "bear.blue"},
+                  {"scene", "bear"},
+                  {"source", "bear"},
+                  {"prompt", "a blue bear"},
+                  {"kind", "recolour"},
+                  {"known_word", true},
+                  {"runs", {{"word", refused}, {"box", done}}}}}},
+               {"scenes", {{{"scene", "bear"}, {"up", {{"result", "wrong"}}}}}}};
+    scans["summary"] = real_summary(scans);
+    const auto tables = real_tables(scans);
+    DOCTEST_CHECK(has(tables, "|  | by word, known nouns | by box |"));
+    DOCTEST_CHECK(has(tables, "| why | 1 unsure |  |"));
+    DOCTEST_CHECK(has(tables, "| IoU of labels, mean | - (goal 0.85) | 0.75 (goal 0.92) |"));
+    DOCTEST_CHECK(has(tables, "Up axis: 0 right, 1 wrong, 0 asked."));
+    DOCTEST_CHECK(
+        has(tables, "| bear.blue | bear | a blue bear | refused: unsure, 0.12 sure | done, IoU 0.75 |"));
 }
 
 DOCTEST_TEST_CASE("Medians leave out failed edits") {
