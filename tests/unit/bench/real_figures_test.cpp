@@ -180,8 +180,8 @@ DOCTEST_TEST_CASE("what is seen is what stands in front, and change is counted w
     const Rows all(points.size(), 1);
     const auto cameras = real_cameras(scene, task_of_kind("recolour"), set, {}, all);
     pipeline::Painter painter;
-    const auto far = seen_rows(painter, set, {}, behind, cameras);
-    const auto whole = seen_rows(painter, set, {}, all, cameras);
+    const auto far = seen_rows(painter, set, behind, cameras);
+    const auto whole = seen_rows(painter, set, all, cameras);
     DOCTEST_REQUIRE(far.size() == 4);
     const bool first_sees = far[0].count() > far[1].count();
     DOCTEST_CHECK(std::max(far[0].count(), far[1].count()) > whole[0].count() / 2);
@@ -191,7 +191,7 @@ DOCTEST_TEST_CASE("what is seen is what stands in front, and change is counted w
     DOCTEST_CHECK(overlap.precision == 1);
     DOCTEST_CHECK(overlap.recall < 1);
 
-    const auto truth = seen_rows(painter, set, {}, upper, cameras);
+    const auto truth = seen_rows(painter, set, upper, cameras);
     auto data = set.to_data();
     for (std::size_t row = 0; row < points.size(); ++row)
         if (upper[row] != 0) std::fill_n(data.sh.begin() + static_cast<std::ptrdiff_t>(row * 3), 3, 1.5f);

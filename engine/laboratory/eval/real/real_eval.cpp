@@ -119,8 +119,7 @@ private:
             real_cameras(suite_.scene_of(task), task, scene.gaussians, info.offset, setting.truth.thing);
         setting.before = pictures(scene.gaussians, info, setting.cameras);
         if (task.measures_label())
-            setting.truth_seen =
-                seen_rows(painter_, scene.gaussians, info, setting.truth.thing, setting.cameras);
+            setting.truth_seen = seen_rows(painter_, scene.gaussians, setting.truth.thing, setting.cameras);
         return setting;
     }
 
@@ -208,9 +207,8 @@ private:
         Rows shown = edit.label;  // what counts neither way is as the truth has it
         for (std::size_t row = 0; row < shown.size(); ++row)
             if (setting.truth.either[row] != 0) shown[row] = setting.truth.thing[row];
-        entry["seen"] = seen_overlap(seen_rows(painter_, set, edit.before.info, shown, setting.cameras),
-                                     setting.truth_seen)
-                            .json();
+        entry["seen"] =
+            seen_overlap(seen_rows(painter_, set, shown, setting.cameras), setting.truth_seen).json();
     }
 
     /// Sheet and row of every task, counted from 1.

@@ -205,14 +205,14 @@ Image real_picture(pipeline::Painter& painter, const GaussianSet& set, const Sce
     return painter.paint(set.spans(), camera, pipeline::raster_settings(parameters, info)).colour;
 }
 
-std::vector<Mask> seen_rows(pipeline::Painter& painter, const GaussianSet& set, const SceneInfo& info,
-                            const Rows& rows, const RealCameras& cameras) {
+std::vector<Mask> seen_rows(pipeline::Painter& painter, const GaussianSet& set, const Rows& rows,
+                            const RealCameras& cameras) {
     const GaussianSet shown = painted(set, rows);
     auto all = cameras.sides;
     all.push_back(cameras.above);
     std::vector<Mask> masks;
     for (const auto& camera : all) {
-        const Image picture = real_picture(painter, shown, info, camera);
+        const Image picture = real_picture(painter, shown, {}, camera);
         Mask mask(picture.width, picture.height);
         for (std::size_t p = 0; p < mask.data.size(); ++p)
             mask.data[p] = byte_of(picture.data[p * 3]) > SeenByte ? 1 : 0;

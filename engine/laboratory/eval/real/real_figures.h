@@ -69,9 +69,10 @@ RealCameras real_cameras(const RealScene& scene, const RealTask& task, const Gau
 Image real_picture(pipeline::Painter& painter, const GaussianSet& set, const SceneInfo& info,
                    const Camera& camera);
 
-/// Masks of where rows [N] are what is seen, one per side and one from above.
-std::vector<Mask> seen_rows(pipeline::Painter& painter, const GaussianSet& set, const SceneInfo& info,
-                            const Rows& rows, const RealCameras& cameras);
+/// Masks of where rows [N] are what is seen, one per side and one from above. Opacities count as they are,
+/// also in scenes that were trained with antialiasing.
+std::vector<Mask> seen_rows(pipeline::Painter& painter, const GaussianSet& set, const Rows& rows,
+                            const RealCameras& cameras);
 
 /// Pixels that visibly change, per pixel of the truth in all masks.
 struct SeenChange {
