@@ -252,7 +252,12 @@ private:
             write_file(staged.path() / "eval.json", json_text(report, 1) + "\n");
             staged.commit();
         }
-        return read_json(folder / "eval.json");
+        Json report = read_json(folder / "eval.json");
+        const auto& parameters = report["parameters"];
+        if (parameters["real_only"] != "" || parameters["real_modes"] != RealParameters().real_modes)
+            throw Error(ErrorCode::Malformed, "the result is of a part of the suite",
+                        "remove it, or choose another folder", folder / "eval.json");
+        return report;
     }
 
     std::string scans() {

@@ -131,9 +131,9 @@ private:
 
     Json evaluate(const RealTask& task) {
         const auto& scene = suite_.scene_of(task);
-        Json entry{{"task", task.name},     {"scene", scene.name}, {"source", task.source},
-                   {"prompt", task.prompt}, {"kind", task.kind},   {"known_word", task.known_word},
-                   {"runs", Json::object()}};
+        Json entry{{"task", task.name},     {"scene", scene.name},   {"source", task.source},
+                   {"prompt", task.prompt}, {"kind", task.kind},     {"known_word", task.known_word},
+                   {"accept", task.accept}, {"runs", Json::object()}};
         const Setting setting = setting_of(task);
         std::map<RealMode, Pictures> after;
         for (const auto mode : modes_) {

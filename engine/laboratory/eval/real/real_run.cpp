@@ -8,11 +8,11 @@
 #include <functional>
 #include <memory>
 #include <numeric>
-#include <sstream>
 #include <utility>
 
 #include "engine/base/clock.h"
 #include "engine/base/error.h"
+#include "engine/language/words.h"
 #include "engine/pipeline/run/edit_job.h"
 #include "engine/pipeline/steps/edit_steps.h"
 #include "engine/pipeline/steps/step_judgement.h"
@@ -184,10 +184,7 @@ std::string level_name(SureLevel level) {
 
 std::vector<RealMode> parse_modes(const std::string& text) {
     std::vector<RealMode> modes;
-    std::string words = text;
-    std::replace(words.begin(), words.end(), ',', ' ');
-    std::istringstream stream(words);
-    for (std::string word; stream >> word;) {
+    for (const auto& word : language::words_of(text)) {
         const auto mode =
             std::find_if(Modes.begin(), Modes.end(), [&](RealMode one) { return mode_name(one) == word; });
         if (mode == Modes.end())

@@ -96,6 +96,7 @@ RealTask task_of(const Json& json, const std::vector<RealScene>& scenes, const s
     if (!Kinds.contains(task.kind))
         refuse_suite(where, fmt::format("the kind \"{}\" is none of {}", task.kind, fmt::join(Kinds, ", ")));
     task.known_word = bool_entry(json, "known_word", where);
+    if (has_entry(json, "accept")) task.accept = text_entry(json, "accept", where);
     if (has_entry(json, "cut_out")) task.cut_out = text_entry(json, "cut_out", where);
     if (has_entry(json, "about")) task.about = text_entry(json, "about", where);
     if (!task.about.empty() && !scene->things.contains(task.about))

@@ -32,6 +32,7 @@ struct RealTask {
     std::string name;
     std::size_t scene = 0;  // index in RealSuite::scenes
     std::string source, prompt;
+    std::string accept;       // what a good result shows, for the eye
     std::string kind;         // recolour, material, add, replace, remove or ground
     std::string about;        // key of the scene's things; empty = no label is measured
     std::string cut_out;      // box around the thing, for --cut-out with the true up axis; empty = none

@@ -274,10 +274,11 @@ std::string real_table(const Json& report) {
                         run["warned"].get<bool>() ? "; the pictures were said not to show it" : "");
     text += scenes_text(report) + "\nsheets: three sides before, then three of each mode\n";
     for (const auto& task : report["tasks"])
-        text += fmt::format("  {}, row {}: {}: {} > \"{}\" ({})\n", task["sheet"].get<std::string>(),
-                            task["row"].get<int>(), task["task"].get<std::string>(),
-                            task["source"].get<std::string>(), task["prompt"].get<std::string>(),
-                            task["kind"].get<std::string>());
+        text +=
+            fmt::format("  {}, row {}: {}: {} > \"{}\" ({}); good: {}\n", task["sheet"].get<std::string>(),
+                        task["row"].get<int>(), task["task"].get<std::string>(),
+                        task["source"].get<std::string>(), task["prompt"].get<std::string>(),
+                        task["kind"].get<std::string>(), task.value("accept", std::string()));
     return text;
 }
 
