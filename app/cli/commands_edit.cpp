@@ -126,14 +126,6 @@ void complete(EditOptions& options) {
     apply_model(options);
 }
 
-/// Completes the words of a sentence that is one edit.
-void complete_words(EditOptions& options) {
-    auto& request = options.recipe.request;
-    const auto checked = edit::check(request);
-    request = checked.plain();
-    if (checked.target_open()) request.target.clear();  // the pictures say which word is new
-}
-
 /// Results beside their own scene would replace it, or be taken for it the next time.
 void refuse_own_folder(const std::filesystem::path& scene, const std::filesystem::path& output) {
     std::error_code ignored;
@@ -393,7 +385,7 @@ void run_edit_command(EditOptions& options, CommandContext& context) {
         return run_steps(options, steps, context);
     }
     if (!steps.steps.empty()) options.recipe = recipe_of_step(options.recipe, steps.steps.front());
-    complete_words(options);
+    options.recipe = with_words(std::move(options.recipe));
     if (options.variations > 1) return run_variations(options, context);
     refuse_own_folder(options.recipe.job.scene, options.output);
     EditJob job(options.recipe, context.job(), answers(options));
@@ -403,7 +395,7 @@ void run_edit_command(EditOptions& options, CommandContext& context) {
 
 void run_locate_command(EditOptions& options, const CommandContext& context) {
     complete(options);
-    complete_words(options);
+    options.recipe = with_words(std::move(options.recipe));
     refuse_own_folder(options.recipe.job.scene, options.output);
     if (std::filesystem::exists(options.output / "scene.ply"))
         throw Error(ErrorCode::Unwritable,

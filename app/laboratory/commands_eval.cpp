@@ -12,6 +12,8 @@
 #include "engine/base/staged_folder.h"
 #include "engine/laboratory/eval/eval_run.h"
 #include "engine/laboratory/eval/eval_summary.h"
+#include "engine/laboratory/eval/real/real_eval.h"
+#include "engine/laboratory/eval/real/real_summary.h"
 #include "engine/pipeline/report/edit_output.h"
 
 namespace gse::app {
@@ -19,6 +21,7 @@ namespace {
 
 struct EvalOptions {
     EvalRun run;
+    RealParameters real;
     std::filesystem::path output = "out/eval";
     bool json = false;
 };
@@ -26,8 +29,10 @@ struct EvalOptions {
 void run_eval_command(EvalOptions& options, const CommandContext& context) {
     StagedFolder folder(options.output, {"eval.json", {"eval.json", "eval.txt"}});
     folder.keep_on_failure();  // from the first sheet on
-    auto report = run_eval(options.run, folder.path(), context.job());
-    const auto table = eval_table(report);
+    const bool real = !options.real.real.empty();
+    auto report = real ? run_real({options.real, options.run.settings}, folder.path(), context.job())
+                       : run_eval(options.run, folder.path(), context.job());
+    const auto table = real ? real_table(report) : eval_table(report);
     write_file(folder.path() / "eval.txt", table);
     report["files"] = folder.listing();
     write_file(folder.path() / "eval.json", json_text(report, 1) + "\n");
@@ -53,6 +58,7 @@ void add_eval_command(CLI::App& app, CommandContext& context) {
     command->add_option("--scenes", options->run.scenes,
                         "Real scenes to edit: PATH or PATH:source:sentence:target");
     bind_fields(*command, options->run.parameters, "Suite");
+    bind_fields(*command, options->real, "Suite of scanned scenes");
     add_eval_settings(*command, options->run.settings);
     add_dreambooth_options(
         *command, options->run.settings);  // of real scenes: the suite's are of the model's own world

@@ -75,10 +75,11 @@ SUB_ROOMS = {
         "starter": set(),
         "training": {"synth", "starter"},
         "eval": {"synth"},
+        "eval/real": {"eval"},
         "bench": {"synth", "eval", "bench/charts", "bench/raster"},
         "bench/charts": set(),
         "bench/raster": {"synth", "bench/charts"},
-        "figures": {"eval", "bench", "bench/charts", "bench/raster"},
+        "figures": {"eval", "eval/real", "bench", "bench/charts", "bench/raster"},
     },
     "ui": {
         "model": set(),

@@ -11,15 +11,15 @@
 namespace gse::bench {
 namespace {
 
-constexpr int CellSide = 160;  // pixels: five columns fit a small screen
 constexpr int Gap = 4;
 constexpr float CleanPlate = 0.16f;
 
-void paste(const Image& cell, int left, int top, Image& sheet) {
+void paste(const Image& cell, int side, int left, int top, Image& sheet) {
     if (cell.data.empty()) return;
-    const Image scaled = localize::resize_image(cell, CellSide, CellSide);
-    for (int y = 0; y < CellSide; ++y)
-        for (int x = 0; x < CellSide; ++x)
+    const bool fits = cell.width == side && cell.height == side;
+    const Image scaled = fits ? cell : localize::resize_image(cell, side, side);
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x)
             for (int c = 0; c < 3; ++c)
                 sheet.at(left + x, top + y, c) =
                     std::clamp(scaled.at(x, y, std::min(c, scaled.channels - 1)), 0.0f, 1.0f);
@@ -27,8 +27,9 @@ void paste(const Image& cell, int left, int top, Image& sheet) {
 
 }  // namespace
 
-ContactSheets::ContactSheets(std::filesystem::path folder, std::string stem, int rows)
-    : folder_(std::move(folder)), stem_(std::move(stem)), rows_(static_cast<std::size_t>(rows)) {}
+ContactSheets::ContactSheets(std::filesystem::path folder, std::string stem, int rows, int cell_side)
+    : folder_(std::move(folder)), stem_(std::move(stem)), rows_(static_cast<std::size_t>(rows)),
+      cell_side_(cell_side) {}
 
 void ContactSheets::add(const std::vector<Image>& cells, const std::string& title) {
     cells_.push_back(cells);
@@ -44,12 +45,12 @@ std::vector<std::string> ContactSheets::finish() {
 void ContactSheets::write() {
     std::size_t columns = 0;
     for (const auto& row : cells_) columns = std::max(columns, row.size());
-    const auto extent = [](std::size_t cells) { return static_cast<int>(cells) * (CellSide + Gap) + Gap; };
+    const auto extent = [&](std::size_t cells) { return static_cast<int>(cells) * (cell_side_ + Gap) + Gap; };
     Image sheet(extent(columns), extent(cells_.size()), 3, CleanPlate);
     std::string titles;
     for (std::size_t row = 0; row < cells_.size(); ++row) {
         for (std::size_t column = 0; column < cells_[row].size(); ++column)
-            paste(cells_[row][column], extent(column), extent(row), sheet);
+            paste(cells_[row][column], cell_side_, extent(column), extent(row), sheet);
         titles += (row == 0 ? "" : "\n") + titles_[row];
     }
     files_.push_back(fmt::format("{}_{:03}.png", stem_, files_.size()));

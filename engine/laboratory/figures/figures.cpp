@@ -20,7 +20,9 @@
 #include "engine/laboratory/bench/raster/stability_bench.h"
 #include "engine/laboratory/bench/search_bench.h"
 #include "engine/laboratory/eval/eval_run.h"
+#include "engine/laboratory/eval/real/real_eval.h"
 #include "engine/laboratory/figures/figure_tables.h"
+#include "engine/laboratory/figures/real_tables.h"
 #include "engine/pipeline/models/recipe_model.h"
 
 namespace gse::bench {
@@ -29,7 +31,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-constexpr std::array Suites{"edits", "words", "searches", "encoder", "methods", "stability", "speed"};
+constexpr std::array Suites{"edits", "words", "searches", "encoder", "methods", "stability", "speed", "real"};
 
 /// An evaluation of the page: its name and how it departs from the standard one.
 struct Evaluation {
@@ -87,7 +89,8 @@ public:
     }
 
     std::string text() {
-        const auto sections = edits() + words() + searches() + encoder() + methods() + stability() + speed();
+        const auto sections =
+            edits() + words() + searches() + encoder() + methods() + stability() + speed() + scans();
         return head() + sections;
     }
 
@@ -232,6 +235,35 @@ private:
 
     std::string speed() {
         return section("Speed", Speed.command, result(Speed, "speed", [] { return speed_table({}); }));
+    }
+
+    /// The evaluation on scans, measured where a suite is named and it is not there; null where there is
+    /// none.
+    Json scans_report() {
+        const auto folder = run_.results / "real";
+        if (!fs::exists(folder / "eval.json")) {
+            if (!wants("real") || run_.parameters.real.empty()) return nullptr;
+            RealParameters parameters;
+            parameters.real = run_.parameters.real;
+            StagedFolder staged(folder, {"eval.json", {"eval.json"}});
+            const Json report = run_real({parameters, run_.settings}, staged.path(), job_);
+            if (report["stopped"].get<bool>())
+                throw Error(ErrorCode::Cancelled, "the measurement was stopped");
+            write_file(staged.path() / "eval.json", json_text(report, 1) + "\n");
+            staged.commit();
+        }
+        Json report = read_json(folder / "eval.json");
+        const auto& parameters = report["parameters"];
+        if (parameters["real_only"] != "" || parameters["real_modes"] != RealParameters().real_modes)
+            throw Error(ErrorCode::Malformed, "the result is of a part of the suite",
+                        "remove it, or choose another folder", folder / "eval.json");
+        return report;
+    }
+
+    std::string scans() {
+        const Json report = scans_report();
+        return section("Scans with truth made by hand", "gseditpro-lab eval --real SUITE",
+                       report.is_null() ? std::string() : real_tables(report));
     }
 
     const FiguresRun& run_;

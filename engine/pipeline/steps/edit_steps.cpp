@@ -120,6 +120,13 @@ EditRecipe recipe_of_step(EditRecipe recipe, const edit::PlannedStep& step) {
     return recipe;
 }
 
+EditRecipe with_words(EditRecipe recipe) {
+    const auto checked = edit::check(recipe.request);
+    recipe.request = checked.plain();
+    if (checked.target_open()) recipe.request.target.clear();  // the pictures say which word is new
+    return recipe;
+}
+
 EditJobInput next_input(EditJob& job, std::vector<std::string> said, const std::string& source) {
     EditJobInput input;
     input.scene = job.scene();

@@ -55,6 +55,9 @@ std::vector<edit::PlannedStep> known_to_model(std::vector<edit::PlannedStep> ste
 /// The recipe of one step that has words.
 EditRecipe recipe_of_step(EditRecipe recipe, const edit::PlannedStep& step);
 
+/// The recipe of a sentence that is one edit, with its words completed. Throws Error as edit::check() does.
+EditRecipe with_words(EditRecipe recipe);
+
 /// Scene, views and model that a job left, for the job of the next step. `said`: words that earlier steps
 /// brought along. `source`: thing that the next step is about. It is not looked for again where the job was
 /// about it too.

@@ -7,7 +7,9 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/laboratory/eval/real/real_summary.h"
 #include "engine/laboratory/figures/figures.h"
+#include "engine/laboratory/figures/real_tables.h"
 #include "tests/test_paths.h"
 
 namespace gse::bench {
@@ -22,6 +24,27 @@ Json edit(const char* kind, const char* target, double removed, int unet) {
             {"l1_reduction", removed},
             {"psnr_outside_db", 60.4},
             {"networks", {{"edit", {{"unet", 10}}}, {"total", {{"unet", unet}}}}}};
+}
+
+/// A suite of one task, which is refused by word and done by box.
+Json scans() {
+    const Json refused{{"ending", "refused"}, {"cause", "unsure"}, {"confidence", 0.125},
+                       {"seconds", 1.0},      {"level", "amber"},  {"warned", false}};
+    const Json done{{"ending", "done"}, {"confidence", nullptr},
+                    {"seconds", 1.0},   {"level", ""},
+                    {"warned", false},  {"opacity", {{"iou", 0.75}, {"recall", 1.0}, {"precision", 0.75}}}};
+    Json report{{"parameters", {{"real_only", ""}, {"real_modes", "word box"}}},
+                {"tasks",
+                 {{{"task", "bear.blue"},
+                   {"scene", "bear"},
+                   {"source", "bear"},
+                   {"prompt", "a blue bear"},
+                   {"kind", "recolour"},
+                   {"known_word", true},
+                   {"runs", {{"word", refused}, {"box", done}}}}}},
+                {"scenes", {{{"scene", "bear"}, {"up", {{"result", "wrong"}}}}}}};
+    report["summary"] = real_summary(report);
+    return report;
 }
 
 Json report(std::uint64_t seed) {
@@ -49,6 +72,16 @@ DOCTEST_TEST_CASE("Figures of a suite stand in a column per seed, with their goa
     DOCTEST_CHECK(has(table, "| added: error removed | 50.0 % | 50.0 % | >= 40.0 % |"));
     DOCTEST_CHECK(has(table, "| splats outside the label that changed | 0 | 0 |  |"));
     DOCTEST_CHECK_FALSE(has(table, "becomes another"));  // nothing was measured of it
+}
+
+DOCTEST_TEST_CASE("Groups of scans stand in columns, and every task has a line") {
+    const auto tables = real_tables(scans());
+    DOCTEST_CHECK(has(tables, "|  | by word, known nouns | by box |"));
+    DOCTEST_CHECK(has(tables, "| why | 1 unsure |  |"));
+    DOCTEST_CHECK(has(tables, "| IoU of labels, mean | - (goal 0.85) | 0.75 (goal 0.92) |"));
+    DOCTEST_CHECK(has(tables, "Up axis: 0 right, 1 wrong, 0 asked."));
+    DOCTEST_CHECK(
+        has(tables, "| bear.blue | bear | a blue bear | refused: unsure, 0.12 sure | done, IoU 0.75 |"));
 }
 
 DOCTEST_TEST_CASE("Medians leave out failed edits") {
@@ -81,6 +114,15 @@ DOCTEST_TEST_CASE(
     const auto page = figures_page(run, {});
     DOCTEST_CHECK(has(page, "## Searches\n\n`gseditpro-lab bench search --scenes 8 --seed 62`\n\n| word |"));
     DOCTEST_CHECK(has(page, "## Speed\n\n`gseditpro-lab bench speed`\n\nNot measured yet."));
+    DOCTEST_CHECK(has(page, "`gseditpro-lab eval --real SUITE`\n\nNot measured yet."));
+    std::filesystem::create_directories(folder / "real");
+    auto measured = scans();
+    write_file(folder / "real/eval.json", measured.dump());
+    DOCTEST_CHECK(has(figures_page(run, {}), "| bear.blue | bear | a blue bear | refused"));
+    measured["parameters"]["real_only"] = "bear";
+    write_file(folder / "real/eval.json", measured.dump());
+    DOCTEST_CHECK_THROWS_AS(figures_page(run, {}), Error);
+    std::filesystem::remove_all(folder / "real");
     std::filesystem::create_directories(folder / "eval_1");
     write_file(folder / "eval_1/eval.json", R"({"parameters":{"seed":2}})");
     DOCTEST_CHECK_THROWS_AS(figures_page(run, {}), Error);
