@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/language/plan/grammar/audit.h"
 #include "engine/language/plan/grammar/reader.h"
 #include "engine/language/plan/words/clean_text.h"
 #include "engine/language/plan/words/sentence_words.h"
@@ -52,6 +53,7 @@ bool may_name_thing(const std::vector<Word>& words, std::size_t at) {
     };
     if (at == 0) return false;
     if (names(at - 1) || is_a(at - 1, Class::colour) || is_a(at - 1, Class::size)) return true;
+    if (at + 1 < words.size() && is_a(at + 1, Class::of)) return false;  // "a pile of books" is no pole
     const bool article = is_a(at - 1, Class::article) || is_a(at - 1, Class::number);
     return article && (at == 1 || !is_a(at - 2, Class::relation));  // not "in a row"
 }
@@ -66,7 +68,8 @@ std::optional<Plan> with_a_slip(const SentenceWords& sentence, const SceneWords&
     for (std::size_t at = 0; at < words.size(); ++at) {
         auto& word = words[at];
         const bool told = std::find(needed.begin(), needed.end(), word.singular) != needed.end();
-        if (word.mark || word.text.size() < 2 || told || is_grammatical(word.text)) continue;
+        const bool joins = has(Class::word_for, word.text) || has(Class::word_out, word.text);
+        if (word.mark || word.text.size() < 2 || told || joins || is_grammatical(word.text)) continue;
         const Word typed = word;
         for (auto& other : slips_of(typed.text, needed, MostSlips)) {
             const bool is_needed = std::find(needed.begin(), needed.end(), other) != needed.end();
@@ -101,6 +104,7 @@ Plan plan_sentence(std::string_view sentence, const SceneWords& scene, std::stri
         if (auto other = with_a_slip(words, scene, source, needed, !unread)) return *other;
     if (words.words.size() > StoryLength && plan.steps.front().operation == Operation::Refuse)
         return Reader(words.words, scene, source).read_story();
+    if (const auto reason = doubt(words.words, scene, plan); !reason.empty()) return refusal(reason);
     return plan;
 }
 

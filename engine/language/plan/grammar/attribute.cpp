@@ -25,6 +25,30 @@ std::string less_of(const std::string& change) {
     return change;
 }
 
+/// "too red", "too dark": what is asked for is less of it.
+void temper(Attribute& attribute) {
+    constexpr std::pair<std::string_view, std::string_view> Opposites[] = {
+        {"dark", "lighter"},         {"darker", "lighter"},
+        {"light", "darker"},         {"lighter", "darker"},
+        {"bright", "darker"},        {"brighter", "darker"},
+        {"pale", "darker"},          {"paler", "darker"},
+        {"vivid", "less saturated"}, {"colorful", "less saturated"},
+        {"old", "younger"},          {"young", "older"}};
+    if (attribute.quality == Quality::Size) {
+        attribute.value = less_of(attribute.value);
+        return;
+    }
+    for (const auto& [much, wanted] : Opposites)
+        if (attribute.value == much) {
+            attribute.value = wanted;
+            return;
+        }
+    attribute.value = "less " + attribute.value;
+    if (attribute.quality != Quality::Colour && attribute.quality != Quality::Shift)
+        attribute.quality = Quality::State;
+    attribute.typed = attribute.value;
+}
+
 /// "riper", "floppier": no word of the lists, made of an adjective.
 bool is_comparative(const std::string& word) {
     if (word.size() < 5 || !word.ends_with("er")) return false;
@@ -49,7 +73,8 @@ std::size_t colour_length(std::span<const Word> words, std::string& name) {
     if (found) {
         const std::size_t length = at + found.length;
         name = text_of(words.first(length));
-        return length;
+        const bool colored = length < words.size() && words[length].text == "colored";
+        return length + (colored ? 1 : 0);  // "salmon colored"
     }
     if (words.empty()) return 0;
     if (const auto shade =
@@ -154,7 +179,9 @@ bool Cursor::take_graded(Attribute& attribute) {
 
 /// Adjectives that are in no class: "grumpy", "thatched".
 bool Cursor::take_other_attribute(Attribute& attribute, bool in_phrase) {
-    if (peek(Class::thing_name) || peek(Class::number)) return false;
+    if (peek(Class::thing_name) || peek(Class::number) || peek(Class::direction) || peek(Class::like) ||
+        peek(Class::sequence))
+        return false;
     const bool participle = (word().text.ends_with("ed") || word().text.ends_with("ing")) &&
                             word().base != word().text && noun_length() == 0;
     if (participle && in_phrase && noun_length(1) > 0 && !ends_phrase(1, true)) {  // "a thatched roof"
@@ -177,6 +204,41 @@ bool Cursor::take_other_attribute(Attribute& attribute, bool in_phrase) {
     return false;
 }
 
+/// "zebra stripes", "spotted", "striped red and white".
+bool Cursor::take_pattern(Attribute& attribute, bool in_phrase) {
+    if (const auto animal = peek(Class::pattern_animal);
+        animal && match(Class::pattern_plain, rest(animal.length)) && !is(Class::word_rainbow, 1)) {
+        at += animal.length;
+        take(Class::pattern_plain);
+        attribute = {Quality::Pattern, std::string(animal.value), std::string(animal.value), ""};
+        return true;
+    }
+    const auto found = take(Class::pattern_plain);
+    if (!found) return false;
+    const std::string value(meaning(Class::pattern, found.value).value_or(found.value));
+    attribute = {Quality::Pattern, value, value, ""};
+    Attribute colour;
+    Cursor behind = *this;
+    if (!in_phrase && behind.take_colour(colour, false) && colour.quality == Quality::Colour &&
+        (behind.at_end_of_clause() || behind.ends_phrase(0, true))) {
+        attribute.colour = colour.value;
+        at = behind.at;
+    }
+    return true;
+}
+
+/// "(a) cartoon (bear)", "(an) anime style (bear)".
+bool Cursor::take_style(Attribute& attribute) {
+    Cursor named = *this;
+    const auto style = named.take(Class::style);
+    if (!style || peek(Class::compound)) return false;
+    named.take(Class::style_word);
+    if (!named.is_scene_noun(named.word().singular)) return false;
+    at = named.at;
+    attribute = {Quality::Style, std::string(style.value), std::string(style.value), ""};
+    return true;
+}
+
 bool Cursor::take_plain_attribute(Attribute& attribute, bool in_phrase) {
     const std::size_t start = at;
     const auto made = [&](Quality quality, const Match& found, bool as_typed) {
@@ -185,28 +247,32 @@ bool Cursor::take_plain_attribute(Attribute& attribute, bool in_phrase) {
         attribute = {quality, std::string(found.value), as_typed ? typed : std::string(found.value), ""};
         return true;
     };
-    if (in_phrase)
-        if (const auto found = peek(Class::compound); found.length > 1) return false;
+    if (in_phrase && peek(Class::compound).length > 1) return false;
+    if (in_phrase && peek(Class::style).length > 1 && take_style(attribute)) return true;
     if (const auto found = peek(Class::worn_adjective)) return made(Quality::Worn, found, false);
     if (const auto found = peek(Class::unworn_adjective)) return made(Quality::Unworn, found, false);
-    if (const auto animal = peek(Class::pattern_animal);
-        animal && match(Class::pattern_plain, rest(animal.length)) && !is(Class::word_rainbow, 1)) {
-        const auto value = animal.value;  // "zebra stripes"
-        at += animal.length;
-        take(Class::pattern_plain);
-        attribute = {Quality::Pattern, std::string(value), std::string(value), ""};
-        return true;
+    if (take_pattern(attribute, in_phrase)) return true;
+    if (const auto found = peek(Class::material)) {
+        const auto& pattern = word(found.length);  // "golden stripes"
+        Attribute striped;
+        Cursor behind = *this;
+        behind.at += found.length;
+        if (pattern.text != pattern.singular && behind.take_pattern(striped, false)) {
+            at = behind.at;
+            attribute = {Quality::Pattern, striped.value, striped.value, std::string(found.value)};
+            return true;
+        }
+        return made(Quality::Material, found, false);
     }
-    if (const auto found = peek(Class::pattern_plain))
-        return made(Quality::Pattern,
-                    {found.length, meaning(Class::pattern, found.value).value_or(found.value)}, false);
-    if (const auto found = peek(Class::material)) return made(Quality::Material, found, false);
     if (const auto found = peek(Class::material_surface)) return made(Quality::Surface, found, false);
     if (const auto found = peek(Class::shift);
         found && !(in_phrase && found.length == 1 && !has(Class::shade, word().text)))
         return made(Quality::Shift, found, true);
     if (const auto found = peek(Class::size)) return made(Quality::Size, found, true);
     if (const auto found = peek(Class::state)) return made(Quality::State, found, true);
+    if (has(Class::side, word().text) && in_phrase && peek(Class::side).length > 1 && peek(Class::part, 1) &&
+        ends_phrase(2, true))  // "its right hand"
+        return made(Quality::Side, {1, *meaning(Class::side, word().text)}, false);
     if (const auto found = peek(Class::side);
         found && in_phrase &&
         (peek(Class::part, found.length) || noun_length(found.length) > 0 ||
@@ -222,7 +288,8 @@ bool Cursor::take_plain_attribute(Attribute& attribute, bool in_phrase) {
         if (const auto found = peek(Class::pattern_animal);
             found && noun_length(found.length) > 0 && !ends_phrase(found.length, true))
             return made(Quality::Pattern, found, false);
-    if (word().text.ends_with("-shaped") || word().text.ends_with("-like") ||
+    if (in_phrase && take_style(attribute)) return true;
+    if (describes_part(word().text) || word().text.ends_with("-shaped") || word().text.ends_with("-like") ||
         word().text.ends_with("-eyed") || word().text.ends_with("-legged")) {
         attribute = {Quality::Other, word().text, word().text, ""};
         ++at;
@@ -234,6 +301,8 @@ bool Cursor::take_plain_attribute(Attribute& attribute, bool in_phrase) {
 bool Cursor::take_attribute(Attribute& attribute, bool in_phrase) {
     const std::size_t start = at;
     if (done() || word().mark || peek(Class::except).length > 1) return false;
+    if (const auto years = peek(Class::number); years && is(Class::word_years, years.length))
+        at += years.length + 1;  // "ten years younger"
     const bool too = is(Class::word_too);
     while (const auto degree = peek(Class::degree)) {
         // "light", "little", "pretty" may describe; "too" and "so" may stand alone
@@ -246,7 +315,7 @@ bool Cursor::take_attribute(Attribute& attribute, bool in_phrase) {
     if (is(Class::word_half) && peek(Class::colour, 1)) ++at;
     if (take_graded(attribute) || take_colour(attribute, in_phrase) ||
         take_plain_attribute(attribute, in_phrase)) {
-        if (too && attribute.quality == Quality::Size) attribute.value = less_of(attribute.value);
+        if (too) temper(attribute);
         return true;
     }
     at = start;
@@ -269,7 +338,9 @@ std::vector<Attribute> Cursor::take_attributes() {
         }
         Attribute more;
         Cursor probe = ahead;
-        if (!probe.take_attribute(more, false) ||
+        const bool order = (kinds_of(ahead.word().text) & Kind::Verb) != 0 && ahead.peek(Class::verb_remove);
+        const bool ground = comma && !joint && has(Class::ground, ahead.word().text);  // "blue, snow"
+        if (order || ground || !probe.take_attribute(more, false) ||
             (!probe.at_end_of_clause() && probe.noun_length() > 0 && !probe.ends_phrase(0, true)))
             break;
         if (probe.is_mark(":")) break;
@@ -287,7 +358,10 @@ std::string brace_text(const Attribute& attribute) {
 Thing thing_of(const Phrase& phrase) {
     Thing thing{phrase.noun, phrase.count == "all" ? "some" : phrase.count, {}};
     if (thing.count == "2" && has(Class::pair_noun, phrase.noun)) thing.count.clear();  // "a pair of glasses"
-    const auto last = phrase.noun.substr(phrase.noun.rfind(' ') + 1);                   // "stick arms"
+    if (!thing.count.empty() && phrase.plural && has(Class::pair_noun, phrase.noun) &&
+        phrase.noun.find(' ') == std::string::npos)
+        thing.noun = word_of(phrase.noun).singular;                    // "some leaves"
+    const auto last = phrase.noun.substr(phrase.noun.rfind(' ') + 1);  // "stick arms"
     if (phrase.plural && thing.count.empty() && !has(Class::pair_noun, phrase.noun) &&
         !has(Class::pair_noun, last))
         thing.count = "some";

@@ -26,6 +26,7 @@ constexpr std::pair<std::string_view, std::string_view> Opposites[] = {{"bigger"
                                                                        {"more saturated", "less saturated"},
                                                                        {"older", "younger"},
                                                                        {"old", "young"},
+                                                                       {"round", "square"},
                                                                        {"happy", "sad"},
                                                                        {"open", "closed"},
                                                                        {"sitting", "standing"},
@@ -60,6 +61,7 @@ Operation operation_for(Quality quality) {
         case Quality::Pattern: return Operation::Pattern;
         case Quality::Size: return Operation::Transform;
         case Quality::Pose: return Operation::Pose;
+        case Quality::Style: return Operation::Style;
         default: return Operation::Alter;
     }
 }
@@ -103,6 +105,16 @@ void Draft::apply(const Target& target, const Attribute& attribute) {
         else same_ = true;
         return;
     }
+    if (const auto [how, part] = described_part(attribute.value);
+        !part.empty() && target.kind == Target::Kind::There) {  // "a blue-eyed bear"
+        Phrase whose;
+        whose.noun = whose.typed = part;
+        const auto of = part_target(target, whose);
+        if (const auto size = meaning(Class::size, how)) step(Operation::Transform, of, std::string(*size));
+        else if (has(Class::colour, how) && !has(Class::material, how)) step(Operation::Recolour, of, how);
+        else step(Operation::Material, of, std::string(meaning(Class::material, how).value_or(how)));
+        return;
+    }
     if (target.kind == Target::Kind::Made && attribute.quality != Quality::Pose) {
         auto& attributes = steps_[*target.step].thing.attributes;
         const auto text = brace_text(attribute);
@@ -116,9 +128,10 @@ void Draft::apply(const Target& target, const Attribute& attribute) {
                         attribute.quality == Quality::State;
     if (change && is_so(target, attribute)) {
         same_ = true;
-        std::erase_if(steps_, [&](const Step& step) {  // "make it blue, then red again"
+        std::erase_if(steps_, [&](const Step& step) {                      // "make it blue, then red again"
+            const bool surface = has(Class::material_surface, step.text);  // "a mossy stone statue"
             return step.operation == operation_for(attribute.quality) && step.subject == target.reference &&
-                   step.anchors.empty();
+                   step.anchors.empty() && surface == (attribute.quality == Quality::Surface);
         });
         return;
     }
@@ -161,11 +174,21 @@ Target Draft::replace(const Target& target, const Phrase& phrase) {
             for (const auto& attribute : phrase.attributes) apply(target, attribute);
             return target;
         }
+        if (phrase.noun == noun && !phrase.count.empty()) {  // "make it two bears"
+            for (const auto& attribute : phrase.attributes) apply(target, attribute);
+            duplicate(target, phrase.count);
+            return target;
+        }
     }
     Step made;
     made.operation = Operation::Replace;
     made.subject = target.reference;
     made.thing = thing_of(phrase);
+    if (made.thing.count == "some" && phrase.count.empty() && target.reference.links.front().count == "all")
+        made.thing.count.clear();                  // "turn both bears into cats"
+    std::erase_if(steps_, [&](const Step& step) {  // "remove it and put a tree in its place"
+        return step.operation == Operation::Remove && step.subject == target.reference;
+    });
     push(made);
     Target result{
         Target::Kind::Made, {{{made.thing.noun, "", {}}}, false}, std::nullopt, steps_.size() - 1, ""};
@@ -198,6 +221,11 @@ void Draft::set_anchors(const Target& made, std::string_view relation, const std
     auto& step = steps_[*made.step];
     if (step.operation != Operation::Add) return;
     step.relation = relation;
+    Phrase clothes;
+    clothes.noun = clothes.typed = step.thing.noun;
+    if (relation == "on" && anchors.size() == 1 && anchors.front().thing && is_worn(clothes) &&
+        can_wear(anchors.front()))
+        step.relation = "worn by";  // "two hats on the bear"
     step.anchors.clear();
     for (const auto& anchor : anchors) step.anchors.push_back(anchor.reference);
     if (relation != "between" || anchors.size() != 1) return;
@@ -307,6 +335,13 @@ void Draft::leave_out(const Target& target, std::size_t from) {
     steps_ = std::move(left);
 }
 
+std::optional<Target> Draft::removed_last() const {
+    if (steps_.empty() || steps_.back().operation != Operation::Remove) return std::nullopt;
+    for (std::size_t i = 0; i < scene_->things.size(); ++i)
+        if (target_of_thing(i).reference == steps_.back().subject) return target_of_thing(i);
+    return std::nullopt;
+}
+
 void Draft::drop_last() {
     if (!steps_.empty()) steps_.pop_back();
     last_.reset();
@@ -344,6 +379,11 @@ Plan Draft::finish() const {
     if (contradicts()) return refusal(reason::Contradiction);
     Plan plan;
     if (steps_.empty()) {
+        for (const auto& denied : denied_)  // "no red": of a red bear
+            for (std::size_t i = 0; i < scene_->things.size(); ++i)
+                if (target_of_thing(i).reference == denied.subject &&
+                    is_so(target_of_thing(i), {Quality::Colour, denied.text, denied.text, ""}))
+                    return refusal(reason::Incomplete);
         Step none;
         none.operation = Operation::None;
         none.text = asked_nothing_ && !same_ ? reason::NothingAsked : reason::AlreadySo;

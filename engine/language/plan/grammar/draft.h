@@ -29,6 +29,8 @@ public:
     const SceneWords& scene() const { return *scene_; }
     /// Thing that the sentence is about when it says nothing else: that of the source, or the only one.
     Target focus() const;
+    /// Tells whether the sentence is about the ground.
+    bool is_on_ground() const { return focus_ && scene_->things[*focus_].is_ground; }
     bool has_focus() const { return focus_.has_value(); }
     bool source_missing() const { return source_missing_; }
     const std::string& source_word() const { return source_word_; }
@@ -54,6 +56,8 @@ public:
 
     void apply(const Target& target, const Attribute& attribute);
     void deny(const Target& target, const Attribute& attribute);
+    /// Tells whether the scene shows the target so already.
+    bool is_so(const Target& target, const Attribute& attribute) const;
     void step(Operation operation, const Target& target, std::string text = {}, std::string text2 = {});
     void move(const Target& target, std::string change, const Target& other);
     Target replace(const Target& target, const Phrase& phrase);
@@ -78,6 +82,10 @@ public:
     void refuse(std::string_view reason, std::string_view word = {});
     void already_so() { same_ = true; }
     void nothing_asked() { asked_nothing_ = true; }
+    /// Tells whether the last step makes the target.
+    bool last_is(const Target& made) const { return made.step && *made.step + 1 == steps_.size(); }
+    /// Thing that the last step removes.
+    std::optional<Target> removed_last() const;
     /// Takes the last step back ("no wait", "take it off again").
     void drop_last();
     std::size_t size() const { return steps_.size(); }
@@ -87,11 +95,14 @@ public:
     Plan finish() const;
 
 private:
-    bool is_so(const Target& target, const Attribute& attribute) const;
     void push(Step step);
     bool contradicts() const;
+    bool may_have(const Target& owner, const Phrase& phrase) const;
     Target part_target(const Target& owner, const Phrase& phrase) const;
     Target of_several(const Phrase& phrase, const std::vector<std::size_t>& found) const;
+    bool is_plural(const Target& target) const;
+    std::optional<Target> ordinal(const Phrase& phrase) const;
+    Target owned(const Phrase& phrase) const;
     std::optional<Target> made_named(const Phrase& phrase) const;
     const SceneWords* scene_;
     std::optional<std::size_t> focus_;

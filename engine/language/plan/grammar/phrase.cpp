@@ -68,6 +68,17 @@ const Word& Cursor::word(std::size_t ahead) const {
     return at + ahead < words_.size() ? words_[at + ahead] : NoWord;
 }
 
+const Word& Cursor::previous() const { return at > 0 && at <= words_.size() ? words_[at - 1] : NoWord; }
+
+std::string Cursor::text_to(std::size_t end) const { return joined_texts(words_.subspan(at, end - at)); }
+
+bool Cursor::is_thing_before() const {
+    const auto& word = previous();
+    return !word.mark && !word.text.empty() && !is_scene_noun(word.singular) &&
+           ((kinds_of(word.singular) & (Concrete | Other | Perhaps)) != 0 || has(Class::ground, word.text) ||
+            has(Class::place, word.text));
+}
+
 std::span<const Word> Cursor::rest(std::size_t ahead) const {
     return at + ahead < words_.size() ? words_.subspan(at + ahead) : std::span<const Word>();
 }
@@ -123,6 +134,7 @@ std::size_t Cursor::noun_length(std::size_t ahead) const {
 
 bool Cursor::ends_phrase(std::size_t ahead, bool after_noun) const {
     if (word(ahead).text.empty() || word(ahead).mark) return true;
+    if (!after_noun && peek(Class::compound, ahead).length > 1) return false;  // "a red sports car"
     const bool describes = peek(Class::relation, ahead).length == 1 && peek(Class::state, ahead) &&
                            noun_length(ahead + 1) > 0 && !after_noun;  // "round window"
     for (const auto kind : EndingClasses)
@@ -195,7 +207,8 @@ bool Cursor::take_pronoun(Phrase& phrase) {
 
 void Cursor::take_determiners(Phrase& phrase) {
     while (!done()) {
-        if (const auto found = peek(Class::number); found && !(found.length == 1 && word(1).text.empty())) {
+        if (const auto found = peek(Class::number); found && found.length >= peek(Class::some).length &&
+                                                    !(found.length == 1 && word(1).text.empty())) {
             at += found.length;
             phrase.count = found.value;
             if (found.value == "1") phrase.count.clear(), phrase.single = true, phrase.indefinite = true;
@@ -212,7 +225,12 @@ void Cursor::take_determiners(Phrase& phrase) {
         else if (peek(Class::definite)) take(Class::definite), phrase.definite = true;
         else if (take(Class::possessive)) phrase.possessive = true;
         else if (peek(Class::of) && phrase.count == "all") take(Class::of);
-        else if (take(Class::caption)) {
+        else if (peek(Class::of) && (phrase.single || !phrase.count.empty()) &&
+                 (peek(Class::definite, 1) || peek(Class::possessive, 1))) {  // "one of the bears"
+            at += 2;
+            phrase.some_of = true;
+            phrase.indefinite = false;
+        } else if (take(Class::caption)) {
         } else break;
     }
 }
@@ -243,7 +261,8 @@ bool Cursor::reads_as_noun(const Phrase& phrase) const {
     bool last = ends_phrase(1, true);
     const std::size_t length = noun_length();
     if (length > 1) return true;
-    if (!last && length == 1) {  // "the animal blue": what follows describes and ends the clause
+    const bool compound = has(Class::held, word(1).singular) || has(Class::thing, word(1).singular);
+    if (!last && length == 1 && !compound) {  // "the animal blue": what follows describes and ends the clause
         Cursor ahead = *this, whole = *this;
         Attribute behind;
         ++ahead.at;
@@ -269,19 +288,26 @@ bool Cursor::reads_as_noun(const Phrase& phrase) const {
                !has(Class::size, word().text) && !has(Class::state, word().text) &&
                !has(Class::pattern_plain, word().text) && !has(Class::pose, word().text);
     if (!things) return false;
+    if (phrase.indefinite && has(Class::pattern_plain, word().text) && has(Class::thing, word().text) &&
+        phrase.attributes.empty())
+        return true;  // "a rainbow"
     // "a darker red", "the blue": colours that name no thing
     if (has(Class::size, word().text) || has(Class::state, word().text) ||
         has(Class::pattern_plain, word().text) || has(Class::pose, word().text))
         return false;
     return !has(Class::colour, word().text) || peek(Class::thing) || peek(Class::held) ||
-           (kinds & (Plant | Food)) != 0;
+           (kinds & (Plant | Food | Animal)) != 0;
 }
 
 /// Tells whether nothing but a colour, a ground, a material or a pattern stands before the end.
 bool Cursor::describes_to_the_end() const {
+    Attribute shade;  // "light blue"
+    if (Cursor behind = *this; has(Class::shade, word().text) && behind.take_colour(shade, false) &&
+                               (behind.at_end_of_clause() || behind.peek(Class::conjunction)))
+        return true;
     for (const auto kind : {Class::colour, Class::ground, Class::material, Class::pattern}) {
         Cursor behind = *this;
-        if (behind.take(kind) && behind.at_end_of_clause()) return true;
+        if (behind.take(kind) && (behind.at_end_of_clause() || behind.peek(Class::conjunction))) return true;
     }
     return false;
 }
@@ -294,6 +320,10 @@ void Cursor::take_nouns(Phrase& phrase, bool split, std::size_t length) {
         const auto so_far = joined_texts(words_.subspan(begin, at - begin));
         const bool owner = is_scene_noun(words_[at - 1].singular);
         if (owner && peek(Class::verb_face) && (peek(Class::direction, 1) || peek(Class::definite, 1))) break;
+        const bool telegraphic =  // "bear hat": it wears one
+            owner && at == begin + 1 && !phrase.has_determiner() && phrase.attributes.empty() &&
+            peek(Class::worn) && !is_scene_noun(word().singular) && begin == 0;
+        if (telegraphic) break;
         if (owner &&
             (split || peek(Class::part) || peek(Class::colour_word) || is_scene_noun(word().singular)))
             break;
@@ -322,8 +352,13 @@ bool Cursor::take_body(Phrase& phrase, bool split) {
             ++ahead.at;
             Attribute next;
             if (ahead.ends_phrase(0, false) || ahead.reads_as_noun(phrase) ||
-                !ahead.take_attribute(next, true) || ahead.noun_length() == 0)
+                !ahead.take_attribute(next, true))
                 break;
+            while (ahead.is_mark(",")) {  // "long, white, curly hair"
+                ++ahead.at;
+                if (ahead.ends_phrase(0, false) || !ahead.take_attribute(next, true)) break;
+            }
+            if (ahead.noun_length() == 0) break;
             ++at;
         }
         if (ends_phrase(0, false)) break;
@@ -408,10 +443,30 @@ void Cursor::take_whole_behind(Phrase& phrase) {
     Cursor ahead = *this;
     ahead.take(Class::of);
     Phrase whole;
-    if (!ahead.take_phrase(whole)) return;
+    const bool holds = has(Class::container, phrase.noun) || has(Class::held, phrase.noun);
+    const bool many = ahead.word().text != ahead.word().singular && !is_scene_noun(phrase.noun) &&
+                      !has(Class::part, phrase.noun);
+    if (!ahead.take_phrase(whole) && (holds || many) && ahead.noun_length() > 0) {  // "a bowl of honey"
+        whole.noun = whole.typed = ahead.word().text;
+        ++ahead.at;
+    } else if (Attribute stuff;
+               ahead.at == at + 1 && has(Class::layer, phrase.noun) && ahead.take_attribute(stuff, false)) {
+        phrase.noun = phrase.typed = "paint";  // "a coat of gold"
+        phrase.attributes = {stuff};
+        at = ahead.at;
+        phrase.end = at;
+        return;
+    } else if (ahead.at == at + 1) return;
+    if (has(Class::layer, phrase.noun) && has(Class::colour_word, whole.noun) && !whole.attributes.empty()) {
+        phrase.noun = phrase.typed = whole.noun;  // "a coat of white paint"
+        phrase.attributes = whole.attributes;
+        at = ahead.at;
+        phrase.end = at;
+        return;
+    }
     const bool part = has(Class::part, phrase.noun) || has(Class::part, words_[phrase.end - 1].singular) ||
                       has(Class::colour_word, phrase.noun) || has(Class::part, phrase.typed) ||
-                      phrase.noun == "size" || phrase.noun == "position" || phrase.noun == "place";
+                      has(Class::quality, phrase.noun);
     if ((part && (whole.definite || whole.possessive || whole.naming != Naming::Thing ||
                   is_scene_noun(whole.noun))) ||
         whole.naming == Naming::It || (is_scene_noun(phrase.noun) && is_scene_noun(whole.noun))) {
@@ -420,8 +475,11 @@ void Cursor::take_whole_behind(Phrase& phrase) {
         at = ahead.at;
         phrase.end = at;
     } else if (!whole.definite && whole.naming == Naming::Thing && !whole.noun.empty() &&
-               !has(Class::material, whole.noun) && !part &&
-               (kinds_of(phrase.noun) & (Artifact | Perhaps | Other | Object)) != 0 &&
+               (!has(Class::material, whole.noun) ||
+                (whole.plural && (has(Class::heap, phrase.noun) || has(Class::worn, phrase.noun)))) &&
+               !part &&
+               ((kinds_of(phrase.noun) & (Artifact | Perhaps | Other | Object)) != 0 ||
+                has(Class::thing, phrase.noun)) &&
                (!is_scene_noun(phrase.noun) || whole.indefinite)) {
         phrase.noun += " of " + (whole.typed.empty() ? whole.noun : whole.typed);  // "bowl of fruit"
         at = ahead.at;
@@ -446,11 +504,12 @@ bool Cursor::take_phrase(Phrase& phrase, bool split) {
         if (is(Class::word_one) || is(Class::word_ones)) ++at;
     } else if (has(Class::thing_name, phrase.noun) && (phrase.noun == "one" || phrase.noun == "ones"))
         phrase.noun.clear();
+    if (phrase.some_of && phrase.single) phrase.plural = false;
     take_owner_behind(phrase, split);
     if (phrase.definite && !phrase.owner) {  // "the car on the left"
         const auto side = peek(Class::direction);
-        if (side.length > 2 && !is(Class::word_to) && has(Class::side, side.value) &&
-            !peek(Class::of, side.length)) {
+        if (side.length > 2 && (is(Class::word_on) || is(Class::word_at) || is(Class::word_in)) &&
+            has(Class::side, side.value) && !peek(Class::of, side.length)) {
             phrase.attributes.push_back(
                 {Quality::Side, std::string(side.value), std::string(side.value), ""});
             at += side.length;

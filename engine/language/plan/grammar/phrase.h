@@ -24,6 +24,7 @@ enum class Quality {
     Worn,
     Unworn,
     Side,
+    Style,
     Other
 };
 
@@ -46,6 +47,7 @@ struct Phrase {
     std::string count;  // "2", "some", "all"; empty
     bool definite = false, indefinite = false, another = false, none = false, plural = false;
     bool single = false;             // "a single bear"
+    bool some_of = false;            // "one of the bears"
     bool possessive = false;         // "its", "his"
     std::shared_ptr<Phrase> owner;   // "the bear's" ear, ear "of the bear"
     std::vector<Phrase> excepted;    // "everything except the bear"
@@ -63,6 +65,12 @@ public:
 
     std::size_t at = 0;
     bool done() const { return at >= words_.size(); }
+    /// Words from the position to `end`.
+    std::string text_to(std::size_t end) const;
+    /// The word before the position; one without letters at the beginning.
+    const Word& previous() const;
+    /// Tells whether the word before the position names a thing or a place.
+    bool is_thing_before() const;
     const Word& word(std::size_t ahead = 0) const;
     std::span<const Word> rest(std::size_t ahead = 0) const;
     Match peek(Class word_class, std::size_t ahead = 0) const { return match(word_class, rest(ahead)); }
@@ -89,6 +97,8 @@ public:
 
 private:
     bool take_colour(Attribute& attribute, bool in_phrase);
+    bool take_pattern(Attribute& attribute, bool in_phrase);
+    bool take_style(Attribute& attribute);
     bool take_plain_attribute(Attribute& attribute, bool in_phrase);
     bool take_other_attribute(Attribute& attribute, bool in_phrase);
     bool take_graded(Attribute& attribute);

@@ -59,7 +59,10 @@ std::optional<Plan> Reader::whole_sentence() {
     if (at.done()) return refusal(c_.done() ? reason::NotASentence : reason::NotAnEdit);
     if (at.peek(Class::request)) return std::nullopt;
     if (wishes(at)) return std::nullopt;
-    bool asked = at.peek(Class::question_word).length > 0;
+    Target there;
+    Reader where = *this;
+    where.c_ = at;
+    bool asked = at.peek(Class::question_word).length > 0 && !(where.stands_where(there) && !where.c_.done());
     Cursor last = c_;
     bool mark = false;
     for (; !last.done(); ++last.at) mark = last.is_mark("?") || (mark && last.is_mark("!"));
@@ -110,9 +113,15 @@ bool Reader::skip_noise() {
         }
     }
     ahead = c_;
-    while (ahead.take(Class::noise) ||
-           (ahead.at > c_.at && (ahead.take(Class::conjunction) || ahead.take(Class::degree)))) {}
-    if (ahead.at > c_.at && ahead.at_end_of_clause()) c_.at = ahead.at;
+    if (ahead.is(Class::word_by)) ++ahead.at;  // "by greg rutkowski"
+    const std::size_t begin = ahead.at;
+    while ((!ahead.peek(Class::caption) && ahead.take(Class::noise)) ||
+           (ahead.at > begin && (ahead.take(Class::conjunction) || ahead.take(Class::degree)))) {}
+    if (Cursor shot = c_; shot.take(Class::article) && shot.take(Class::noise)) {
+        while (!shot.peek(Class::caption) && shot.take(Class::noise)) {}
+        if (shot.peek(Class::caption)) c_.at = shot.at;  // "a stunning photo of a bear"
+    }
+    if (ahead.at > begin && (ahead.at_end_of_clause() || ahead.peek(Class::caption))) c_.at = ahead.at;
     ahead = c_;
     if (const auto prefix = ahead.peek(Class::prefix); prefix && ahead.is_mark(":", prefix.length)) {
         c_.at += prefix.length + 1;
@@ -124,7 +133,9 @@ void Reader::skip_lead_in() {
     while (!c_.done()) {
         if (skip_separators() || skip_noise()) continue;
         const std::size_t before = c_.at;
-        if (c_.peek(Class::only)) break;
+        if (c_.peek(Class::only) || c_.peek(Class::do_not)) break;
+        if (const auto meant = c_.peek(Class::correction); meant.length > 1 && d_.size() == 0 && c_.at < 3)
+            c_.at += meant.length;  // "sorry, I meant a blue bear"
         if (const auto found = c_.peek(Class::request)) {
             // "show", "let me": only where something follows
             Cursor ahead = c_;
@@ -135,7 +146,9 @@ void Reader::skip_lead_in() {
                                       !c_.is(Class::word_want) && !c_.is(Class::word_try) &&
                                       !starts_verb(found.length);  // "let's paint it"
             if (verb_of_ours) break;
-            c_.at = ahead.at;
+            const bool gets = c_.is(Class::word_get, found.length - 1) &&
+                              c_.peek(Class::verb_remove, found.length - 1);  // "can we get rid of the bear?"
+            c_.at = gets ? ahead.at - 1 : ahead.at;
             requested_ = true;
         } else if (const auto polite = c_.peek(Class::courtesy);
                    polite && !(polite.length == 1 && c_.noun_length() > 0 && c_.is_mark(":", 1))) {
@@ -146,6 +159,9 @@ void Reader::skip_lead_in() {
             c_.take(Class::conjunction);
         } else if (c_.peek(Class::contrast)) {
             c_.take(Class::contrast);
+        } else if (somebody_says()) {
+            requested_ = true;
+        } else if (takes_and()) {
         } else if (c_.peek(Class::colour_word) && c_.is_mark(":>", 1)) {
             c_.at += 2;  // "color=blue"
         } else if (c_.peek(Class::prefix) && c_.is_mark(":", c_.peek(Class::prefix).length)) {
@@ -208,7 +224,19 @@ bool Reader::ends_well() const {
     while (here.take(Class::as_well) || here.take(Class::courtesy)) {}
     return here.at_end_of_clause() || here.peek(Class::rather_than) || here.peek(Class::except) ||
            here.peek(Class::conjunction) || here.peek(Class::sequence) || here.peek(Class::contrast) ||
-           here.peek(Class::noise);
+           here.peek(Class::noise) || (here.peek(Class::plain_verb) && starts_verb(here.at - c_.at));
+}
+
+/// Position behind "under the bear, which is a bit boring," where what is to be follows; else the same.
+Cursor Reader::behind_modifiers(Cursor subject) const {
+    Cursor behind = subject;
+    Phrase place;
+    if (behind.take(Class::relation) && !behind.take_phrase(place)) return subject;
+    if (Cursor apart = behind; apart.take_mark(',') && apart.take(Class::relative)) {
+        while (!apart.done() && !apart.is_mark(".,;!?:")) ++apart.at;
+        if (apart.take_mark(',')) behind.at = apart.at;
+    }
+    return behind.peek(Class::modal) ? behind : subject;
 }
 
 /// A clause of a long sentence that tells a story, up to the next comma.
@@ -226,21 +254,92 @@ bool Reader::skip_narrative(std::size_t start) {
     return true;
 }
 
+/// "where the bear is": the target that stands there.
+bool Reader::stands_where(Target& target) {
+    Cursor ahead = c_;
+    Phrase phrase;
+    if (!ahead.is(Class::word_where)) return false;
+    ++ahead.at;
+    if (!ahead.take_phrase(phrase)) return false;
+    const auto found = d_.resolve(phrase);
+    if (!found.found() || !ahead.take(Class::where_is)) return false;
+    while (ahead.take(Class::as_well)) {}
+    target = found;
+    c_.at = ahead.at;
+    return true;
+}
+
+/// "in the bear's place": the target whose place it is.
+bool Reader::in_place_of(Target& target) {
+    Cursor ahead = c_;
+    Phrase owner;
+    if (const auto instead = ahead.peek(Class::instead); instead.length > 2) {  // "in its place"
+        target = d_.removed_last() ? *d_.removed_last() : d_.focus();
+        c_.at += instead.length;
+        return target.found();
+    }
+    if (!ahead.is(Class::word_in)) return false;
+    ++ahead.at;
+    if (!ahead.take_phrase(owner) || !ahead.is_owner_mark() || !ahead.is(Class::word_place, 1)) return false;
+    target = d_.resolve(owner);
+    if (!target.found()) return false;
+    c_.at = ahead.at + 2;
+    return true;
+}
+
+/// "my boss thinks that": steps over who says it.
+bool Reader::somebody_says() {
+    Cursor ahead = c_;
+    Phrase who;
+    if (!ahead.take_phrase(who) || who.naming != Naming::Thing || who.noun.empty()) return false;
+    const bool person = (kinds_of(who.noun) & Person) != 0 || who.possessive;
+    if (!person || d_.resolve(who).found() || is_part(who) || is_worn(who)) return false;
+    if (!ahead.take(Class::said_by) || ahead.at_end_of_clause()) return false;
+    c_.at = ahead.at;
+    return true;
+}
+
+/// "take the bear and": the thing that an order is about.
+bool Reader::takes_and() {
+    Cursor ahead = c_;
+    Phrase phrase;
+    if (!ahead.is(Class::word_take)) return false;
+    ++ahead.at;
+    if (!ahead.take_phrase(phrase)) return false;
+    const auto found = phrase.naming == Naming::It ? d_.pronoun(Naming::It) : d_.resolve(phrase);
+    ahead.take_mark(',');
+    if (!found.found() || !ahead.take(Class::conjunction) || !starts_verb(ahead.at - c_.at)) return false;
+    d_.mention(found);
+    c_.at = ahead.at;
+    return true;
+}
+
 bool Reader::correction() {
     Cursor ahead = c_;
     const bool refuses = ahead.peek(Class::none).length > 0;
     if (!ahead.take(Class::correction)) return false;
     if (refuses && ahead.at == c_.at + 1 && !ahead.is_mark(",.!") && !ahead.peek(Class::correction))
-        return false;  // "no grass"
-    while (ahead.take(Class::correction) || ahead.take_mark(',') || ahead.take_mark('.')) {}
-    if (d_.size() == 0 || ahead.done()) return false;
+        return false;                                                 // "no grass"
+    while (!(ahead.peek(Class::none) && ahead.noun_length(1) > 0) &&  // "on second thought, no hat"
+           (ahead.take(Class::correction) || ahead.take_mark(',') || ahead.take_mark('.'))) {}
+    if ((d_.size() == 0 && !d_.says_same()) || ahead.done()) return false;
+    if (Cursor not_at_all = ahead;
+        not_at_all.take(Class::do_not) && (not_at_all.take_mark('.'), not_at_all.done())) {
+        while (d_.size() > 0) d_.drop_last();  // "actually, do not"
+        d_.nothing_asked();
+        c_.at = not_at_all.at;
+        return true;
+    }
     c_.at = ahead.at;
     return true;
 }
 
 Plan Reader::read_story() {
-    for (Cursor here = c_; !here.done(); ++here.at)
-        if (here.peek(Class::injection) || here.is_mark("?")) return failure();
+    bool asked = false;  // "could you please ...?" is no question
+    for (Cursor here = c_; !here.done(); ++here.at) {
+        asked = asked || here.peek(Class::request);
+        if (here.peek(Class::injection) || (here.is_mark("?") && !asked)) return failure();
+    }
     while (!c_.done()) {
         const std::size_t start = c_.at;
         requested_ = false;
@@ -249,8 +348,8 @@ Plan Reader::read_story() {
         const auto draft = d_;
         Phrase subject;
         Cursor ahead = c_;
-        const bool wish =
-            ahead.take_phrase(subject) && ahead.peek(Class::modal) && d_.resolve(subject).found();
+        const bool wish = ahead.take_phrase(subject) && d_.resolve(subject).found() &&
+                          behind_modifiers(ahead).peek(Class::modal);
         const bool order = starts_verb() && c_.word().text == c_.word().base && !c_.peek(Class::verb_keep);
         const std::size_t begin = c_.at;
         const bool read = (requested_ || wish || order) && clause() && c_.at > begin && ends_well();

@@ -36,9 +36,14 @@ private:
     void skip_rest(std::size_t steps);
     bool leaves_out(std::size_t steps);
     bool skip_narrative(std::size_t start);
+    Cursor behind_modifiers(Cursor subject) const;
     bool fail(std::string_view reason);
     Plan failure() const;
     bool correction();
+    bool stands_where(Target& target);
+    bool in_place_of(Target& target);
+    bool somebody_says();
+    bool takes_and();
     bool starts_verb(std::size_t ahead = 0) const;
     bool starts_object(std::size_t ahead) const;
 
@@ -46,6 +51,7 @@ private:
     bool verb_clause();
     bool try_verbs();
     void leave_as_it_is(const Phrase& phrase);
+    bool keep_coloured(const Phrase& phrase, Cursor behind);
     bool keep_clause();
     bool make_clause();
     bool paint_clause();
@@ -61,6 +67,9 @@ private:
     void take_worn(Targets& targets) const;
     bool takes_away(const Cursor& particle, bool direct, bool gets) const;
     void remove_all(const Targets& targets);
+    bool take_things_there(Targets& targets);
+    bool pull_off();
+    bool remove_excepted(const Phrase& phrase);
     bool remove_clause();
     bool shave_clause();
     bool instruct_less_clause();
@@ -68,6 +77,12 @@ private:
     bool add_one();
     bool add_clause();
     bool place_new(const Phrase& phrase, Targets& made);
+    bool place_on_body(const Phrase& phrase, const Target& thing, Target body, const Phrase& where,
+                       std::string_view relation);
+    bool place_between(const Target& thing, const Target& anchor);
+    bool add_surroundings(const Phrase& phrase);
+    bool add_paint(const Phrase& phrase);
+    std::optional<bool> add_in_place(const Phrase& phrase, const Target& found);
     bool place_at(const Phrase& phrase, const Target& thing, const Target& bearer, const Phrase& where,
                   std::string_view relation);
     std::string take_amount();
@@ -98,14 +113,24 @@ private:
     bool only_clause();
     bool no_thing_clause();
     bool do_not_clause(Cursor ahead);
+    bool unwanted_clause(Cursor ahead);
+    bool neither_clause();
     bool negative_clause();
     bool instead_clause();
     std::optional<bool> statement(const std::vector<Phrase>& phrases, bool said, bool adjective_behind);
+    bool becomes_bare(const Phrase& phrase);
+    bool says_of(const Phrase& phrase) const;
     bool noun_clause();
     std::optional<bool> has_something(const Targets& subjects);
     bool is_somehow(const Targets& subjects);
+    bool should_not(const Targets& subjects);
     bool predicate(const Targets& subjects);
     bool describe(const Phrase& phrase);
+    bool describe_nameless(const Phrase& phrase);
+    bool describe_empty(const Phrase& phrase, const Target& found);
+    void describe_telegraphic(const Target& found);
+    std::optional<bool> describe_one_of(const Phrase& phrase);
+    std::optional<bool> describe_elsewhere(const Phrase& phrase);
     bool describe_part(const Phrase& phrase, const Target& found);
     std::optional<bool> describe_place(const Phrase& phrase, bool bare);
     std::optional<bool> describe_instead(const Phrase& phrase);
@@ -121,6 +146,8 @@ private:
     bool describe_other(const Phrase& phrase);
     bool skip_instead();
     bool describe_more();
+    bool bare_ground();
+    bool attributes_for();
     bool attribute_clause();
     bool names_later(const Phrase& phrase) const;
     bool mentions_focus(std::size_t from) const;
@@ -130,16 +157,19 @@ private:
     bool described_as(const Targets& targets);
     bool complement_once(const Targets& targets);
     bool as_much_as(const Targets& targets);
+    bool faces(const Targets& targets);
     bool looks_somewhere(const Targets& targets);
     bool measure(const Targets& targets);
     bool percent(const Targets& targets);
     bool compared(const Targets& targets);
+    bool looks_like(const Targets& targets, const Phrase& model);
     bool alike(const Targets& targets);
     bool said_of_part(const Target& target) const;
     bool become(const Targets& targets, const Phrase& phrase);
     bool material_of(const Targets& targets);
     bool denied(const Targets& targets);
     bool apply_all(const Targets& targets, const std::vector<Attribute>& attributes);
+    bool lies_there(const Target& made);
     bool pose_text(const Targets& targets);
     bool style_text(const Targets& targets);
 
@@ -147,14 +177,22 @@ private:
     void posts(const Target& subject);
     bool inversely_related(const Target& subject);
     bool weather_clause();
+    bool burns(const Target& subject);
+    void skip_where_pose();
     bool post(const Target& subject);
+    bool stands_on_part(const Target& subject);
+    bool has_quality(const Target& subject, std::string_view relation);
+    bool has_looks(const Target& subject, const std::vector<Attribute>& attributes);
     bool has_list(const Target& subject, std::string_view relation);
+    bool own_there(const Target& subject, const Phrase& phrase, std::string_view relation,
+                   const Target& there);
     bool own(const Target& subject, const Phrase& phrase, std::string_view relation);
     bool own_part(const Target& subject, const Phrase& phrase);
     bool own_pattern(const Target& subject, const Phrase& phrase);
     bool lack_list(const Target& subject);
     bool lack(const Target& subject, const Phrase& phrase);
     bool related(const Target& subject);
+    bool usually_on(const Target& subject, const Target& found) const;
     bool relate_there(const Target& subject, std::string_view relation, const Phrase& phrase,
                       const Target& found);
     bool between(const Target& subject, const Phrase& phrase);
@@ -166,11 +204,15 @@ private:
     bool skip_likeness();
     void nested(const Target& made, const Target& bearer);
     bool list_goes_on();
+    bool takes_use(const Target& made, const Target& bearer);
 
     bool objects(Targets& targets, std::vector<Phrase>* phrases = nullptr, bool split = false);
     bool contradicts_colour(const Phrase& phrase, const Target& found) const;
     Targets things_on(const Target& target) const;
     bool all_but(const std::vector<Phrase>& excepted, Targets& targets);
+    Targets both() const;
+    Targets collective(const Phrase& phrase) const;
+    std::optional<bool> untold_object(Targets& targets, Phrase& phrase);
     bool object(Targets& targets, Phrase& phrase, bool split = false);
     Target expect(const Phrase& phrase);
     bool on_bearer(const Phrase& phrase, Target& bearer) const;

@@ -46,7 +46,8 @@ bool Reader::beside_its_like(const Phrase& phrase, const Target& target) {
     Phrase where;
     const auto relation = around.take(Class::relation);
     if (!relation || !around.take_phrase(where) || !where.definite || where.naming != Naming::Thing ||
-        !around.at_end_of_clause() || !target.thing || !(d_.resolve(where).reference == target.reference))
+        where.noun.empty() || !around.at_end_of_clause() || !target.thing ||
+        !(d_.resolve(where).reference == target.reference))
         return false;
     c_.at = around.at;
     Phrase more = phrase;
@@ -57,13 +58,25 @@ bool Reader::beside_its_like(const Phrase& phrase, const Target& target) {
 
 /// "another bear", "two bears", "one more bear": copies of what is there.
 bool Reader::one_more(const Phrase& phrase) {
-    if (!phrase.another && (phrase.count.empty() || phrase.count == "all") && !phrase.plural) return false;
+    const bool ordinal =
+        std::any_of(phrase.attributes.begin(), phrase.attributes.end(),
+                    [](const Attribute& each) { return each.typed == "third" || each.typed == "fourth"; });
+    if (!phrase.another && !ordinal && (phrase.count.empty() || phrase.count == "all") && !phrase.plural)
+        return false;
     const auto found = d_.things_named(phrase);
     if (found.empty() || d_.scene().things[found.front()].is_ground || phrase.owner || phrase.definite)
         return false;
     const auto& noun = d_.scene().things[found.front()].noun;
     const auto same = std::count_if(d_.scene().things.begin(), d_.scene().things.end(),
                                     [&](const SceneThing& thing) { return thing.noun == noun; });
+    if (same > 1 && (phrase.another || ordinal) && phrase.count.empty() && ends_well()) {
+        Phrase all = phrase;  // "add a third chair" to two
+        all.count = "all";
+        all.attributes.clear();
+        const auto target = d_.resolve(all);
+        if (target.found()) d_.duplicate(target, std::to_string(same + 1));
+        return target.found();
+    }
     if (same > 1) return false;
     if (phrase.typed == noun && !phrase.another && phrase.count.empty()) return false;  // "autumn trees"
     if (has(Class::pair_noun, noun)) return false;
@@ -84,6 +97,34 @@ bool Reader::one_more(const Phrase& phrase) {
     return true;
 }
 
+/// "on its head", "in its hand": worn, held, or on that part; false where `where` is none.
+bool Reader::place_on_body(const Phrase& phrase, const Target& thing, Target body, const Phrase& where,
+                           std::string_view relation) {
+    const bool holds = relation == "in" && has(Class::hand, word_of(where.typed).singular) &&
+                       !is_worn(phrase) && d_.can_wear(body);
+    if (!on_bearer(where, body)) return false;
+    const bool worn = is_worn(phrase) && d_.can_wear(body);
+    Target whole = body;
+    whole.reference.links = {body.reference.links.back()};
+    const std::string_view how = worn ? "worn by" : holds ? "held by" : relation.empty() ? "on" : relation;
+    d_.set_anchor(thing, how, worn || holds ? whole : body);
+    return true;
+}
+
+/// "between the statue and the vase", "between the bear and the camera".
+bool Reader::place_between(const Target& thing, const Target& anchor) {
+    Phrase second;
+    if (!c_.take_phrase(second)) return fail(reason::Incomplete);
+    if (has(Class::seen_by, second.noun) && d_.things_named(second).empty()) {
+        d_.set_anchor(thing, "in front of", anchor);
+        return true;
+    }
+    const auto other = expect(second);
+    if (!other.found()) return false;
+    d_.set_anchors(thing, "between", {anchor, other});
+    return true;
+}
+
 /// Puts the new thing beside, on or into what `where` names; `relation`: empty = "to".
 bool Reader::place_at(const Phrase& phrase, const Target& thing, const Target& bearer, const Phrase& where,
                       std::string_view relation) {
@@ -95,17 +136,10 @@ bool Reader::place_at(const Phrase& phrase, const Target& thing, const Target& b
             : d_.resolve(where);
     if (where.naming == Naming::They && bearer.found()) anchor = bearer;
     Target body = where.owner || !where.possessive ? focus : bearer;
-    if (on_bearer(where, body)) {
-        const bool worn = is_worn(phrase);
-        Target whole = body;
-        whole.reference.links = {body.reference.links.back()};
-        d_.set_anchor(thing,
-                      worn ? std::string_view("worn by")
-                      : to ? std::string_view("on")
-                           : relation,
-                      worn ? whole : body);
-        return true;
-    }
+    const bool bears =
+        body.found() && (!where.possessive || d_.can_wear(body) || !has(Class::body_place, where.noun));
+    if (!bears) body = d_.pronoun(Naming::Person);
+    if (place_on_body(phrase, thing, body, where, relation)) return true;
     if (anchor.kind == Target::Kind::Ambiguous) return fail(reason::Ambiguous);
     if (!anchor.found() && relation == "in" && has(Class::backdrop, where.noun) && focus.found()) {
         d_.set_anchor(thing, "behind", focus);  // "in the background"
@@ -119,14 +153,7 @@ bool Reader::place_at(const Phrase& phrase, const Target& thing, const Target& b
         missing_ = anchor.word.empty() ? where.noun : anchor.word;
         return fail(reason::NotInScene);
     }
-    if (relation == "between" && c_.take(Class::conjunction)) {
-        Phrase second;
-        if (!c_.take_phrase(second)) return fail(reason::Incomplete);
-        const auto other = expect(second);
-        if (!other.found()) return false;
-        d_.set_anchors(thing, "between", {anchor, other});
-        return true;
-    }
+    if (relation == "between" && c_.take(Class::conjunction)) return place_between(thing, anchor);
     const bool on_body =
         (to || relation == "on" || relation == "around") && is_worn(phrase) && d_.can_wear(anchor);
     std::string_view how = on_body ? std::string_view("worn by")
@@ -135,6 +162,12 @@ bool Reader::place_at(const Phrase& phrase, const Target& thing, const Target& b
                                       : d_.is_animate(anchor)                ? std::string_view("beside")
                                                                              : std::string_view("on"))
                                    : relation;
+    if (relation == "under" && is_ground(phrase) && !phrase.has_determiner() && anchor.thing &&
+        d_.last_is(thing)) {
+        d_.drop_last();  // "put gravel under the bear"
+        d_.ground(phrase);
+        return true;
+    }
     d_.set_anchor(thing, how, anchor);
     if (anchor.thing)
         apply_all({anchor},
@@ -157,6 +190,7 @@ bool Reader::place_new(const Phrase& phrase, Targets& made) {
     while (true) {
         const std::size_t start = c_.at;
         while (c_.take(Class::emerging) || c_.take(Class::pose)) {}
+        if (c_.is(Class::word_down) && c_.peek(Class::relation, 1)) ++c_.at;  // "set it down beside"
         if (const auto side = c_.peek(Class::direction); side.length > c_.peek(Class::relation).length &&
                                                          !c_.peek(Class::of, side.length) &&
                                                          (side.value == "left" || side.value == "right")) {
@@ -164,6 +198,7 @@ bool Reader::place_new(const Phrase& phrase, Targets& made) {
             if (focus.found()) d_.set_anchor(thing, side.value == "left" ? "left of" : "right of", focus);
             continue;
         }
+        if (c_.peek(Class::rather_than).length > c_.peek(Class::relation).length) break;  // "in place of"
         auto relation = c_.take(Class::relation);
         const bool to = !relation && (c_.is(Class::word_to) || c_.is(Class::word_for));
         if (to) ++c_.at;
@@ -199,6 +234,45 @@ bool Reader::place_new(const Phrase& phrase, Targets& made) {
     return true;
 }
 
+/// "(add) fog", "(put) snow".
+bool Reader::add_surroundings(const Phrase& phrase) {
+    if (const auto weather = meaning(Class::environment, phrase.noun);
+        weather && (c_.at_end_of_clause() || c_.peek(Class::conjunction))) {
+        d_.environment(std::string(*weather));
+        return true;
+    }
+    if (!is_ground(phrase) || phrase.has_determiner() || !c_.done() || !d_.things_named(phrase).empty() ||
+        has(Class::thing, phrase.noun) || is_worn(phrase))
+        return false;
+    d_.ground(phrase);
+    return true;
+}
+
+/// "(apply) a coat of gold to the bear".
+bool Reader::add_paint(const Phrase& phrase) {
+    if (!has(Class::colour_word, phrase.noun) || phrase.attributes.empty()) return false;
+    Cursor onto = c_;
+    Phrase what;
+    const bool placed = (onto.take(Class::to) || onto.take(Class::relation)) && onto.take_phrase(what);
+    const auto target = placed ? d_.resolve(what) : d_.focus();
+    if (!target.found() || !onto.at_end_of_clause()) return false;
+    c_.at = onto.at;
+    return apply_all({target}, phrase.attributes);
+}
+
+/// "remove it and put a tree there", "(put) a pig in its place"; nothing where it stands in no place of
+/// another.
+std::optional<bool> Reader::add_in_place(const Phrase& phrase, const Target& found) {
+    if (found.found()) return std::nullopt;
+    if (c_.is(Class::word_there) && d_.removed_last()) {
+        ++c_.at;
+        return become({*d_.removed_last()}, phrase);
+    }
+    Target place;
+    if (stands_where(place) || in_place_of(place)) return become({place}, phrase);
+    return std::nullopt;
+}
+
 /// One thing of a list that is added.
 bool Reader::add_one() {
     Phrase phrase;
@@ -214,6 +288,7 @@ bool Reader::add_one() {
     if (choice.take(Class::alternative)) return fail(reason::Ambiguous);
     if (one_more(phrase)) return true;
     const auto focus = d_.focus();
+    if (add_paint(phrase)) return true;
     if (own_pattern(focus, phrase)) {
         Cursor place = c_;
         Phrase where;
@@ -221,11 +296,7 @@ bool Reader::add_one() {
             c_.at = place.at;
         return true;
     }
-    if (const auto weather = meaning(Class::environment, phrase.noun);
-        weather && (c_.at_end_of_clause() || c_.peek(Class::conjunction))) {
-        d_.environment(std::string(*weather));
-        return true;
-    }
+    if (add_surroundings(phrase)) return true;
     const auto found = d_.resolve(phrase);
     const bool there = found.found() && found.thing && !phrase.another && phrase.count.empty() &&
                        (phrase.definite || (!is_worn(phrase) && !phrase.indefinite));
@@ -234,8 +305,14 @@ bool Reader::add_one() {
         if (!move_target(found)) return false;
         return true;
     }
+    if (!found.found() && phrase.definite && !phrase.possessive && is_worn(phrase) &&
+        found.kind == Target::Kind::Missing) {
+        missing_ = phrase.noun;  // "place the hat on the grass"
+        return fail(reason::NotInScene);
+    }
     if (found.found() && !found.thing && phrase.owner) return fail(reason::Ambiguous);  // a part moves alone
     if (found.found() && phrase.definite && !is_part(phrase)) return move_target(found);  // "stack the books"
+    if (const auto read = add_in_place(phrase, found)) return *read;
     const std::size_t steps = d_.size();
     if (!place_new(phrase, made)) return false;
     Cursor other = c_;
@@ -265,7 +342,7 @@ bool Reader::add_clause() {
     Phrase begin;
     Cursor probe = c_;
     if (paints && (!probe.take_phrase(begin) || begin.definite || begin.naming != Naming::Thing ||
-                   !begin.has_determiner()))
+                   begin.possessive || !begin.has_determiner()))
         return false;  // "make the hat blue" adds none
     frame_ = Frame::Add;
     Phrase phrase;
@@ -302,23 +379,6 @@ bool Reader::duplicate_clause() {
     return true;
 }
 
-/// "set the bear on fire".
-bool Reader::fire_clause() {
-    Cursor ahead = c_;
-    if (!ahead.take(Class::fire_verb)) return false;
-    Phrase phrase;
-    if (!ahead.take_phrase(phrase)) return false;
-    const auto fire = ahead.peek(Class::fire_words);
-    if (!fire) return false;
-    const auto target = expect(phrase);
-    if (!target.found()) return false;
-    c_.at = ahead.at + fire.length;
-    Phrase flames;
-    flames.noun = flames.typed = std::string(fire.value);
-    d_.add(flames, "on", {target});
-    return true;
-}
-
 /// The last verb goes on: "paint the bear green, the grass white", "remove the hat and the scarf".
 bool Reader::ellipsis() {
     const std::size_t start = c_.at;
@@ -326,6 +386,13 @@ bool Reader::ellipsis() {
     Phrase phrase;
     Cursor ahead = c_;
     if (!ahead.take_phrase(phrase)) return false;
+    if (const auto receiver = d_.resolve(phrase);
+        frame_ == Frame::Give && phrase.definite && receiver.found() && ahead.is(Class::word_a)) {
+        c_.at = ahead.at;  // "give the frog a crown and the bear a hat"
+        if (has_list(receiver, "with")) return true;
+        c_.at = start;
+        return false;
+    }
     if (frame_ == Frame::Add || frame_ == Frame::Give) {
         if (ahead.peek(Class::copula) || ahead.peek(Class::modal) || ahead.is_mark(":") ||
             phrase.naming != Naming::Thing || phrase.noun.empty() || phrase.none)
@@ -354,6 +421,167 @@ bool Reader::ellipsis() {
     if (!c_.at_end_of_clause() && complement({found})) return true;
     c_.at = start;
     return false;
+}
+
+bool Reader::give_clause() {
+    if (!c_.peek(Class::verb_give)) return false;
+    const bool gives = c_.is(Class::word_give) || !c_.peek(Class::verb_make);
+    c_.take(Class::verb_give);
+    if (!gives) return false;
+    if (c_.is(Class::word_to) && starts_object(1)) ++c_.at;  // "give to the bear a crown"
+    Targets targets;
+    Phrase first;
+    Cursor ahead = c_;
+    if (!ahead.take_phrase(first, true)) return fail(reason::Incomplete);
+    const bool whom = first.possessive && ahead.at_end_of_clause() && c_.peek(Class::pronoun_person);
+    if (whom) {  // "give her long hair"
+        ahead = c_;
+        ahead.take(Class::pronoun_person);
+        first = {};
+        first.naming = Naming::Person;
+    }
+    Target receiver = first.naming == Naming::It ? d_.pronoun(Naming::It, true) : d_.resolve(first);
+    const bool indirect = !receiver.found() || first.indefinite;
+    if (indirect && first.naming == Naming::Thing && ahead.is(Class::word_to)) {  // "give a hat to the bear"
+        Phrase whom;
+        ++ahead.at;
+        if (!ahead.take_phrase(whom)) return fail(reason::Incomplete);
+        receiver = whom.naming == Naming::It ? d_.pronoun(Naming::It, true) : expect(whom);
+        if (!receiver.found()) return false;
+        c_.at = ahead.at;
+        return own(receiver, first, "with");
+    }
+    if (!receiver.found()) return expect(first).found();
+    c_.at = ahead.at;
+    targets.push_back(receiver);
+    while (c_.peek(Class::conjunction)) {  // "give the bear and the cat hats"
+        Phrase more;
+        Cursor list = c_;
+        list.take(Class::conjunction);
+        if (!list.take_phrase(more, true) || !d_.resolve(more).found()) break;
+        c_.at = list.at;
+        targets.push_back(d_.resolve(more));
+    }
+    if (c_.is(Class::word_with) || c_.is(Class::word_a) == false) c_.take(Class::having);
+    if (c_.at_end_of_clause()) return fail(reason::Incomplete);
+    frame_ = Frame::Give;
+    const std::size_t here = c_.at;
+    const auto size = d_.size();
+    for (const auto& target : targets) {
+        c_.at = here;
+        if (!has_list(target, "with")) {
+            (void)size;
+            return false;
+        }
+        posts(target);
+    }
+    if (d_.size() == size) d_.mention(receiver);
+    return true;
+}
+
+bool Reader::dress_clause() {
+    if (!c_.take(Class::verb_dress)) return false;
+    Targets targets;
+    if (!objects(targets)) return false;
+    if (c_.is(Class::word_up)) ++c_.at;
+    if (c_.is(Class::word_as) || c_.is(Class::word_like)) {
+        ++c_.at;
+        Phrase role;
+        if (!c_.take_phrase(role) || role.noun.empty()) return fail(reason::Incomplete);
+        for (const auto& target : targets) d_.step(Operation::Alter, target, role.typed);
+        return true;
+    }
+    if (!c_.is(Class::word_in) && !c_.is(Class::word_with)) return fail(reason::Incomplete);
+    ++c_.at;
+    Attribute colour;
+    Cursor ahead = c_;
+    if (ahead.take_attribute(colour, false) && ahead.at_end_of_clause()) return false;
+    return has_list(targets.front(), "worn by");
+}
+
+bool Reader::cover_clause() {
+    const bool around = c_.peek(Class::verb_around).length > 0, fills = c_.peek(Class::verb_fill).length > 0;
+    const auto wear = c_.peek(Class::verb_wear);
+    if (!c_.take(Class::verb_cover) && !c_.take(Class::verb_wear)) return false;
+    Targets targets;
+    if (!objects(targets)) return fail(reason_.empty() ? reason::Incomplete : reason_), false;
+    if (wear && ends_well() && d_.can_wear(targets.front())) {  // "crown the bear"
+        Phrase clothes;
+        clothes.noun = clothes.typed = wear.value;
+        for (const auto& target : targets) d_.add(clothes, "worn by", {target});
+        return true;
+    }
+    if (targets.front().kind == Target::Kind::Made && around)  // "put a crown on it and surround it"
+        targets.front() = d_.pronoun(Naming::It, true);
+    const auto relation = c_.peek(Class::relation);
+    if (!c_.is(Class::word_in) && !c_.is(Class::word_with) && !c_.is(Class::word_by)) return false;
+    (void)relation;
+    ++c_.at;
+    Cursor ahead = c_;
+    std::vector<Attribute> found;
+    Attribute next;
+    ahead.take(Class::article);
+    const bool things =
+        ahead.word().text != ahead.word().singular && ahead.noun_length() > 0;  // "with flowers"
+    while (!things && !fills && ahead.take_attribute(next, true)) found.push_back(next);
+    const auto covering = ahead.peek(Class::covering);
+    if (covering && !around && !fills) {
+        ahead.at += covering.length;
+        c_.at = ahead.at;
+        return apply_all(targets,
+                         {{Quality::Material, std::string(covering.value), std::string(covering.value), ""}});
+    }
+    if (!found.empty() && ahead.at_end_of_clause()) {
+        c_.at = ahead.at;
+        return apply_all(targets, found);
+    }
+    Phrase phrase;
+    if (!c_.take_phrase(phrase) || phrase.noun.empty()) return fail(reason::Incomplete);
+    for (const auto& target : targets) {
+        if (own_pattern(target, phrase)) continue;
+        if (target.thing && d_.scene().things[*target.thing].is_ground && is_ground(phrase) &&
+            !has(Class::floating, phrase.typed)) {  // "pave the lawn with cobblestones"
+            d_.ground(phrase);
+            continue;
+        }
+        const auto made = d_.add(phrase,
+                                 around            ? "around"
+                                 : fills           ? "in"
+                                 : is_worn(phrase) ? "worn by"
+                                                   : "on",
+                                 {target});
+        d_.mention(made);
+        nested(made, target);
+    }
+    return true;
+}
+
+/// "a red car and a green car" of two cars: how the other one is.
+bool Reader::describe_other(const Phrase& phrase) {
+    const auto& things = d_.scene().things;  // "a red car and a green car" of two cars
+    const auto& noun = things[*described_->thing].noun;
+    Targets others;
+    for (std::size_t i = 0; i < things.size(); ++i)
+        if (i != *described_->thing && things[i].noun == noun && noun == phrase.noun)
+            others.push_back(d_.target_of_thing(i));
+    if (others.size() == 1) {
+        apply_all(others, phrase.attributes);
+        return true;
+    }
+    return false;
+}
+
+/// "a yellow car and a blue car" of two cars: the first is the other one; nothing where no such things are
+/// there.
+std::optional<bool> Reader::describe_one_of(const Phrase& phrase) {
+    const auto all = d_.things_named(phrase);
+    if (described_ || phrase.another || all.size() < 2) return std::nullopt;
+    Cursor list = c_;
+    Phrase kept;
+    const auto found = list.take(Class::conjunction) && list.take_phrase(kept) ? d_.resolve(kept) : Target{};
+    if (all.size() != 2 || !found.thing || !list.at_end_of_clause()) return fail(reason::Ambiguous);
+    c_.at = list.at;
+    return apply_all({d_.target_of_thing(all[0] == *found.thing ? all[1] : all[0])}, phrase.attributes);
 }
 
 }  // namespace gse::language::plan

@@ -40,15 +40,24 @@ bool Reader::denied(const Targets& targets) {
         if (!ahead.take(Class::alternative)) break;
     }
     if (attributes.empty()) return false;
+    while (ahead.take(Class::as_well)) {}
     c_.at = ahead.at;
     for (const auto& target : targets)
         for (const auto& attribute : attributes) d_.deny(target, attribute);
     c_.take_mark(',');
     if (c_.take(Class::contrast) || c_.take(Class::rather_than)) return complement(targets);
     Cursor more = c_;
+    if ((more.take(Class::pronoun_it) || more.take(Class::pronoun_person)) && more.take(Class::copula))
+        c_.at = more.at;  // "it is not blue, it is yellow"
+    else more = c_;
     Attribute attribute;
     if (more.take_attribute(attribute, false)) return complement(targets);
-    return d_.size() > 0 || fail(reason::Incomplete);
+    const bool so = std::any_of(targets.begin(), targets.end(), [&](const Target& target) {
+        return std::any_of(attributes.begin(), attributes.end(),
+                           [&](const Attribute& each) { return d_.is_so(target, each); });
+    });
+    if (!so) d_.already_so();  // "the bear is not blue", and it is red
+    return d_.size() > 0 || !so || fail(reason::Incomplete);
 }
 
 /// "made of glass", "out of polished bronze".
@@ -122,7 +131,14 @@ bool Reader::measure(const Targets& targets) {
     Match dimension = ahead.take(Class::dimension);
     std::string_view sizes = dimension.value;
     if (!dimension) {
-        if (const auto size = ahead.take(Class::size))
+        const auto size = ahead.take(Class::size);
+        const double times = std::atof(factor.c_str());
+        if (size.value == "smaller" && times > 1) {  // "3 times smaller"
+            const int hundredths = static_cast<int>(100 / times);
+            factor = "0." + std::string(hundredths < 10 ? "0" : "") + std::to_string(hundredths);
+            if (factor.ends_with('0')) factor.pop_back();
+        }
+        if (size)
             sizes =
                 size.value == "bigger" || size.value == "smaller" ? std::string_view("scale") : size.value;
         else return false;
@@ -188,21 +204,43 @@ bool Reader::compared(const Targets& targets) {
     return apply_all(targets, {{Quality::Colour, told, told, ""}});
 }
 
+/// "(look) like a robot", "like a desert", "like grass".
+bool Reader::looks_like(const Targets& targets, const Phrase& model) {
+    if (targets.size() == 1 && d_.resolve(model).found() &&
+        d_.resolve(model).reference == targets.front().reference) {  // "look like grass" of grass
+        d_.already_so();
+        return apply_all(targets, model.attributes) || true;
+    }
+    const bool on_ground =
+        targets.size() == 1 && targets.front().thing && d_.scene().things[*targets.front().thing].is_ground;
+    if (on_ground && is_ground(model)) {  // "make the lawn look like a desert"
+        d_.ground(model);
+        return true;
+    }
+    if (has(Class::environment, model.noun) || has(Class::environment, model.typed)) {
+        d_.environment(model.typed);
+        return true;
+    }
+    if (has(Class::material, model.noun)) return become(targets, model);
+    for (const auto& target : targets) {
+        if (target.is_scene()) d_.style(target, model.typed);
+        else d_.step(Operation::Alter, target, model.typed);
+    }
+    return true;
+}
+
 /// "like a zebra", "as if it were made of gold", "like it is made of chocolate".
 bool Reader::alike(const Targets& targets) {
     Cursor ahead = c_;
     if (!ahead.take(Class::like)) return false;
     const std::size_t start = c_.at;
-    Phrase same;
-    Phrase role;
+    Phrase same, role;
     Cursor as = ahead;
-    if (c_.is(Class::word_as) && as.take_phrase(role) && role.indefinite && !role.noun.empty() &&
-        is_thing(role) && !has(Class::style, role.noun)) {
-        const bool person = (kinds_of(role.noun) & Person) != 0 || has(Class::person, role.noun);
-        if (!person) {
-            c_.at = as.at;
-            return become(targets, role);
-        }
+    const bool is_role = c_.is(Class::word_as) && as.take_phrase(role) && role.indefinite &&
+                         !role.noun.empty() && is_thing(role) && !has(Class::style, role.noun);
+    if (is_role && (kinds_of(role.noun) & Person) == 0 && !has(Class::person, role.noun)) {
+        c_.at = as.at;
+        return become(targets, role);
     }
     Cursor clause = ahead;
     const bool subject = clause.take_phrase(same) && clause.peek(Class::copula).length > 0;
@@ -231,20 +269,10 @@ bool Reader::alike(const Targets& targets) {
     }
     if (ahead.take_phrase(model) && !model.noun.empty()) {
         c_.at = ahead.at;
-        if (has(Class::environment, model.noun) || has(Class::environment, model.typed)) {
-            d_.environment(model.typed);
-            return true;
-        }
-        if (has(Class::material, model.noun)) return become(targets, model);
-        for (const auto& target : targets) {
-            if (target.is_scene()) d_.style(target, model.typed);
-            else d_.step(Operation::Alter, target, model.typed);
-        }
-        return true;
+        return looks_like(targets, model);
     }
     c_.at = ahead.at;
-    const auto attributes = c_.take_attributes();
-    if (apply_all(targets, attributes)) return true;
+    if (apply_all(targets, c_.take_attributes())) return true;
     c_.at = start;
     return false;
 }
@@ -270,13 +298,17 @@ bool Reader::style_text(const Targets& targets) {
         ahead.at += more.length;
     }
     if (ahead.is_owner_mark()) ++ahead.at;
+    if (const auto kind = ahead.peek(Class::style_kind)) {  // "a pixar movie"
+        text.append(1, ' ').append(kind.value);
+        ahead.at += kind.length;
+    }
     if (ahead.peek(Class::style_word)) ahead.take(Class::style_word);
     if (ahead.is(Class::word_by) || ahead.is(Class::word_from) || ahead.is(Class::word_in)) {
         Cursor artist = ahead;
         ++artist.at;
         if (artist.take(Class::definite), artist.peek(Class::style_word)) ++artist.at, artist.take(Class::of);
         if (const auto who = artist.peek(Class::style)) {
-            text.append(1, ' ').append(who.value);
+            text.append(" by ").append(who.value);
             artist.at += who.length;
             ahead.at = artist.at;
         }
@@ -339,6 +371,19 @@ bool Reader::become(const Targets& targets, const Phrase& phrase) {
     return true;
 }
 
+/// "(a cat) sleeping on the sofa": says where the new thing is.
+bool Reader::lies_there(const Target& made) {
+    Cursor where = c_;
+    Phrase place;
+    const auto relation = where.take(Class::relation);
+    if (!relation || !where.take_phrase(place) || place.naming != Naming::Thing) return false;
+    const auto found = d_.resolve(place);
+    if (!found.thing || d_.scene().things[*found.thing].is_ground) return false;
+    c_.at = where.at;
+    d_.set_anchor(made, relation.value, found);
+    return true;
+}
+
 /// "waves its hand", "smile broadly", "sitting".
 bool Reader::pose_text(const Targets& targets) {
     Cursor ahead = c_;
@@ -365,7 +410,10 @@ bool Reader::pose_text(const Targets& targets) {
         text.append(1, ' ').append(manner.value);
         ahead.at += manner.length;
     }
+    if (const auto high = ahead.peek(Class::direction); high.value == "up" && high.length > 1)
+        ahead.at += high.length;  // "floating in the air"
     c_.at = ahead.at;
+    if (targets.size() == 1 && targets.front().step && lies_there(targets.front())) return true;
     for (const auto& target : targets) {
         Attribute attribute{Quality::Pose, text, text, ""};
         d_.apply(target, attribute);
@@ -376,7 +424,10 @@ bool Reader::pose_text(const Targets& targets) {
     if (where.take(Class::relation) && where.take_phrase(place)) {
         const auto found = d_.resolve(place);
         const bool other = found.thing && !targets.empty() && found.thing != targets.front().thing;
-        if (place.naming != Naming::Thing || other) c_.at = where.at;
+        const bool ground = !found.found() && is_ground(place) && place.naming == Naming::Thing &&
+                            (c_.is(Class::word_on) || c_.is(Class::word_across));
+        if (ground) d_.ground(place);  // "walking on water"
+        if (place.naming != Naming::Thing || other || ground) c_.at = where.at;
     }
     return true;
 }
@@ -390,6 +441,10 @@ bool Reader::described_as(const Targets& targets) {
                       adjectives.noun_length() == 0 || adjectives.peek(Class::colour_word);
     const bool model = std::any_of(attributes.begin(), attributes.end(),
                                    [](const Attribute& each) { return each.quality == Quality::Colour; });
+    const auto& last = adjectives.previous();
+    const bool noun = article && attributes.size() == 1 && attributes[0].quality == Quality::Colour &&
+                      (kinds_of(last.text) & (Food | Animal)) != 0 && !adjectives.peek(Class::colour_word);
+    if (noun) return false;  // "the orange should be a peach"
     if (!attributes.empty() && ends &&
         !(article && adjectives.noun_length() > 0 && !adjectives.peek(Class::colour_word) &&
           !adjectives.ends_phrase(0, true))) {
@@ -440,13 +495,28 @@ bool Reader::looks_somewhere(const Targets& targets) {
     return true;
 }
 
+/// "facing left", "face the camera".
+bool Reader::faces(const Targets& targets) {
+    if (!c_.peek(Class::verb_face) && !c_.is(Class::word_facing)) return false;
+    Cursor side = c_;
+    ++side.at;
+    auto direction = side.take(Class::viewer);
+    if (!direction) direction = side.take(Class::direction);
+    if (!direction) return false;
+    c_.at = side.at;
+    const bool vertical = direction.value == "up" || direction.value == "down";
+    for (const auto& target : targets)
+        d_.step(Operation::Transform, target, "face " + std::string(vertical ? "forward" : direction.value));
+    return true;
+}
+
 bool Reader::complement_once(const Targets& targets) {
     const std::size_t start = c_.at;
     if (looks_somewhere(targets)) return true;
     while (c_.take(Class::look_word) || c_.take(Class::copula) ||
            (c_.is(Class::word_to) && c_.take(Class::to)) || c_.take(Class::modal) ||
            c_.take(Class::verb_become)) {}
-    c_.take(Class::as_well);
+    if (!c_.is(Class::word_too)) c_.take(Class::as_well);
     if (c_.at_end_of_clause() && !c_.done() && c_.at == start) return false;
     if (const auto gone = c_.peek(Class::gone)) {
         Cursor behind = c_;
@@ -459,9 +529,15 @@ bool Reader::complement_once(const Targets& targets) {
         }
     }
     if (c_.peek(Class::negation)) return denied(targets);
+    if (const auto off = c_.peek(Class::verb_remove);
+        off.length > 1 && c_.peek(Class::possessive, off.length))
+        return remove_clause();  // "take off its hat"
     if (measure(targets) || as_much_as(targets) || compared(targets)) return true;
     if (c_.peek(Class::made_of) || c_.peek(Class::of)) return material_of(targets);
+    if (c_.is(Class::word_from) && c_.peek(Class::material, 1)) return material_of(targets);
     if (c_.peek(Class::verb_make) && c_.is(Class::word_made)) ++c_.at;
+    if (c_.peek(Class::verb_recolour) && c_.word().text.ends_with("ed") && !c_.at_end_of_clause())
+        ++c_.at;  // "have it painted pink"
     if (const auto turned = c_.peek(Class::flipping)) {
         c_.at += turned.length;
         for (const auto& target : targets) d_.step(Operation::Transform, target, std::string(turned.value));
@@ -473,21 +549,7 @@ bool Reader::complement_once(const Targets& targets) {
     if (!targets.empty() && (targets[0].is_scene()) && environment_clause()) return true;
     if (style_text(targets)) return true;
     if (alike(targets)) return true;
-    if (c_.peek(Class::verb_face) || c_.is(Class::word_facing)) {
-        Cursor side = c_;
-        ++side.at;
-        auto direction = side.take(Class::viewer);
-        if (!direction) direction = side.take(Class::direction);
-        if (direction) {
-            c_.at = side.at;
-            for (const auto& target : targets)
-                d_.step(Operation::Transform, target,
-                        "face " + std::string(direction.value == "up" || direction.value == "down"
-                                                  ? "forward"
-                                                  : direction.value));
-            return true;
-        }
-    }
+    if (faces(targets)) return true;
     if (c_.peek(Class::inverse_relation) && targets.size() == 1)  // "full of flowers"
         return inversely_related(targets.front());
     if (described_as(targets)) return true;
@@ -511,7 +573,8 @@ bool Reader::complement(const Targets& targets) {
     while (true) {
         Cursor ahead = c_;
         const bool comma = ahead.take_mark(',');
-        if (!ahead.take(Class::conjunction) && !comma) break;
+        const bool joint = ahead.take(Class::conjunction).length > 0;
+        if (!joint && (!comma || has(Class::ground, ahead.word().text))) break;  // "blue, snow"
         Attribute next;
         Cursor probe = ahead;
         ahead.take(Class::as_well);

@@ -89,18 +89,69 @@ bool Reader::describe_in_style(const Phrase& phrase, std::size_t thing) {
     return true;
 }
 
+/// "the red one", "a darker red": a description without a noun.
+bool Reader::describe_nameless(const Phrase& phrase) {
+    const auto last = phrase.attributes.empty() ? Quality::Other : phrase.attributes.back().quality;
+    if (phrase.indefinite && !phrase.definite && phrase.attributes.size() > 1 &&
+        (last == Quality::State || last == Quality::Other) && !described_)
+        return fail(reason::NotASentence);  // "a blue bare": what is blue is not said
+    auto target = phrase.definite ? d_.resolve(phrase) : d_.focus();
+    Cursor whose = c_;
+    Phrase bearer;
+    if ((c_.is(Class::word_for) || c_.is(Class::word_on)) && ++whose.at && whose.take_phrase(bearer) &&
+        bearer.definite && whose.at_end_of_clause() && d_.resolve(bearer).thing) {
+        target = d_.resolve(bearer);  // "a deeper red for the bear"
+        c_.at = whose.at;
+    }
+    if (!target.found()) return fail(reason::Ambiguous);
+    return apply_all({target}, phrase.attributes);
+}
+
+/// "an empty lawn", "an empty table": what stands there goes.
+bool Reader::describe_empty(const Phrase& phrase, const Target& found) {
+    if (phrase.attributes.empty() || !has(Class::empty, phrase.attributes.front().typed)) return false;
+    const bool on_ground = found.thing && d_.scene().things[*found.thing].is_ground;
+    if (on_ground && d_.focus().found()) {
+        d_.remove(d_.focus());
+        return true;
+    }
+    const auto on = things_on(found);
+    if (on.empty() || !c_.at_end_of_clause()) return false;
+    remove_all(on);
+    return true;
+}
+
+/// "bear hat red", "golden bear grass": what stands behind it without a joint.
+void Reader::describe_telegraphic(const Target& found) {
+    Cursor worn = c_;
+    Phrase clothes;
+    if (worn.take_phrase(clothes) && is_worn(clothes) && !clothes.has_determiner() && d_.can_wear(found) &&
+        clothes.naming == Naming::Thing && (worn.peek(Class::colour) || worn.at_end_of_clause())) {
+        c_.at = worn.at;
+        nested(d_.add(clothes, "worn by", {found}), found);
+    }
+    Cursor last = c_;
+    Phrase ground;
+    if (last.take_phrase(ground) && last.at_end_of_clause() && is_ground(ground) &&
+        !ground.has_determiner() && d_.resolve(ground).found() && ground.attributes.empty())
+        c_.at = last.at;
+}
+
 /// The first thing of a description: it is there, or stands in the place of what is.
 bool Reader::describe(const Phrase& phrase) {
     frame_ = Frame::Describe;
     const auto focus = d_.focus();
-    if (phrase.noun.empty()) {
-        const auto target = phrase.definite ? d_.resolve(phrase) : focus;
-        if (!target.found()) return fail(reason::Ambiguous);
-        return apply_all({target}, phrase.attributes);
-    }
+    if (phrase.noun.empty()) return describe_nameless(phrase);
     if (phrase.none) return lack(focus, phrase);
     if (one_more(phrase)) return describe_more();
     const auto named = d_.things_named(phrase);
+    if (phrase.single && phrase.attributes.empty() && named.size() > 1 && c_.at_end_of_clause()) {
+        auto others = d_.resolve(phrase);  // "just one chair" of two
+        if (!others.found()) return fail(reason::Ambiguous);
+        others.reference.links.front().count = std::to_string(named.size() - 1);
+        d_.remove(others);
+        return true;
+    }
     const bool exact = std::any_of(named.begin(), named.end(),
                                    [&](std::size_t i) { return d_.scene().things[i].noun == phrase.noun; });
     if (const auto kin = d_.kin_of(phrase);
@@ -117,12 +168,7 @@ bool Reader::describe(const Phrase& phrase) {
         if (const auto read = describe_other_kind(phrase, found)) return *read;
     if (!found.found()) return describe_new(phrase);
     if (!phrase.definite && !described_ && beside_its_like(phrase, found)) return true;
-    const bool on_ground = found.thing && d_.scene().things[*found.thing].is_ground;
-    if (on_ground && !phrase.attributes.empty() && has(Class::empty, phrase.attributes.front().typed) &&
-        focus.found()) {
-        d_.remove(focus);  // "an empty lawn"
-        return true;
-    }
+    if (describe_empty(phrase, found)) return true;
     if (std::count_if(phrase.attributes.begin(), phrase.attributes.end(),
                       [](const Attribute& each) { return each.quality == Quality::Colour; }) > 1)
         return fail(reason::Contradiction);
@@ -142,11 +188,7 @@ bool Reader::describe(const Phrase& phrase) {
     }
     d_.mention(found);
     posts(found);
-    Cursor last = c_;  // "golden bear grass"
-    Phrase ground;
-    if (last.take_phrase(ground) && last.at_end_of_clause() && is_ground(ground) &&
-        !ground.has_determiner() && d_.resolve(ground).found() && ground.attributes.empty())
-        c_.at = last.at;
+    describe_telegraphic(found);
     return describe_more();
 }
 
@@ -201,7 +243,9 @@ bool Reader::describe_beside(const Phrase& phrase) {
             posts(found);
         } else {
             if (other.definite && !other.owner) return expect(other).found();
-            const auto more = d_.add(other, "beside", focus.found() ? Targets{focus} : Targets{});
+            const bool worn = is_worn(other) && d_.can_wear(focus);
+            const auto more =
+                d_.add(other, worn ? "worn by" : "beside", focus.found() ? Targets{focus} : Targets{});
             nested(more, focus);
             posts(more);
         }
@@ -301,6 +345,43 @@ bool Reader::is_slip_of_focus(const Phrase& phrase) const {
     return focus.found() && (!being || (acts && !lives)) && is_one_slip(phrase.noun, focus.reference.root());
 }
 
+/// "snow on the ground", "a tutu for the bear", "a lion out of the bear", "a moose where the bear is";
+/// nothing for other phrases.
+std::optional<bool> Reader::describe_elsewhere(const Phrase& phrase) {
+    if (Cursor below = c_; is_ground(phrase) && !phrase.has_determiner() && below.is(Class::word_on)) {
+        Phrase ground;  // "snow on the ground"
+        ++below.at;
+        const auto old = below.take_phrase(ground) ? d_.resolve(ground) : Target{};
+        if (old.thing && d_.scene().things[*old.thing].is_ground && below.at_end_of_clause()) {
+            c_.at = below.at;
+            d_.ground(phrase);
+            return true;
+        }
+    }
+    if (Cursor whom = c_; !described_ && whom.is(Class::word_for)) {
+        Phrase bearer;  // "a pink tutu for the bear"
+        ++whom.at;
+        const auto receiver = whom.take_phrase(bearer) ? d_.resolve(bearer) : Target{};
+        if (receiver.found() && (whom.at_end_of_clause() || whom.peek(Class::courtesy))) {
+            c_.at = whom.at;
+            return own(receiver, phrase, "with");
+        }
+    }
+    if (c_.is(Class::word_there) && c_.peek(Class::instead, 1)) ++c_.at;
+    if (Cursor from = c_; from.take(Class::made_of).length > 1) {
+        Phrase old;  // "make a lion out of the bear"
+        const auto target = from.take_phrase(old) && old.definite ? d_.resolve(old) : Target{};
+        if (target.thing && from.at_end_of_clause()) {
+            c_.at = from.at;
+            return become({target}, phrase);
+        }
+    }
+    Target place;
+    if (!described_ && stands_where(place)) return become({place}, phrase);
+    if (!described_ && in_place_of(place)) return become({place}, phrase);
+    return std::nullopt;
+}
+
 /// A thing that the scene does not show.
 bool Reader::describe_new(const Phrase& phrase) {
     const auto focus = d_.focus();
@@ -310,6 +391,8 @@ bool Reader::describe_new(const Phrase& phrase) {
     }
     if (describe_pattern(phrase)) return true;
     if (!is_thing(phrase)) return fail(reason::NotASentence);
+    if (const auto read = describe_one_of(phrase)) return *read;
+    if (const auto read = describe_elsewhere(phrase)) return *read;
     const bool bare = c_.at_end_of_clause();
     if (const auto placed = describe_on_top(phrase)) return *placed;
     if (const auto read = describe_place(phrase, bare)) return *read;
@@ -359,21 +442,6 @@ bool Reader::describe_new(const Phrase& phrase) {
     d_.mention(made);
     posts(made);
     return describe_more();
-}
-
-/// "a red car and a green car" of two cars: how the other one is.
-bool Reader::describe_other(const Phrase& phrase) {
-    const auto& things = d_.scene().things;  // "a red car and a green car" of two cars
-    const auto& noun = things[*described_->thing].noun;
-    Targets others;
-    for (std::size_t i = 0; i < things.size(); ++i)
-        if (i != *described_->thing && things[i].noun == noun && noun == phrase.noun)
-            others.push_back(d_.target_of_thing(i));
-    if (others.size() == 1) {
-        apply_all(others, phrase.attributes);
-        return true;
-    }
-    return false;
 }
 
 /// "on grass instead of snow": says what is not there.
@@ -444,6 +512,32 @@ bool Reader::describe_more() {
     }
 }
 
+/// "(a blue bear,) snow": the ground, where other steps stand before.
+bool Reader::bare_ground() {
+    Cursor ground = c_;
+    if (d_.size() == 0 || !ground.take(Class::ground) || !ground.at_end_of_clause()) return false;
+    Phrase bare;
+    bare.noun = bare.typed = c_.text_to(ground.at);
+    c_.at = ground.at;
+    d_.ground(bare);
+    return true;
+}
+
+/// "blue on the bear", "a deeper red for the bear".
+bool Reader::attributes_for() {
+    Cursor ahead = c_;
+    ahead.take(Class::article);
+    const auto qualities = ahead.take_attributes();
+    if (qualities.empty() || (!ahead.is(Class::word_for) && !ahead.is(Class::word_on))) return false;
+    ++ahead.at;
+    Phrase bearer;
+    if (!ahead.take_phrase(bearer) || !bearer.definite || !ahead.at_end_of_clause()) return false;
+    const auto found = d_.resolve(bearer);
+    if (!found.thing || d_.scene().things[*found.thing].is_ground) return false;
+    c_.at = ahead.at;
+    return apply_all({found}, qualities);
+}
+
 /// "blue", "bigger", "on snow", "wearing a hat": of the thing that the sentence is about.
 bool Reader::attribute_clause() {
     const std::size_t start = c_.at;
@@ -459,24 +553,16 @@ bool Reader::attribute_clause() {
                         c_.peek(Class::without) || c_.peek(Class::times) || c_.peek(Class::pose) ||
                         c_.peek(Class::fire_words);
     if (!attributes && !begins) return false;
+    if (!made && bare_ground()) return true;
+    if (c_.peek(Class::colour) && swaps_colours()) return true;  // "red to blue"
     if (const auto contrast = c_.take(Class::contrast_change)) {
         d_.step(Operation::Recolour, d_.scene_target(), std::string(contrast.value));
         return true;
     }
+    if (attributes_for()) return true;
     ahead = c_;
-    std::vector<Attribute> qualities;
     ahead.take(Class::article);
-    Phrase bearer;
-    qualities = ahead.take_attributes();  // "blue on the bear", "a deeper red for the bear"
-    const bool joint = !qualities.empty() && ahead.at_end_of_clause() == false &&
-                       (ahead.is(Class::word_for) || ahead.is(Class::word_on));
-    if (joint && ++ahead.at && ahead.take_phrase(bearer) && bearer.definite && ahead.at_end_of_clause()) {
-        const auto found = d_.resolve(bearer);
-        if (found.found() && found.thing && !d_.scene().things[*found.thing].is_ground) {
-            c_.at = ahead.at;
-            return apply_all({found}, qualities);
-        }
-    }
+    ahead.take_attributes();
     if (!target.found()) {
         if (target.kind == Target::Kind::Missing) missing_ = target.word;
         return fail(target.kind == Target::Kind::Missing ? reason::NotInScene : reason::Ambiguous);
@@ -484,6 +570,12 @@ bool Reader::attribute_clause() {
     const bool ends = ahead.done() || ahead.peek(Class::rather_than);
     if (attributes && attribute.quality == Quality::Other && ends && !described_)
         return fail(reason::NotASentence);
+    Cursor place = c_;  // "add a cat, sitting to the right of the bear"
+    if (made && place.take(Class::where_pose) && place.peek(Class::relation) && post(target)) {
+        posts(target);
+        return true;
+    }
+    c_.at = start;
     if (attributes && complement({target})) {
         frame_ = Frame::Make;
         return true;

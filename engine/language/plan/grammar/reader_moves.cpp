@@ -65,14 +65,17 @@ bool Reader::move_to(const Target& target, const Match& relation) {
     if (where.possessive && !d_.is_animate(body)) body = d_.pronoun(Naming::Person);  // "in his hands"
     if (!place.found() && on_bearer(where, body)) place = body;
     if (!place.found()) {
-        if (is_ground(where) && name == "on") {  // "put it on snow", "on the beach"
+        if (is_ground(where) && (name == "on" || (name == "in" && where.definite)) &&
+            place.kind == Target::Kind::Missing) {  // "put it on snow", "on the beach"
             d_.ground(where);
             return true;
         }
         const bool place_name = has(Class::place, where.noun) || has(Class::environment, where.noun);
         if (place.kind == Target::Kind::Missing && (where.indefinite || place_name) &&
             where.naming == Naming::Thing) {
-            if (place_name) d_.environment(where.typed);  // "put the bear in a cage", "in the forest"
+            const bool inside = name == "in" || name == "on" || name == "beside";
+            if (place_name && inside)
+                d_.environment(where.typed);  // "put the bear in a cage", "in the forest"
             else if (!relate(target, name, where)) return false;
             return true;
         }
@@ -85,6 +88,13 @@ bool Reader::move_to(const Target& target, const Match& relation) {
         return true;
     }
     if (target.reference == place.reference) return fail(reason::Incomplete);
+    const bool other_ground = place.thing && d_.scene().things[*place.thing].is_ground && where.indefinite &&
+                              is_ground(where) && where.noun != place.reference.root() &&
+                              !are_synonyms(place.reference.root(), where.noun);
+    if (other_ground && (name == "on" || name == "in")) {  // "put it on a marble floor" of grass
+        d_.ground(where);
+        return true;
+    }
     if (name == "on" && place.thing && !where.attributes.empty() && !where.definite) {
         d_.already_so();  // "put it on blue grass"
         return apply_all({place}, where.attributes);
@@ -92,7 +102,9 @@ bool Reader::move_to(const Target& target, const Match& relation) {
     const bool usual = name == "on" && target.thing && place.thing &&
                        !d_.scene().things[*place.thing].is_ground && d_.scene().things.size() == 2;
     const bool worn = target.thing && d_.scene().things[*target.thing].is_worn && d_.can_wear(place);
-    if (usual || (worn && name == "on")) d_.already_so();
+    const bool on_ground = (name == "on" || name == "in") && place.thing && d_.scene().things.size() == 2 &&
+                           d_.scene().things[*place.thing].is_ground;  // "put the bear in the meadow"
+    if (usual || on_ground || (worn && name == "on")) d_.already_so();
     else d_.move(target, "move " + std::string(name), place);
     return true;
 }
@@ -100,6 +112,12 @@ bool Reader::move_to(const Target& target, const Match& relation) {
 /// A thing that is there goes to another place.
 bool Reader::move_target(const Target& target) {
     c_.take(Class::degree);
+    if (const auto over = c_.peek(Class::flipping);
+        over.length > 1 && over.value == "flip") {  // "lay it on its back"
+        c_.at += over.length;
+        d_.step(Operation::Transform, target, std::string(over.value));
+        return true;
+    }
     const auto amount = take_amount();
     bool moved = false;
     while (true) {
@@ -160,7 +178,8 @@ bool Reader::move_clause() {
         way.peek(Class::direction) || way.peek(Class::relation) || way.is(Class::word_to) ||
         way.is(Class::word_by) ||
         (!way.word().text.empty() && std::isdigit(static_cast<unsigned char>(way.word().text[0])) != 0) ||
-        way.peek(Class::number) || way.is(Class::word_from);
+        way.peek(Class::number) || way.is(Class::word_from) ||
+        (way.peek(Class::article) && way.peek(Class::unit, 1));
     Cursor position = c_;
     const bool stands =
         (position.peek(Class::pose) && !position.peek(Class::direction)) || position.peek(Class::flipping);
@@ -240,6 +259,16 @@ bool Reader::size_clause() {
     c_.at += std::max({size.length, factor.length, scale.length});
     Targets targets;
     std::string_view sizes;
+    Phrase several;
+    if (Cursor copies = c_; factor && copies.take_phrase(several) && several.plural && !several.owner &&
+                            copies.at_end_of_clause()) {  // "double the bears"
+        const auto found = d_.resolve(several);
+        if (found.thing && factor.value.find('.') == std::string_view::npos) {
+            c_.at = copies.at;
+            d_.duplicate(found, std::string(factor.value));
+            return true;
+        }
+    }
     if (!take_sized(targets, sizes)) return false;
     std::string change = size ? std::string(size.value) : factor ? "scale " + std::string(factor.value) : "";
     const bool up = c_.is(Class::word_up), down = c_.is(Class::word_down);
@@ -248,12 +277,13 @@ bool Reader::size_clause() {
     if (c_.is(Class::word_in) && c_.peek(Class::dimension, 1)) c_.at += 2;
     if (c_.is(Class::word_vertically)) ++c_.at, change = "taller";
     else if (c_.is(Class::word_horizontally) || c_.is(Class::word_sideways)) ++c_.at, change = "wider";
-    if (c_.is(Class::word_by) || c_.is(Class::word_to)) {
+    const bool by = c_.is(Class::word_by);
+    if (by || c_.is(Class::word_to)) {
         ++c_.at;
         if (c_.is(Class::word_a) && !c_.peek(Class::times)) ++c_.at;
         while (c_.take(Class::degree)) {}
         if (c_.is(Class::word_factor) && c_.is(Class::word_of, 1)) c_.at += 2;
-        const auto number = take_factor(scale.length > 0, change == "smaller");
+        const auto number = take_factor(!by || (scale.length > 0 && !up && !down), change == "smaller");
         if (number.empty()) return fail(reason::Incomplete);
         c_.take(Class::dimension);
         if (c_.is(Class::word_of) && c_.peek(Class::possessive, 1) && c_.peek(Class::dimension, 2)) ++c_.at;
@@ -311,10 +341,17 @@ bool Reader::rotate_clause() {
     const auto flip = c_.peek(Class::verb_flip);
     if (!verb && !flip) return false;
     c_.at += std::max(verb.length, flip.length);
-    if (c_.is(Class::word_around)) ++c_.at;
+    const bool around = c_.is(Class::word_around);
+    if (around) ++c_.at;
     Targets targets;
     Phrase first;
     Cursor ahead = c_;
+    if (const auto degrees = take_degrees(); !degrees.empty() && c_.at_end_of_clause() && !flip) {
+        if (!d_.focus().found()) return fail(reason::Ambiguous);
+        d_.step(Operation::Transform, d_.focus(), "rotate " + degrees);  // "rotate 45 degrees"
+        return true;
+    }
+    c_.at = ahead.at;
     if (!ahead.take_phrase(first)) return false;
     const auto found = d_.resolve(first);
     if (!found.found()) {
@@ -330,7 +367,8 @@ bool Reader::rotate_clause() {
         c_.at += turned.length;
         change = turned.value;
     } else if (!flip) {
-        const auto degrees = take_degrees();
+        const auto told = take_degrees();
+        const auto degrees = told.empty() && around && c_.at_end_of_clause() ? "180" : told;
         const auto way = c_.peek(Class::clockwise);
         if (degrees.empty() && !way) {
             if (!c_.at_end_of_clause()) return false;
@@ -412,12 +450,18 @@ bool Reader::pose_clause() {
     const auto verb = c_.peek(Class::verb_pose);
     const auto raise = c_.peek(Class::verb_raise);
     if (!verb && !raise) return false;
+    if (verb.length > 2 && c_.is(Class::possessive, 1) && d_.focus().found()) {  // "raise its hand"
+        c_.at += verb.length;
+        d_.step(Operation::Pose, d_.pronoun(Naming::It, true), std::string(verb.value));
+        return true;
+    }
     c_.at += std::max(verb.length, raise.length);
     Targets targets;
     if (!objects(targets)) {
         if (c_.at_end_of_clause() && verb && d_.focus().found()) return false;
         return false;
     }
+    if (!verb && targets.front().thing && d_.is_animate(targets.front())) return false;  // "turn the bear"
     const auto text = raise.length >= verb.length ? raise.value : verb.value;
     if (c_.is(Class::word_up) || c_.is(Class::word_out) || c_.is(Class::word_down) || c_.is(Class::word_wide))
         ++c_.at;

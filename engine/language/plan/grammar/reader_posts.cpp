@@ -16,13 +16,13 @@ std::string last_word(std::string_view phrase) {
 bool carries(const std::string& noun) { return has(Class::furniture, noun) || has(Class::ground, noun); }
 
 /// Relation of a thing that someone has "with" them.
-std::string_view having_relation(const Phrase& phrase, bool animate, bool furniture) {
+std::string_view having_relation(const Phrase& phrase, bool animate, bool furniture, bool holds) {
     if (is_worn(phrase)) return "worn by";
     if (has(Class::floating, phrase.noun) || has(Class::floating, phrase.typed))
         return animate && is_held(phrase) ? "held by" : "on";
     if (is_held(phrase) && animate) return "held by";
     if (is_part(phrase)) return animate ? "worn by" : "on";
-    return furniture ? "on" : "beside";
+    return holds && (kinds_of(phrase.noun) & (Plant | Food)) != 0 ? "in" : furniture ? "on" : "beside";
 }
 
 }  // namespace
@@ -35,6 +35,7 @@ bool Reader::list_goes_on() {
     if (!comma && !joint) return false;
     while (ahead.take(Class::having) || ahead.take(Class::wearing) || ahead.take(Class::as_well)) {}
     const std::size_t distance = ahead.at - c_.at;
+    if (comma && ahead.peek(Class::noise)) return false;
     if (starts_verb(distance) || ahead.peek(Class::holding) || ahead.peek(Class::riding)) return false;
     Phrase next;
     Cursor probe = ahead;
@@ -56,11 +57,17 @@ bool Reader::own_pattern(const Target& subject, const Phrase& phrase) {
     std::string colour;
     std::string value;
     for (const auto& attribute : phrase.attributes) {
-        if (attribute.quality == Quality::Colour) colour = attribute.value;
+        if (attribute.quality == Quality::Colour || attribute.quality == Quality::Material)
+            colour = attribute.value;  // "golden stripes"
         if (attribute.quality == Quality::Pattern)
             value = attribute.value, colour = attribute.colour.empty() ? colour : attribute.colour;
     }
     const bool named = has(Class::pattern_word, last);
+    if (named && first != last && has(Class::material, first) && !has(Class::pattern, first)) {
+        const auto stuff = *meaning(Class::material, first);  // "a wood grain"
+        d_.apply(subject, {Quality::Material, std::string(stuff), std::string(stuff), ""});
+        return true;
+    }
     if (named && first != last) value = meaning(Class::pattern, first).value_or(first);
     if (named && value.empty()) {
         for (const auto& attribute : phrase.attributes)
@@ -107,15 +114,36 @@ bool Reader::own_part(const Target& subject, const Phrase& phrase) {
     if (!more.empty() && ends) {
         c_.at = ahead.at;
         attributes.insert(attributes.end(), more.begin(), more.end());
-    } else if (c_.peek(Class::made_of)) {
+    } else if (c_.peek(Class::made_of) && !is_worn(phrase)) {
         return material_of({part});
     }
     if (attributes.empty() || (is_worn(phrase) && more.empty())) return false;
     for (const auto& attribute : attributes) {
-        if (attribute.quality == Quality::Pose)
+        const bool out = attribute.typed == "out";  // "with its tongue out"
+        if (attribute.quality == Quality::Pose || out)
             d_.step(Operation::Pose, subject, phrase.typed + " " + attribute.value);
         else d_.apply(part, attribute);
     }
+    return true;
+}
+
+/// A thing that the scene shows already: how it is, or another of its kind.
+bool Reader::own_there(const Target& subject, const Phrase& phrase, std::string_view relation,
+                       const Target& there) {
+    const bool itself = there.reference == subject.reference;
+    if (itself && phrase.indefinite && relation != "with" && phrase.noun != subject.reference.root()) {
+        nested(d_.add(phrase, relation, {subject}), subject);  // "a bear hugging a teddy bear"
+        return true;
+    }
+    if (itself) return false;
+    if (relation == "ridden by" && subject.thing && there.thing) {  // "the frog should ride the bear"
+        d_.move(subject, "move on", there);
+        return true;
+    }
+    if (relation == "ridden by" && subject.step) d_.set_anchor(subject, "on", there);
+    d_.already_so();
+    apply_all({there}, phrase.attributes);
+    nested(there, subject);
     return true;
 }
 
@@ -138,19 +166,13 @@ bool Reader::own(const Target& subject, const Phrase& phrase, std::string_view r
     const auto found = d_.things_named(phrase);
     const bool there = !found.empty() && !phrase.another && phrase.count.empty();
     if (there && !d_.scene().things[found.front()].is_ground) {
-        const auto target = d_.target_of_thing(found.front());
-        if (target.reference == subject.reference) return false;
-        if (relation == "ridden by" && subject.step) d_.set_anchor(subject, "on", target);
-        d_.already_so();
-        apply_all({target}, phrase.attributes);
-        nested(target, subject);
-        return true;
+        return own_there(subject, phrase, relation, d_.target_of_thing(found.front()));
     }
     if (is_ground(phrase) && relation == "with" && !is_worn(phrase) && !is_held(phrase) &&
         !has(Class::floating, phrase.noun) && !has(Class::thing, phrase.noun))
         return relate(subject, "on", phrase);
     if (is_part(phrase) && relation != "worn by" && own_part(subject, phrase)) return true;
-    if (is_part(phrase) && !is_worn(phrase) && relation == "with" &&
+    if (is_part(phrase) && !is_worn(phrase) && relation == "with" && d_.can_wear(subject) &&
         ((kinds_of(phrase.noun) & Body) != 0 ||
          (has(Class::body_place, phrase.noun) && !phrase.count.empty()))) {
         const std::string count = phrase.another ? "another" : phrase.single ? "1" : phrase.count;
@@ -161,9 +183,12 @@ bool Reader::own(const Target& subject, const Phrase& phrase, std::string_view r
     if (relation == "held by" && is_ground(phrase) && !is_held(phrase)) return false;  // "eating grass"
     const auto how = relation == "with"
                          ? having_relation(phrase, d_.is_animate(subject) || d_.can_wear(subject),
-                                           carries(subject.reference.root()))
+                                           carries(subject.reference.root()),
+                                           has(Class::container, subject.reference.root()))
                          : relation;
     if (how == "worn by" && is_ground(phrase)) return false;
+    const auto head = kinds_of(last_word(phrase.noun));
+    if (how == "beside" && !is_thing(phrase) && (head & Perhaps) == 0) return false;  // "with a difference"
     Cursor instead = c_;
     Phrase old;
     if (instead.take(Class::rather_than) && instead.take_phrase(old)) {  // "a crown instead of a hat"
@@ -180,10 +205,52 @@ bool Reader::own(const Target& subject, const Phrase& phrase, std::string_view r
     return true;
 }
 
+/// "with blue" and "with stripes" have no noun; "with lavender" is no colour.
+bool Reader::has_quality(const Target& subject, std::string_view relation) {
+    if (relation == "held by") return false;  // "eats honey" is no colour
+    const auto& plant = c_.word();
+    const bool several = plant.text != plant.singular && has(Class::material, plant.text) &&
+                         c_.peek(Class::relation, 1) && c_.peek(Class::pronoun_it, 2);
+    if (several) {  // "with diamonds on it"
+        Phrase many;
+        many.noun = plant.singular;
+        many.typed = plant.text;
+        many.plural = true;
+        ++c_.at;
+        const auto made = d_.add(many, "on", {subject});
+        nested(made, subject);
+        return true;
+    }
+    const bool grows = relation == "with" && (kinds_of(plant.text) & (Plant | Food)) != 0;
+    if (!grows || c_.noun_length() != 1 || !has(Class::colour, plant.text))
+        return apply_all({subject}, c_.take_attributes());
+    Phrase herb;
+    herb.noun = herb.typed = plant.text;
+    ++c_.at;
+    return own(subject, herb, relation);
+}
+
+/// "with a huge smile", "with a blue (one)".
+bool Reader::has_looks(const Target& subject, const std::vector<Attribute>& attributes) {
+    if (attributes.size() < 2 || attributes.back().quality != Quality::Pose)
+        return apply_all({subject}, attributes);
+    std::string text;
+    for (const auto& each : attributes) text += (text.empty() ? "" : " ") + each.typed;
+    d_.step(Operation::Pose, subject, text);
+    return true;
+}
+
 bool Reader::has_list(const Target& subject, std::string_view relation) {
     Phrase phrase;
+    std::size_t behind = 0;        // position behind the thing before
+    std::vector<Attribute> looks;  // of the part before
     do {
         const std::size_t start = c_.at;
+        if (Cursor look = c_; look.take(Class::article) && look.take(Class::style) &&
+                              look.take(Class::style_word)) {  // "a vintage look"
+            const auto subjects = Targets{subject};
+            if (style_text(subjects)) continue;
+        }
         Cursor lacking = c_;
         lacking.take(Class::article);  // "with a missing arm"
         if (lacking.peek(Class::without) && (lacking.at == c_.at || lacking.peek(Class::gone))) {
@@ -192,18 +259,23 @@ bool Reader::has_list(const Target& subject, std::string_view relation) {
             return lack_list(subject);
         }
         if (c_.is(Class::word_nothing) && (c_.peek(Class::contrast, 1) || c_.peek(Class::except, 1)))
-            c_.at += 2;  // "wearing nothing but a tie"
+            c_.at += 2;                                             // "wearing nothing but a tie"
+        if (c_.is(Class::word_nothing) && relation == "worn by") {  // "wears nothing"
+            ++c_.at;
+            const auto& things = d_.scene().things;
+            d_.already_so();
+            for (std::size_t i = 0; i < things.size(); ++i)
+                if (things[i].is_worn) d_.remove(d_.target_of_thing(i));
+            return true;
+        }
         if (c_.is(Class::word_nothing)) return false;
         if (!c_.take_phrase(phrase) || phrase.naming != Naming::Thing) {
-            // "with blue" and "with stripes" have no noun
             c_.at = start;
-            if (relation == "held by") return false;  // "eats honey" is no colour
-            const auto attributes = c_.take_attributes();
-            if (!apply_all({subject}, attributes)) return false;
+            if (!has_quality(subject, relation)) return false;
             continue;
         }
         if (phrase.noun.empty()) {
-            if (!apply_all({subject}, phrase.attributes)) return false;
+            if (!has_looks(subject, phrase.attributes)) return false;
             continue;
         }
         Cursor choice = c_;
@@ -215,7 +287,16 @@ bool Reader::has_list(const Target& subject, std::string_view relation) {
                 return fail(reason::Ambiguous);
             }
         }
+        const bool bare = is_part(phrase) && !phrase.has_determiner() && phrase.attributes.empty();
+        if (bare && behind > 0) phrase.attributes = looks;  // "purple hands and feet"
+        looks = is_part(phrase) ? phrase.attributes : std::vector<Attribute>{};
+        if (relation == "worn by" && behind > 0 && !is_worn(phrase) &&
+            (kinds_of(phrase.noun) & (Animal | Person)) != 0) {
+            c_.at = behind;  // "wearing a hat and a scarf, and a cat"
+            return true;
+        }
         if (!own(subject, phrase, relation)) return false;
+        behind = c_.at;
     } while (list_goes_on());
     return true;
 }
@@ -229,6 +310,7 @@ bool Reader::lack(const Target& subject, const Phrase& phrase) {
     if (const auto found = d_.things_named(what); !found.empty()) {
         const auto target = d_.resolve(what);
         if (!target.found()) return fail(reason::Ambiguous);
+        if (d_.replaces(target)) return true;  // "a panda, not a bear"
         d_.remove(target);
         return true;
     }
@@ -279,26 +361,15 @@ bool Reader::lack_list(const Target& subject) {
     return true;
 }
 
-/// Steps over how a new thing is: "(wings) like an eagle".
-bool Reader::skip_likeness() {
-    Cursor like = c_;
-    Phrase model;
-    if (c_.is(Class::word_as) || !like.take(Class::like) || !like.take_phrase(model) || model.noun.empty() ||
-        !like.at_end_of_clause())
-        return false;
-    c_.at = like.at;
-    return true;
-}
-
 /// Place of a new thing on or beside who has it: "on its head", "next to him", "made of gold", "that is red".
 void Reader::nested(const Target& made, const Target& bearer) {
     while (true) {
         const std::size_t start = c_.at;
         Cursor ahead = c_;
+        if (made.step && ahead.peek(Class::copula) && ahead.peek(Class::emerging, 1)) ++ahead.at;
         while (ahead.take(Class::emerging)) {}
         if (const auto relation = ahead.take(Class::relation)) {
             Phrase place;
-            Cursor at_place = ahead;
             if (!ahead.take_phrase(place)) {
                 if (relation.value == "on" && ahead.at_end_of_clause()) {
                     c_.at = ahead.at;
@@ -315,25 +386,28 @@ void Reader::nested(const Target& made, const Target& bearer) {
             if (on_bearer(place, whose)) {
                 c_.at = ahead.at;
                 const bool worn = has(Class::worn, made.reference.root()) || made.thing;
-                if (made.step && !worn) d_.set_anchor(made, relation.value, whose);
-                continue;
-            }
-            if (place.naming == Naming::It || place.naming == Naming::Person) {
-                c_.at = ahead.at;
-                if (made.step) d_.set_anchor(made, relation.value, bearer);
+                const bool held = relation.value == "in" && has(Class::hand, word_of(place.typed).singular);
+                if (made.step && held) d_.set_anchor(made, "held by", bearer);
+                else if (made.step && !worn) d_.set_anchor(made, relation.value, whose);
                 continue;
             }
             const auto found = d_.resolve(place);
             const bool bears = found.found() && found.reference == bearer.reference;
-            if (bears) {
+            if (bears || place.naming == Naming::It || place.naming == Naming::Person) {
                 c_.at = ahead.at;
                 if (made.step) d_.set_anchor(made, relation.value, bearer);
                 continue;
             }
             c_.at = start;
-            (void)at_place;
             return;
         }
+        if (const auto side = c_.peek(Class::direction);
+            made.step && side.length == 3 && c_.is(Class::possessive, 1) && bearer.found()) {
+            c_.at += side.length;  // "to its left"
+            d_.set_anchor(made, side.value == "left" ? "left of" : "right of", bearer);
+            continue;
+        }
+        if (made.step && c_.is(Class::word_to) && takes_use(made, bearer)) continue;
         if (c_.peek(Class::made_of) && made.step && material_of({made})) continue;
         if (made.step && skip_likeness()) continue;
         if (c_.peek(Class::relative) && relative(made)) continue;
@@ -417,23 +491,6 @@ void Reader::posts(const Target& subject) {
     }
 }
 
-/// "surrounded by penguins", "covered with moss".
-bool Reader::inversely_related(const Target& subject) {
-    if (c_.peek(Class::inverse_relation)) {
-        const auto relation = c_.take(Class::inverse_relation).value;
-        Phrase phrase;
-        if (!c_.take_phrase(phrase)) return false;
-        if (relation == "on" && subject.thing && (is_ground(phrase) || has(Class::covering, phrase.noun))) {
-            if (const auto covering = meaning(Class::covering, phrase.typed))
-                return apply_all({subject},
-                                 {{Quality::Material, std::string(*covering), std::string(*covering), ""}});
-        }
-        d_.add(phrase, relation, {subject});
-        return true;
-    }
-    return false;
-}
-
 /// "while snow is falling".
 bool Reader::weather_clause() {
     Cursor weather = c_;
@@ -447,6 +504,28 @@ bool Reader::weather_clause() {
     return false;
 }
 
+/// "on fire", "in flames".
+bool Reader::burns(const Target& subject) {
+    const auto fire = c_.peek(Class::fire_words);
+    if (!fire || subject.is_scene()) return false;
+    c_.at += fire.length;
+    Phrase flames;
+    flames.noun = flames.typed = std::string(fire.value);
+    d_.add(flames, "on", {subject});
+    return true;
+}
+
+/// Steps over "standing" and "lying" before a place.
+void Reader::skip_where_pose() {
+    if (const auto where = c_.peek(Class::emerging);
+        where && (c_.peek(Class::relation, where.length) || c_.peek(Class::direction, where.length)))
+        c_.at += where.length;
+    Cursor place = c_;
+    if (!place.take(Class::where_pose)) return;
+    while (place.take(Class::as_well) || place.take(Class::degree)) {}
+    if (place.peek(Class::relation)) c_.at = place.at;
+}
+
 bool Reader::post(const Target& subject) {
     const std::size_t start = c_.at;
     if (c_.peek(Class::rather_than)) return false;
@@ -454,20 +533,30 @@ bool Reader::post(const Target& subject) {
         if (weather_clause()) return true;
     }
     c_.take(Class::degree);
-    c_.take(Class::as_well);
+    if (c_.peek(Class::as_well).length >= c_.peek(Class::relation).length) c_.take(Class::as_well);
     const auto back = [&] {
         c_.at = start;
         return false;
     };
-    if (const auto fire = c_.peek(Class::fire_words); fire && !subject.is_scene()) {
-        c_.at += fire.length;
-        Phrase flames;
-        flames.noun = flames.typed = std::string(fire.value);
-        d_.add(flames, "on", {subject});
-        return true;
+    if (burns(subject) || looks_somewhere({subject}) || stands_on_part(subject)) return true;
+    if (c_.is(Class::word_as) && (compared({subject}) || as_much_as({subject}))) return true;
+    if (Cursor lacking = c_; lacking.take(Class::negation) && lacking.take(Class::wearing)) {
+        c_.at = lacking.at;  // "not wearing a hat"
+        return lack_list(subject) || back();
+    }
+    if (c_.peek(Class::verb_recolour) && c_.word().text.ends_with("ed") && !c_.at_end_of_clause() &&
+        complement_once({subject}))
+        return true;                                               // "a vase painted blue"
+    if (c_.peek(Class::times) && measure({subject})) return true;  // "a bear twice as tall"
+    if (c_.take(Class::word_whose)) {                              // "whose eyes are blue"
+        Phrase part;
+        return (c_.take_phrase(part) && is_part(part) && own_part(subject, part)) || back();
     }
     if (c_.take(Class::without)) return lack_list(subject) || back();
     if (c_.peek(Class::inverse_relation)) return inversely_related(subject) || back();
+    const bool of_other = c_.peek(Class::of) && c_.peek(Class::made_of).length < 2 && c_.is_thing_before() &&
+                          c_.previous().singular != last_word(subject.reference.root());
+    if (of_other) return back();  // "in a field of flowers"
     if (c_.peek(Class::made_of) || c_.peek(Class::of)) return material_of({subject}) || back();
     if (c_.take(Class::dressed_as)) {
         Phrase role;
@@ -487,21 +576,9 @@ bool Reader::post(const Target& subject) {
         return has_list(subject, "with") || back();
     }
     if (c_.peek(Class::relative)) return relative(subject) || back();
-    if (const auto where = c_.peek(Class::emerging);
-        where && (c_.peek(Class::relation, where.length) || c_.peek(Class::direction, where.length)))
-        c_.at += where.length;
-    if (const auto where = c_.peek(Class::where_pose)) {
-        Cursor place = c_;
-        place.at += where.length;
-        while (place.take(Class::as_well) || place.take(Class::degree)) {}
-        if (place.peek(Class::relation)) c_.at = place.at;
-    }
+    skip_where_pose();
     if (c_.peek(Class::relation) || c_.peek(Class::environment)) return related(subject) || back();
-    if (const auto like = c_.peek(Class::like)) {
-        if (alike({subject})) return true;
-        (void)like;
-        return back();
-    }
+    if (c_.peek(Class::like)) return alike({subject}) || back();
     if (c_.peek(Class::pose) || c_.peek(Class::verb_pose)) return pose_text({subject}) || back();
     return back();
 }

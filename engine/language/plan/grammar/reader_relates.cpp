@@ -64,7 +64,8 @@ bool Reader::in_place(const Cursor& ahead, const std::string& before) {
 /// Surroundings: "at night", "in a forest", "in the style of", "in blue".
 bool Reader::surroundings(const Target& subject, std::string_view relation) {
     Cursor ahead = c_;
-    const bool inside = relation == "in" || relation == "under" || relation == "beside" || relation == "on";
+    const bool inside = relation == "in" || relation == "under" || relation == "beside" || relation == "on" ||
+                        relation == "in front of";
     if (!inside) return false;
     Cursor style = ahead;
     style.take(Class::definite);
@@ -95,7 +96,9 @@ bool Reader::surroundings(const Target& subject, std::string_view relation) {
         }
     }
     const auto weather = ahead.peek(Class::environment);
-    if (weather && relation != "on") {
+    Cursor time = ahead;
+    time.at += weather.length;
+    if (weather && (relation != "on" || time.peek(Class::time_of_day))) {
         Cursor behind = ahead;
         behind.at += weather.length;
         if (behind.at_end_of_clause() || behind.ends_phrase(0, true) || behind.peek(Class::time_word) ||
@@ -107,7 +110,7 @@ bool Reader::surroundings(const Target& subject, std::string_view relation) {
             return true;
         }
     }
-    if (relation != "under" && in_place(ahead, text)) return true;
+    if (relation != "under" && relation != "in front of" && in_place(ahead, text)) return true;
     return relation == "in" && in_colour(subject);
 }
 
@@ -126,6 +129,10 @@ bool Reader::between(const Target& subject, const Phrase& phrase) {
         if (!one.found() && !two.found() && subject.kind == Target::Kind::There) {
             d_.add(phrase, "left of", {subject});
             d_.add(second, "right of", {subject});
+            return true;
+        }
+        if (has(Class::seen_by, second.noun) && !two.found() && one.found() && subject.step) {
+            d_.set_anchor(subject, "in front of", one);
             return true;
         }
         for (const auto& each : {phrase, second})  // "the camera" is no thing of the scene, and none to add
@@ -154,8 +161,10 @@ bool Reader::related(const Target& subject) {
         c_.at = start;
         return false;
     }
-    if (relation.value == "in" && phrase.indefinite && is_worn(phrase) && d_.can_wear(subject))
-        return own(subject, phrase, "worn by");  // "in a hood"
+    if (relation.value == "in" && phrase.indefinite && is_worn(phrase) && d_.can_wear(subject)) {
+        c_.at = start + relation.length;
+        return has_list(subject, "worn by");  // "in a hood and boots"
+    }
     if (relation.value == "between" && c_.peek(Class::conjunction)) {
         if (between(subject, phrase)) return true;
     }
@@ -178,6 +187,14 @@ bool Reader::related(const Target& subject) {
     return true;
 }
 
+/// Tells whether the subject stands on the thing as the scene is told: the thing follows it, or is its
+/// ground.
+bool Reader::usually_on(const Target& subject, const Target& found) const {
+    if (!subject.thing || !found.thing) return true;
+    const auto& things = d_.scene().things;
+    return things[*found.thing].is_ground || has(Class::furniture_flat, things[*found.thing].noun);
+}
+
 /// The other thing is there: the subject is beside it, or goes there.
 bool Reader::relate_there(const Target& subject, std::string_view relation, const Phrase& phrase,
                           const Target& found) {
@@ -198,7 +215,7 @@ bool Reader::relate_there(const Target& subject, std::string_view relation, cons
     const bool surface = !d_.is_animate(found) || (found.thing && d_.scene().things[*found.thing].is_ground);
     const bool backdrop = relation == "in front of" && has(Class::backdrop, found.reference.root());
     const bool side = !backdrop && relation != "in" && relation != "beside" && relation != "under" &&
-                      (relation != "on" || !surface);
+                      (relation != "on" || !surface || !usually_on(subject, found));
     if (found.thing && !phrase.attributes.empty()) apply_all({found}, phrase.attributes);
     if (side && subject.thing && !phrase.owner) d_.move(subject, "move " + std::string(relation), found);
     else d_.already_so();
@@ -245,6 +262,212 @@ bool Reader::relate(const Target& subject, std::string_view relation, const Phra
     const auto made = d_.add(phrase, how, {subject});
     d_.mention(made);
     nested(made, subject);
+    return true;
+}
+
+/// "and the moon is shining": says nothing more.
+void Reader::skip_moon() {
+    Cursor also = c_;  // "and the moon is shining"
+    if (also.take(Class::conjunction) && also.take(Class::definite) &&
+        (also.is(Class::word_moon) || also.is(Class::word_sun) || also.is(Class::word_stars) ||
+         also.is(Class::word_sky))) {
+        while (!also.at_end_of_clause()) ++also.at;
+        c_.at = also.at;
+    }
+}
+
+/// "it is night", "make it snow", "at night", "let it rain".
+bool Reader::environment_clause() {
+    Cursor ahead = c_;
+    const bool makes =
+        ahead.take(Class::verb_make) || ahead.take(Class::verb_turn) || ahead.take(Class::verb_add);
+    const bool subject = ahead.is(Class::word_it) || ahead.is(Class::word_its) ||
+                         ahead.peek(Class::time_word) || ahead.peek(Class::everything) ||
+                         (ahead.peek(Class::definite) && ahead.peek(Class::time_word, 1));
+    if (subject) {
+        if (!ahead.peek(Class::everything)) ahead.take(Class::definite);
+        if (!ahead.take(Class::everything)) ++ahead.at;
+    }
+    while (ahead.take(Class::modal) || ahead.take(Class::copula) || ahead.take(Class::look_word) ||
+           ahead.take(Class::like) || ahead.take(Class::to) || ahead.take(Class::into)) {}
+    if (const auto relation = ahead.peek(Class::relation);
+        relation && (relation.value == "in" || relation.value == "beside" || relation.value == "under") &&
+        ahead.at != c_.at)
+        ahead.at += relation.length;
+    else if (relation && !makes && !subject &&
+             (ahead.is(Class::word_at) || ahead.is(Class::word_in) || ahead.is(Class::word_during)))
+        ahead.at += relation.length;
+    const auto verb = ahead.peek(Class::weather_verb);
+    if (verb && subject && verb.length == 1 && ahead.word(1).text != "on") {
+        // with the ground as the source, "make it snow" says what the ground becomes
+        if (makes && d_.is_on_ground() && has(Class::ground, ahead.word().text)) return false;
+        c_.at = ahead.at + 1;
+        while (c_.take(Class::degree) || c_.take(Class::pose_manner)) {}
+        d_.environment(std::string(verb.value));
+        c_.take(Class::as_well);
+        return true;
+    }
+    ahead.take(Class::article);
+    ahead.take(Class::definite);
+    const auto weather = ahead.peek(Class::environment);
+    if (!weather) return false;
+    const bool alone = !makes && !subject && ahead.at == c_.at;
+    if (alone && weather.length == 1 &&
+        (ahead.peek(Class::shade) || ahead.peek(Class::material_surface) || ahead.is(Class::word_fall)) &&
+        ahead.noun_length(1) > 0)
+        return false;
+    Cursor behind = ahead;
+    behind.at += weather.length;
+    behind.take(Class::time_word);
+    const bool adjacent = behind.at == ahead.at + weather.length;
+    std::string text(weather.value);
+    if (behind.take(Class::environment) && adjacent) text = ahead.text_to(behind.at);  // "a stormy night"
+    while (behind.take(Class::as_well)) {}
+    const bool adds_thing = makes && !subject && ahead.noun_length() > weather.length;
+    if (adds_thing || !(behind.at_end_of_clause() || behind.peek(Class::conjunction) ||
+                        behind.peek(Class::relation) || behind.peek(Class::courtesy)))
+        return false;
+    if (subject && c_.is(Class::word_it) == false && makes == false && d_.is_animate(d_.focus()) &&
+        ahead.is(Class::word_dark))
+        return false;
+    c_.at = behind.at;
+    d_.environment(text);
+    skip_moon();
+    return true;
+}
+
+/// "minecraft style", "in the style of van gogh", "as an oil painting", "an oil painting of a bear".
+bool Reader::style_clause() {
+    Cursor ahead = c_;
+    const std::size_t start = c_.at;
+    if (ahead.is(Class::word_in) || ahead.is(Class::word_as) || ahead.is(Class::word_with)) ++ahead.at;
+    ahead.take(Class::definite);
+    ahead.take(Class::article);
+    if (ahead.take(Class::style_word) && ahead.take(Class::of)) {
+        c_.at = ahead.at;
+        if (style_text({d_.scene_target()})) return true;
+        Phrase model;
+        if (c_.take_phrase(model)) {
+            d_.style(d_.scene_target(), model.typed);
+            return true;
+        }
+        c_.at = start;
+        return false;
+    }
+    ahead = c_;
+    if (ahead.is(Class::word_in) || ahead.is(Class::word_as)) ++ahead.at;
+    c_.at = ahead.at;
+    if (style_text({d_.scene_target()})) {
+        Cursor whom = c_, last = c_;
+        --last.at;
+        Phrase model;
+        if (last.is(Class::word_version) && whom.take(Class::of) && whom.take_phrase(model) &&
+            model.definite && d_.resolve(model).thing &&
+            whom.at_end_of_clause()) {  // "a low-poly version of the fox"
+            d_.drop_last();
+            c_.at = ahead.at;
+            const bool read = style_text({d_.resolve(model)});
+            c_.at = whom.at;
+            return read;
+        }
+        if (c_.take(Class::of)) {
+            const bool more = clause();
+            return more || c_.at_end_of_clause();
+        }
+        if (c_.at_end_of_clause() || c_.peek(Class::conjunction)) return true;
+        d_.drop_last();
+    }
+    // "lego style"
+    c_.at = start;
+    Phrase named;
+    if (c_.take_phrase(named) && !named.noun.empty() && c_.at_end_of_clause()) {
+        const auto blank = named.typed.rfind(' ');
+        const auto last = blank == std::string::npos ? named.typed : named.typed.substr(blank + 1);
+        if (has(Class::style_word, last) && last != "look" && last != "version") {
+            std::string text;
+            for (const auto& attribute : named.attributes) text += attribute.typed + " ";
+            if (blank != std::string::npos) text += named.typed.substr(0, blank);
+            while (!text.empty() && text.back() == ' ') text.pop_back();
+            if (!text.empty()) {
+                d_.style(d_.scene_target(), text);
+                return true;
+            }
+        }
+    }
+    c_.at = start;
+    return false;
+}
+
+/// "standing on one leg", "lies on its side": how it stands, not where.
+bool Reader::stands_on_part(const Target& subject) {
+    Cursor ahead = c_;
+    auto pose = ahead.peek(Class::pose);
+    if (!pose) pose = ahead.peek(Class::verb_pose);
+    if (!pose || !ahead.peek(Class::where_pose)) return false;
+    ahead.at += ahead.peek(Class::where_pose).length;
+    const std::size_t begin = ahead.at;
+    Phrase part;
+    if (!ahead.take(Class::relation) || !ahead.take_phrase(part) || !is_part(part) ||
+        !(part.possessive || part.single || !part.count.empty()) || !d_.things_named(part).empty() ||
+        !ahead.at_end_of_clause())
+        return false;
+    std::string text(pose.value);
+    for (c_.at = begin; c_.at < ahead.at; ++c_.at) text.append(1, ' ').append(c_.word().text);
+    d_.step(Operation::Pose, subject, text);
+    return true;
+}
+
+/// "surrounded by penguins", "covered with moss".
+bool Reader::inversely_related(const Target& subject) {
+    if (c_.peek(Class::inverse_relation)) {
+        const auto relation = c_.take(Class::inverse_relation).value;
+        Phrase phrase;
+        if (!c_.take_phrase(phrase)) return false;
+        const bool on_ground = subject.thing && d_.scene().things[*subject.thing].is_ground;
+        if (relation == "on" && on_ground && is_ground(phrase)) {  // "the lawn is covered with snow"
+            d_.ground(phrase);
+            return true;
+        }
+        if (relation == "on" && subject.thing && (is_ground(phrase) || has(Class::covering, phrase.noun))) {
+            if (const auto covering = meaning(Class::covering, phrase.typed))
+                return apply_all({subject},
+                                 {{Quality::Material, std::string(*covering), std::string(*covering), ""}});
+        }
+        d_.add(phrase, relation, {subject});
+        return true;
+    }
+    return false;
+}
+
+/// "(a balloon) to hold", "(a cape) to wear".
+bool Reader::takes_use(const Target& made, const Target& bearer) {
+    Cursor ahead = c_;
+    ++ahead.at;
+    constexpr std::pair<Class, std::string_view> Uses[] = {
+        {Class::holding, "held by"}, {Class::wearing, "worn by"}, {Class::riding, "ridden by"}};
+    for (const auto& [use, relation] : Uses) {
+        Cursor behind = ahead;
+        if (!behind.take(use)) continue;
+        Cursor part = behind;  // "to hold in its hand"
+        Phrase hand;
+        if (part.is(Class::word_in) && (++part.at, part.take_phrase(hand)) && is_part(hand))
+            behind.at = part.at;
+        if (!behind.at_end_of_clause() && !behind.peek(Class::conjunction)) continue;
+        c_.at = behind.at;
+        d_.set_anchor(made, relation, bearer);
+        return true;
+    }
+    return false;
+}
+
+/// Steps over how a new thing is: "(wings) like an eagle".
+bool Reader::skip_likeness() {
+    Cursor like = c_;
+    Phrase model;
+    if (c_.is(Class::word_as) || !like.take(Class::like) || !like.take_phrase(model) || model.noun.empty() ||
+        !like.at_end_of_clause())
+        return false;
+    c_.at = like.at;
     return true;
 }
 

@@ -64,6 +64,39 @@ bool Reader::takes_away(const Cursor& particle, bool direct, bool gets) const {
     return away || (direct && !gets);
 }
 
+/// "everything on the table": what stands there in the place of the scene; false where nothing does.
+bool Reader::take_things_there(Targets& targets) {
+    Cursor ahead = c_;
+    Phrase place;
+    if (!ahead.take(Class::from) && !ahead.take(Class::relation)) return true;
+    if (!ahead.take_phrase(place) || place.naming != Naming::Thing) return true;
+    const auto found = d_.resolve(place);
+    if (!found.thing || d_.scene().things[*found.thing].is_ground) return true;
+    const auto on = things_on(found);
+    if (on.empty()) return fail(reason::Ambiguous);
+    c_.at = ahead.at;
+    targets = on;
+    return true;
+}
+
+/// "pull the hat off".
+bool Reader::pull_off() {
+    Cursor pulled = c_;
+    Phrase what;
+    const bool tossed = pulled.take(Class::verb_toss).length > 0;  // "throw the hat away"
+    if (!tossed && !pulled.take(Class::verb_off)) return false;
+    if (!pulled.take_phrase(what)) return false;
+    const bool away = tossed && (pulled.is(Class::word_away) || pulled.is(Class::word_out));
+    if (!away && !pulled.is(Class::word_off)) return false;
+    const auto found = expect(what);
+    if (!found.found()) return false;
+    c_.at = pulled.at;
+    Targets off{found};
+    skip_from(off);
+    remove_all(off);
+    return true;
+}
+
 bool Reader::remove_clause() {
     const bool takes = c_.is(Class::word_take) || c_.is(Class::word_get) || c_.is(Class::word_cut) ||
                        c_.is(Class::word_put) || c_.is(Class::word_throw) || c_.is(Class::word_wipe) ||
@@ -78,6 +111,7 @@ bool Reader::remove_clause() {
     const auto direct = verb.peek(Class::verb_remove);
     const bool moves = verb.peek(Class::verb_move).length > 0;
     const bool gets = c_.peek(Class::verb_make) && c_.is(Class::word_get);
+    if (!direct && pull_off()) return true;
     if (!direct && !gets && !c_.is(Class::word_take)) return false;
     const bool takes_off = takes && c_.is(Class::word_off, 1);
     c_.at += direct ? direct.length : 1;
@@ -97,12 +131,18 @@ bool Reader::remove_clause() {
         return fail(reason::NotInScene);
     }
     if (!objects(targets, &phrases)) return false;
+    const auto& part = targets.front().reference.links.front().noun;
+    if (targets.front().reference.links.size() > 1 && has(Class::facial_hair, part)) {
+        missing_ = part;  // of a bear that wears none
+        return fail(reason::NotInScene);
+    }
     if (const auto place = c_.peek(Class::relation).value; moves && (place == "behind" || place == "under"))
         return false;  // "hide the man behind the bus"
     if (first.naming == Naming::It && d_.is_animate(targets[0]) &&
         (c_.is(Class::word_off) || takes_off)) {  // "take it off"
         take_worn(targets);
     }
+    if (targets.size() == 1 && targets[0].is_scene() && !take_things_there(targets)) return false;
     if (targets.size() == 1 && targets[0].is_scene() &&
         (c_.peek(Class::contrast) || c_.is(Class::word_except)))
         return false;
@@ -151,6 +191,13 @@ bool Reader::instruct_less_clause() {
     if (!verb.take(Class::verb_empty) && !verb.take(Class::verb_relieve)) return false;
     Phrase whole;
     if (!verb.take_phrase(whole)) return false;
+    if (whole.owner && whole.owner->possessive && !is_part(whole)) {  // "strip the bear of its hat"
+        const auto worn = d_.resolve(*whole.owner);
+        if (!worn.found()) return expect(*whole.owner).found();
+        c_.at = verb.at;
+        d_.remove(worn);
+        return true;
+    }
     const auto target = d_.resolve(whole);
     if (!target.found()) return false;
     if (verb.take(Class::of)) {
@@ -202,6 +249,28 @@ void Reader::leave_as_it_is(const Phrase& phrase) {
     else d_.nothing_asked();
 }
 
+/// Removes what "everything but" leaves out.
+bool Reader::remove_excepted(const Phrase& phrase) {
+    for (const auto& each : phrase.excepted) {
+        const auto gone = expect(each);
+        if (!gone.found()) return false;
+        d_.remove(gone);
+    }
+    return true;
+}
+
+/// "leave the bear green": nothing to do where it is so.
+bool Reader::keep_coloured(const Phrase& phrase, Cursor behind) {
+    Attribute attribute;
+    if (!behind.take_attribute(attribute, false) || !behind.at_end_of_clause()) return false;
+    const auto found = d_.resolve(phrase);
+    const bool stuff = attribute.quality == Quality::Colour || attribute.quality == Quality::Material;
+    if (!found.found() || !stuff) return false;
+    d_.apply(found, attribute);
+    c_.at = behind.at;
+    return true;
+}
+
 /// "keep the hat", "leave the grass as it is", "everything stays": nothing is asked of them.
 bool Reader::keep_clause() {
     Cursor ahead = c_;
@@ -221,6 +290,10 @@ bool Reader::keep_clause() {
             return true;
         }
         const Phrase kept = phrase;
+        if (!kept.excepted.empty() && object.at_end_of_clause() && !c_.peek(Class::do_not)) {
+            c_.at = object.at;
+            return remove_excepted(kept);  // "keep everything but the hat"
+        }
         while (true) {
             Cursor more = object;
             more.take_mark(',');
@@ -230,19 +303,8 @@ bool Reader::keep_clause() {
                 break;  // "do not move the ship, just paint it"
             object.at = more.at;
         }
-        // "leave the bear green": nothing to do either way; "leave out the hat" is a removal
-        if (c_.is(Class::word_leave) && c_.is(Class::word_out, 1)) return false;
-        Attribute attribute;
-        Cursor how = object;
-        if (how.take_attribute(attribute, false) && how.at_end_of_clause() && !how.is(Class::word_as)) {
-            const auto found = d_.resolve(phrase);
-            if (found.found() &&
-                (attribute.quality == Quality::Colour || attribute.quality == Quality::Material)) {
-                d_.apply(found, attribute);
-                c_.at = how.at;
-                return true;
-            }
-        }
+        if (c_.is(Class::word_leave) && c_.is(Class::word_out, 1)) return false;  // a removal
+        if (keep_coloured(phrase, object)) return true;
         while (!object.at_end_of_clause() && !object.peek(Class::contrast) &&
                !object.peek(Class::conjunction))
             ++object.at;
@@ -252,15 +314,40 @@ bool Reader::keep_clause() {
     }
     Phrase subject;
     ahead = c_;
+    if (ahead.take(Class::liked) && ahead.take_phrase(subject) && d_.resolve(subject).found() &&
+        ahead.peek(Class::contrast)) {  // "I like the hat, but make it yellow"
+        d_.mention(d_.resolve(subject));
+        d_.nothing_asked();
+        c_.at = ahead.at;
+        return true;
+    }
+    ahead = c_;
     if (ahead.take_phrase(subject)) {
         ahead.take(Class::modal);
         if (stays(ahead)) {
             c_.at = ahead.at;
             d_.nothing_asked();
-            return true;
+            return remove_excepted(subject);  // "everything except the hat stays"
         }
     }
     return false;
+}
+
+/// "set the bear on fire".
+bool Reader::fire_clause() {
+    Cursor ahead = c_;
+    if (!ahead.take(Class::fire_verb)) return false;
+    Phrase phrase;
+    if (!ahead.take_phrase(phrase)) return false;
+    const auto fire = ahead.peek(Class::fire_words);
+    if (!fire) return false;
+    const auto target = expect(phrase);
+    if (!target.found()) return false;
+    c_.at = ahead.at + fire.length;
+    Phrase flames;
+    flames.noun = flames.typed = std::string(fire.value);
+    d_.add(flames, "on", {target});
+    return true;
 }
 
 }  // namespace gse::language::plan

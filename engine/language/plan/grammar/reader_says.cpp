@@ -16,6 +16,7 @@ bool Reader::only_clause() {
                  said.is(Class::word_remains);
     if (stays) ahead.at = said.at + 1;
     stays = stays || keeps;
+    while (ahead.take(Class::courtesy)) {}
     if (!ahead.at_end_of_clause()) return false;
     if (const auto told = d_.resolve(phrase); ahead.is_mark(",:") && told.found() && !stays) {
         Cursor order = ahead;  // "only the tail, make it black"
@@ -45,6 +46,7 @@ bool Reader::only_clause() {
 bool Reader::clause() {
     if (correction()) {
         // "no wait, green": in the place of the last
+        if (c_.done()) return true;
         d_.drop_last();
         return clause();
     }
@@ -56,6 +58,15 @@ bool Reader::clause() {
     if (there_is_clause()) return true;
     if (!reason_.empty()) return false;
     if (frame_ != Frame::None && frame_ != Frame::Describe && ellipsis()) return true;
+    const bool acts = c_.peek(Class::wearing) || c_.peek(Class::holding) || c_.peek(Class::riding);
+    if (d_.size() == 0 && acts && c_.word().text.ends_with("ing") && d_.focus().found()) {
+        const std::size_t start = c_.at;  // "wearing a hat"
+        if (post(d_.focus())) {
+            posts(d_.focus());
+            return true;
+        }
+        c_.at = start;
+    }
     if (starts_verb()) {
         const std::size_t start = c_.at;
         if (verb_clause()) return true;
@@ -65,140 +76,6 @@ bool Reader::clause() {
     const auto sized = d_.size() > 0 && d_.last() && d_.last()->found() ? *d_.last() : d_.focus();
     if (c_.peek(Class::times) && sized.found() && measure({sized})) return true;  // "half the size"
     return noun_clause() || attribute_clause();
-}
-
-/// "and the moon is shining": says nothing more.
-void Reader::skip_moon() {
-    Cursor also = c_;  // "and the moon is shining"
-    if (also.take(Class::conjunction) && also.take(Class::definite) &&
-        (also.is(Class::word_moon) || also.is(Class::word_sun) || also.is(Class::word_stars) ||
-         also.is(Class::word_sky))) {
-        while (!also.at_end_of_clause()) ++also.at;
-        c_.at = also.at;
-    }
-}
-
-/// "it is night", "make it snow", "at night", "let it rain".
-bool Reader::environment_clause() {
-    Cursor ahead = c_;
-    const bool makes =
-        ahead.take(Class::verb_make) || ahead.take(Class::verb_turn) || ahead.take(Class::verb_add);
-    const bool subject = ahead.is(Class::word_it) || ahead.is(Class::word_its) ||
-                         ahead.peek(Class::time_word) || ahead.peek(Class::everything) ||
-                         (ahead.peek(Class::definite) && ahead.peek(Class::time_word, 1));
-    if (subject) {
-        if (!ahead.peek(Class::everything)) ahead.take(Class::definite);
-        if (!ahead.take(Class::everything)) ++ahead.at;
-    }
-    while (ahead.take(Class::modal) || ahead.take(Class::copula) || ahead.take(Class::look_word) ||
-           ahead.take(Class::like) || ahead.take(Class::to) || ahead.take(Class::into)) {}
-    if (const auto relation = ahead.peek(Class::relation);
-        relation && (relation.value == "in" || relation.value == "beside" || relation.value == "under") &&
-        ahead.at != c_.at)
-        ahead.at += relation.length;
-    else if (relation && !makes && !subject &&
-             (ahead.is(Class::word_at) || ahead.is(Class::word_in) || ahead.is(Class::word_during)))
-        ahead.at += relation.length;
-    const auto verb = ahead.peek(Class::weather_verb);
-    if (verb && subject && verb.length == 1 && ahead.word(1).text != "on") {
-        // with the ground as the source, "make it snow" says what the ground becomes
-        const auto focus = d_.focus();
-        const bool ground = makes && focus.thing && d_.scene().things[*focus.thing].is_ground &&
-                            has(Class::ground, ahead.word().text);
-        if (ground) return false;
-        c_.at = ahead.at + 1;
-        while (c_.take(Class::degree) || c_.take(Class::pose_manner)) {}
-        d_.environment(std::string(verb.value));
-        c_.take(Class::as_well);
-        return true;
-    }
-    ahead.take(Class::article);
-    ahead.take(Class::definite);
-    const auto weather = ahead.peek(Class::environment);
-    if (!weather) return false;
-    const bool alone = !makes && !subject && ahead.at == c_.at;
-    if (alone && weather.length == 1 &&
-        (ahead.peek(Class::shade) || ahead.peek(Class::material_surface) || ahead.is(Class::word_fall)) &&
-        ahead.noun_length(1) > 0)
-        return false;
-    Cursor behind = ahead;
-    behind.at += weather.length;
-    behind.take(Class::time_word);
-    behind.take(Class::environment);
-    while (behind.take(Class::as_well)) {}
-    const bool adds_thing = makes && !subject && ahead.noun_length() > weather.length;
-    if (adds_thing || !(behind.at_end_of_clause() || behind.peek(Class::conjunction) ||
-                        behind.peek(Class::relation) || behind.peek(Class::courtesy)))
-        return false;
-    if (subject && c_.is(Class::word_it) == false && makes == false && d_.is_animate(d_.focus()) &&
-        ahead.is(Class::word_dark))
-        return false;
-    c_.at = behind.at;
-    d_.environment(std::string(weather.value));
-    skip_moon();
-    return true;
-}
-
-/// "minecraft style", "in the style of van gogh", "as an oil painting", "an oil painting of a bear".
-bool Reader::style_clause() {
-    Cursor ahead = c_;
-    const std::size_t start = c_.at;
-    if (ahead.is(Class::word_in) || ahead.is(Class::word_as) || ahead.is(Class::word_with)) ++ahead.at;
-    ahead.take(Class::definite);
-    ahead.take(Class::article);
-    if (ahead.take(Class::style_word) && ahead.take(Class::of)) {
-        c_.at = ahead.at;
-        if (style_text({d_.scene_target()})) return true;
-        Phrase model;
-        if (c_.take_phrase(model)) {
-            d_.style(d_.scene_target(), model.typed);
-            return true;
-        }
-        c_.at = start;
-        return false;
-    }
-    ahead = c_;
-    if (ahead.is(Class::word_in) || ahead.is(Class::word_as)) ++ahead.at;
-    c_.at = ahead.at;
-    if (style_text({d_.scene_target()})) {
-        Cursor whom = c_, last = c_;
-        --last.at;
-        Phrase model;
-        if (last.is(Class::word_version) && whom.take(Class::of) && whom.take_phrase(model) &&
-            model.definite && d_.resolve(model).thing &&
-            whom.at_end_of_clause()) {  // "a low-poly version of the fox"
-            d_.drop_last();
-            c_.at = ahead.at;
-            const bool read = style_text({d_.resolve(model)});
-            c_.at = whom.at;
-            return read;
-        }
-        if (c_.take(Class::of)) {
-            const bool more = clause();
-            return more || c_.at_end_of_clause();
-        }
-        if (c_.at_end_of_clause() || c_.peek(Class::conjunction)) return true;
-        d_.drop_last();
-    }
-    // "lego style"
-    c_.at = start;
-    Phrase named;
-    if (c_.take_phrase(named) && !named.noun.empty() && c_.at_end_of_clause()) {
-        const auto blank = named.typed.rfind(' ');
-        const auto last = blank == std::string::npos ? named.typed : named.typed.substr(blank + 1);
-        if (has(Class::style_word, last) && last != "look" && last != "version") {
-            std::string text;
-            for (const auto& attribute : named.attributes) text += attribute.typed + " ";
-            if (blank != std::string::npos) text += named.typed.substr(0, blank);
-            while (!text.empty() && text.back() == ' ') text.pop_back();
-            if (!text.empty()) {
-                d_.style(d_.scene_target(), text);
-                return true;
-            }
-        }
-    }
-    c_.at = start;
-    return false;
 }
 
 bool Reader::there_is_clause() {
@@ -234,7 +111,9 @@ bool Reader::no_thing_clause() {
     Phrase phrase;
     if (!ahead.take_phrase(phrase) || !phrase.none) return false;
     if (phrase.noun.empty()) {  // "a silver crown, not a golden one"
-        if (d_.size() == 0 || phrase.attributes.empty() || !ahead.at_end_of_clause()) return false;
+        if (phrase.attributes.empty() || !ahead.at_end_of_clause()) return false;
+        if (d_.size() == 0)  // "no green, make it purple"
+            for (const auto& attribute : phrase.attributes) d_.deny(d_.focus(), attribute);
         c_.at = ahead.at;
         return true;
     }
@@ -249,18 +128,25 @@ bool Reader::no_thing_clause() {
     }
     Phrase other;
     Cursor but = c_;
-    if (but.take(Class::contrast) && but.take_phrase(other) && other.indefinite &&
-        d_.resolve(phrase).found()) {
+    but.take_mark(',');
+    if ((but.take(Class::contrast) || but.take(Class::only)) && but.take_phrase(other) && other.indefinite &&
+        other.naming == Naming::Thing && d_.resolve(phrase).found()) {
         c_.at = but.at;  // "not a bear but a lion"
         return become({d_.resolve(phrase)}, other);
     }
+    if (const auto found = d_.resolve(phrase); d_.last_is(found) && found.kind == Target::Kind::Made) {
+        remove_all({found});  // "add a hat. no, no hat"
+        return true;
+    }
     if (const auto found = d_.resolve(phrase); found.found() && d_.replaces(found)) return true;
-    return lack(d_.focus(), phrase);
+    if (!lack(d_.focus(), phrase)) return false;
+    return !c_.peek(Class::none) || c_.done() || no_thing_clause();
 }
 
 /// "do not touch the bear": nothing is asked.
 bool Reader::do_not_clause(Cursor ahead) {
-    if (starts_verb(ahead.at - c_.at) || ahead.word().text == "touch" || ahead.word().text == "forget") {
+    if (starts_verb(ahead.at - c_.at) || ahead.is(Class::word_use) || ahead.word().text == "touch" ||
+        ahead.word().text == "forget") {
         if (ahead.word().text == "forget") {
             c_.at = ahead.at + 1;
             c_.take(Class::to);
@@ -274,43 +160,77 @@ bool Reader::do_not_clause(Cursor ahead) {
     return false;
 }
 
+/// "I do not want to see a bear there", "I do not like red".
+bool Reader::unwanted_clause(Cursor ahead) {
+    Phrase phrase;
+    Attribute colour;
+    Cursor plain = ahead;
+    if (plain.take_attribute(colour, false) && plain.at_end_of_clause() && !plain.done()) {
+        c_.at = plain.at;  // "I do not like red, make it blue"
+        d_.deny(d_.focus(), colour);
+        return true;
+    }
+    if (!ahead.take_phrase(phrase) || phrase.naming != Naming::Thing || d_.things_named(phrase).empty())
+        return false;
+    c_.at = ahead.at;
+    while (c_.take(Class::as_well) || c_.is(Class::word_there)) {
+        if (c_.is(Class::word_there)) ++c_.at;
+    }
+    const auto unwanted = d_.resolve(phrase);
+    if (unwanted.found()) d_.mention(unwanted);
+    if (Cursor worn = c_; unwanted.found() && worn.is(Class::word_to) &&
+                          (worn.peek(Class::wearing, 1) || worn.peek(Class::having, 1))) {
+        c_.at += 2;  // "I do not want the bear to wear a hat"
+        return lack_list(unwanted);
+    }
+    return c_.at_end_of_clause() && lack(d_.focus(), phrase);
+}
+
+/// "neither a bear nor a cat", "neither the car nor the house should change".
+bool Reader::neither_clause() {
+    Cursor ahead = c_;
+    ++ahead.at;
+    Phrase phrase;
+    Cursor said = ahead;  // "neither the car nor the house should change"
+    while (said.take_phrase(phrase) && said.is(Class::word_nor)) ++said.at;
+    if (said.take(Class::modal)) {
+        said.take(Class::copula);
+        if (!said.take(Class::verb_become) && !said.take(Class::verb_turn)) return false;
+        c_.at = said.at;
+        d_.nothing_asked();
+        return true;
+    }
+    Attribute attribute;
+    Cursor denied = ahead;
+    if (denied.take_attribute(attribute, false) && (denied.done() || denied.is(Class::word_nor)))
+        return fail(reason::Incomplete);  // "neither red nor blue"
+    c_.at = ahead.at;
+    do {
+        if (!c_.take_phrase(phrase) || !lack(d_.focus(), phrase)) return false;
+    } while (c_.is(Class::word_nor) && ++c_.at);
+    return true;
+}
+
 /// "no hat", "neither a bear nor a cat", "without a hat", "not red but green".
 bool Reader::negative_clause() {
     Cursor ahead = c_;
     if (ahead.take(Class::do_not)) {  // "do not touch the bear": nothing is asked
         return do_not_clause(ahead);
     }
-    if (ahead.take(Class::unwanted)) {  // "I do not want to see a bear there"
-        Phrase phrase;
-        if (!ahead.take_phrase(phrase) || phrase.naming != Naming::Thing || d_.things_named(phrase).empty())
-            return false;
-        c_.at = ahead.at;
-        while (c_.take(Class::as_well) || c_.is(Class::word_there)) {
-            if (c_.is(Class::word_there)) ++c_.at;
-        }
-        return c_.at_end_of_clause() && lack(d_.focus(), phrase);
-    }
+    if (ahead.take(Class::unwanted)) return unwanted_clause(ahead);
     if (c_.peek(Class::without)) {
         c_.take(Class::without);
         return lack_list(d_.last() ? *d_.last() : d_.focus());
     }
-    if (ahead.is(Class::word_neither)) {
-        ++ahead.at;
-        Phrase phrase;
-        Cursor said = ahead;  // "neither the car nor the house should change"
-        while (said.take_phrase(phrase) && said.is(Class::word_nor)) ++said.at;
-        if (said.take(Class::modal)) {
-            said.take(Class::copula);
-            if (!said.take(Class::verb_become) && !said.take(Class::verb_turn)) return false;
-            c_.at = said.at;
-            d_.nothing_asked();
+    if (ahead.is(Class::word_neither)) return neither_clause();
+    if (Cursor colour = ahead; d_.size() == 0 && colour.take(Class::none)) {
+        Attribute denied;  // "no green"
+        if (colour.take_attribute(denied, false) && denied.quality == Quality::Colour &&
+            (colour.at_end_of_clause() || colour.peek(Class::courtesy)) && d_.focus().found()) {
+            c_.at = colour.at;
+            d_.deny(d_.focus(), denied);
             return true;
         }
-        c_.at = ahead.at;
-        do {
-            if (!c_.take_phrase(phrase) || !lack(d_.focus(), phrase)) return false;
-        } while (c_.is(Class::word_nor) && ++c_.at);
-        return true;
     }
     if (ahead.peek(Class::none) && !ahead.peek(Class::correction)) return no_thing_clause();
     if (ahead.peek(Class::negation)) {
@@ -321,7 +241,9 @@ bool Reader::negative_clause() {
         Attribute attribute;
         Cursor probe = behind;
         if (!probe.take_attribute(attribute, false) && behind.take_phrase(other) &&
-            other.naming == Naming::Thing && behind.at_end_of_clause() && (d_.size() > 0 || !behind.done())) {
+            other.naming == Naming::Thing &&
+            (behind.at_end_of_clause() || (other.definite && behind.peek(Class::contrast))) &&
+            (d_.size() > 0 || !behind.done())) {
             c_.at = behind.at;  // "not the hat, the bear should be yellow"
             leave_as_it_is(other);
             return true;
@@ -337,6 +259,15 @@ bool Reader::negative_clause() {
 
 /// "instead of a bear I want a cat".
 bool Reader::instead_clause() {
+    Target there;
+    if (const std::size_t start = c_.at; stands_where(there)) {  // "where the bear is, put a fountain"
+        skip_lead_in();
+        while (c_.take(Class::verb_add) || c_.take(Class::there_is) || c_.take(Class::verb_make)) {}
+        Phrase phrase;
+        if (c_.at > start && c_.take_phrase(phrase) && phrase.naming == Naming::Thing)
+            return become({there}, phrase);
+        return fail(reason::NotASentence);
+    }
     Cursor ahead = c_;
     if (!ahead.peek(Class::rather_than) || ahead.is(Class::word_not)) return false;
     ahead.take(Class::rather_than);
@@ -351,7 +282,9 @@ bool Reader::instead_clause() {
         return expect(old).found();
     }
     if (!c_.take_phrase(phrase)) return fail(reason::Incomplete);
-    return become({target}, phrase);
+    if (!become({target}, phrase)) return false;
+    if (c_.is(Class::word_there)) ++c_.at;
+    return true;
 }
 
 /// "wears a hat", "has wings"; nothing where no such verb stands.
@@ -385,13 +318,28 @@ std::optional<bool> Reader::has_something(const Targets& subjects) {
 bool Reader::is_somehow(const Targets& subjects) {
     if (c_.peek(Class::look_word).length > c_.peek(Class::copula).length) c_.take(Class::look_word);
     c_.take(Class::copula);
-    c_.take(Class::as_well);
+    if (!c_.is(Class::word_too)) c_.take(Class::as_well);
+    if (Cursor lacking = c_;
+        lacking.take(Class::negation) && (lacking.take(Class::wearing) || lacking.take(Class::holding))) {
+        c_.at = lacking.at;
+        if (!lack_list(subjects.front())) return false;
+        c_.take(Class::as_well);
+        return true;
+    }
     if (c_.peek(Class::holding) || c_.peek(Class::wearing))
         if (const auto read = has_something(subjects)) return *read;  // "is holding balloons"
     if (const auto stands = c_.peek(Class::emerging);                 // "is parked on the beach"
         stands && c_.peek(Class::relation, stands.length) && !c_.peek(Class::pose))
         c_.at += stands.length;
-    if (!c_.peek(Class::like) && c_.peek(Class::relation) && !c_.peek(Class::flipping))
+    if (Cursor empty = c_; empty.take(Class::empty) && empty.at_end_of_clause() && subjects.size() == 1)
+        if (const auto on = things_on(subjects.front()); !on.empty()) {  // "the table should be empty"
+            c_.at = empty.at;
+            remove_all(on);
+            return true;
+        }
+    if (c_.peek(Class::fire_words)) return post(subjects.front());
+    if (!c_.peek(Class::like) && c_.peek(Class::relation) && !c_.peek(Class::flipping) &&
+        !(c_.peek(Class::into) && c_.is(Class::word_into)))
         return related(subjects.front());
     // "is replaced by a cat", "is painted blue", "is removed"
     if (c_.peek(Class::verb_replace) && c_.word().text.ends_with("ed")) {
@@ -409,6 +357,25 @@ bool Reader::is_somehow(const Targets& subjects) {
         return true;
     }
     return complement(subjects);
+}
+
+/// "(should) not be here", "not be red but blue".
+bool Reader::should_not(const Targets& subjects) {
+    if (c_.peek(Class::copula)) c_.take(Class::copula);
+    if (c_.is(Class::word_here) || c_.is(Class::word_there)) {  // "should not be here"
+        ++c_.at;
+        for (const auto& subject : subjects) d_.remove(subject);
+        return true;
+    }
+    if (c_.take(Class::having) || c_.take(Class::wearing) || c_.take(Class::holding))
+        return lack_list(subjects.front());
+    const auto attributes = c_.take_attributes();
+    if (attributes.empty()) return false;
+    for (const auto& subject : subjects)
+        for (const auto& attribute : attributes) d_.deny(subject, attribute);
+    c_.take_mark(',');
+    if (c_.take(Class::contrast)) return complement(subjects);
+    return fail(reason::Incomplete);
 }
 
 bool Reader::predicate(const Targets& subjects) {
@@ -432,28 +399,20 @@ bool Reader::predicate(const Targets& subjects) {
             return true;
         }
     }
+    if (c_.is(Class::word_does) && c_.peek(Class::negation, 1) && c_.peek(Class::verb_need, 2)) {
+        c_.at += 3;  // "does not need a hat"
+        return lack_list(subjects.front()) || back();
+    }
     if (c_.peek(Class::without)) {
         c_.take(Class::without);
         return lack_list(subjects.front()) || back();
     }
-    if (modal && c_.take(Class::negation)) {
-        if (c_.peek(Class::copula)) c_.take(Class::copula);
-        if (c_.is(Class::word_here) || c_.is(Class::word_there)) {  // "should not be here"
-            ++c_.at;
-            for (const auto& subject : subjects) d_.remove(subject);
-            return true;
-        }
-        if (c_.take(Class::having) || c_.take(Class::wearing) || c_.take(Class::holding))
-            return lack_list(subjects.front()) || back();
-        const auto attributes = c_.take_attributes();
-        if (attributes.empty()) return back();
-        for (const auto& subject : subjects)
-            for (const auto& attribute : attributes) d_.deny(subject, attribute);
-        c_.take_mark(',');
-        if (c_.take(Class::contrast)) return complement(subjects);
-        return fail(reason::Incomplete);
-    }
+    if (modal && c_.take(Class::negation)) return should_not(subjects) || back();
+    if (const auto off = c_.peek(Class::verb_remove);
+        off.length > 1 && c_.peek(Class::possessive, off.length))
+        return remove_clause() || back();  // "takes off its hat"
     if (const auto read = has_something(subjects)) return *read || back();
+    if (stands_on_part(subjects.front())) return true;
     if (c_.peek(Class::emerging) && c_.peek(Class::relation, c_.peek(Class::emerging).length)) {
         c_.take(Class::emerging);
         if (!related(subjects.front())) return back();
@@ -482,6 +441,11 @@ std::optional<bool> Reader::statement(const std::vector<Phrase>& phrases, bool s
         Targets made;
         return place_new(phrase, made);
     }
+    const auto named = d_.things_named(phrase);
+    const bool exact = std::any_of(named.begin(), named.end(),
+                                   [&](std::size_t i) { return d_.scene().things[i].noun == phrase.noun; });
+    if (phrase.indefinite && !exact && d_.kin_of(phrase) && phrases.size() == 1)
+        return std::nullopt;  // "a teddy bear sits on the grass"
     for (const auto& each : phrases) {
         const auto found = d_.resolve(each);
         all = all && found.found();
@@ -494,6 +458,7 @@ std::optional<bool> Reader::statement(const std::vector<Phrase>& phrases, bool s
         const std::size_t here = c_.at;
         if (said && predicate(subjects)) {
             frame_ = Frame::Make;
+            if (phrase.indefinite && !described_) described_ = subjects.front();
             return true;
         }
         c_.at = here;
@@ -512,6 +477,39 @@ std::optional<bool> Reader::statement(const std::vector<Phrase>& phrases, bool s
     return std::nullopt;
 }
 
+/// "bear to the right", "bear to robot": orders without a verb.
+bool Reader::becomes_bare(const Phrase& phrase) {
+    const auto found = d_.resolve(phrase);
+    if (!found.found()) return false;
+    Cursor way = c_;
+    const auto side = way.take(Class::direction);
+    if (!phrase.has_determiner() && side.length > 1 && way.at_end_of_clause() && found.thing) {
+        move_way(found, side, {});
+        return true;
+    }
+    Cursor to = c_;
+    Phrase other;
+    if (c_.is(Class::word_as) || !to.take(Class::into) || !to.take_phrase(other) ||
+        other.naming != Naming::Thing || d_.resolve(other).found() ||
+        !(to.at_end_of_clause() || to.peek(Class::conjunction)))
+        return false;
+    c_.at = to.at;
+    frame_ = Frame::Turn;
+    return become({found}, other);
+}
+
+/// Tells whether a predicate of the phrase follows: "is", "should", "wears", "takes off its".
+bool Reader::says_of(const Phrase& phrase) const {
+    const auto off = c_.peek(Class::verb_remove);
+    return c_.peek(Class::copula) || (off.length > 1 && c_.peek(Class::possessive, off.length)) ||
+           (c_.is(Class::word_does) && c_.peek(Class::negation, 1)) || c_.peek(Class::modal) ||
+           c_.peek(Class::gone) || c_.is_mark(":>") || c_.peek(Class::verb_become) ||
+           c_.peek(Class::look_word) ||
+           (phrase.has_determiner() &&
+            (c_.peek(Class::wearing) || c_.peek(Class::holding) ||
+             (c_.is(Class::word_has) || c_.is(Class::word_have)) || c_.peek(Class::verb_pose)));
+}
+
 bool Reader::noun_clause() {
     const std::size_t start = c_.at;
     Phrase phrase;
@@ -520,13 +518,15 @@ bool Reader::noun_clause() {
     if (holds && d_.size() > 0) return fail(reason::NotASentence);  // who holds it was not said
     if (!c_.take_phrase(phrase)) return false;
     if (phrase.naming == Naming::Something) return false;
+    if (phrase.definite) c_.at = behind_modifiers(c_).at;
+    if (phrase.owner && has(Class::colour_word, phrase.noun) && c_.peek(Class::modal))
+        phrase = Phrase(*phrase.owner);  // "the color of the bear should be red"
     // "chair blue", "the bears ears white", "bear: green"
     std::vector<Phrase> phrases{phrase};
     Cursor list = c_;
-    while (true) {
-        Phrase next;
-        Cursor ahead = list;
-        if (!ahead.take(Class::conjunction) || !ahead.take_phrase(next) || next.noun.empty()) break;
+    Phrase next;
+    for (Cursor ahead = list;
+         ahead.take(Class::conjunction) && ahead.take_phrase(next) && !next.noun.empty();) {
         phrases.push_back(next);
         list.at = ahead.at;
     }
@@ -539,15 +539,13 @@ bool Reader::noun_clause() {
          c_.peek(Class::holding, 1) || c_.peek(Class::having, 1) || c_.peek(Class::verb_become, 1) ||
          c_.peek(Class::look_word, 1)))
         ++c_.at;  // "my daughter wants the bear to wear a hat"
-    const bool said = c_.peek(Class::copula) || c_.peek(Class::modal) || c_.peek(Class::gone) ||
-                      c_.is_mark(":>") || c_.peek(Class::verb_become) || c_.peek(Class::look_word) ||
-                      (phrase.has_determiner() &&
-                       (c_.peek(Class::wearing) || c_.peek(Class::holding) ||
-                        (c_.is(Class::word_has) || c_.is(Class::word_have)) || c_.peek(Class::verb_pose)));
+    const bool said = says_of(phrase);
     Attribute behind;
     Cursor adjective = c_;
     const bool adjective_behind =
         !said && adjective.take_attribute(behind, false) && adjective.at_end_of_clause();
+    if (!said && d_.size() == 0 && becomes_bare(phrase)) return true;
+    if (!reason_.empty()) return false;
     if (said || adjective_behind) {
         if (const auto read = statement(phrases, said, adjective_behind)) return *read;
     }
@@ -558,6 +556,9 @@ bool Reader::noun_clause() {
         else if (++c_.at, !complement({whole})) return false;  // "everything but the dog in gray"
         return c_.at_end_of_clause() || c_.peek(Class::except);
     }
+    if (requested_ && phrase.naming == Naming::It && c_.is(Class::word_in) && d_.focus().found() &&
+        post(d_.focus()))
+        return true;  // "could I see it in purple"
     if (phrase.naming != Naming::Thing) {
         c_.at = start;
         return false;

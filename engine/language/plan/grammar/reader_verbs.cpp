@@ -14,7 +14,8 @@ constexpr Class Verbs[] = {
     Class::verb_size,     Class::verb_scale,   Class::verb_double,    Class::verb_rotate,
     Class::verb_flip,     Class::verb_face,    Class::verb_duplicate, Class::verb_style,
     Class::verb_material, Class::verb_carve,   Class::verb_pattern,   Class::verb_alter,
-    Class::verb_pose,     Class::verb_raise,   Class::verb_keep,      Class::fire_verb};
+    Class::verb_pose,     Class::verb_raise,   Class::verb_keep,      Class::fire_verb,
+    Class::verb_wear};
 
 }  // namespace
 
@@ -40,7 +41,7 @@ bool Reader::starts_verb(std::size_t ahead) const {
     for (const auto kind : Verbs) length = std::max(length, here.peek(kind).length);
     if (length == 0) return false;
     const auto& word = here.word();
-    const bool form = word.text == word.base || word.text.ends_with("ing");
+    const bool form = word.text == word.base || word.text.ends_with("ing") || has(Class::verb_add, word.text);
     if (!form) return false;
     Cursor next = here;  // "dirty truck" describes
     ++next.at;
@@ -106,8 +107,35 @@ bool Reader::all_but(const std::vector<Phrase>& excepted, Targets& targets) {
     return !targets.empty() || fail(reason::Incomplete);
 }
 
-bool Reader::object(Targets& targets, Phrase& phrase, bool split) {
-    Cursor whatever = c_;  // "what stands on the table"
+/// "both of them": the two things that stand on the ground; none where there are more.
+Reader::Targets Reader::both() const {
+    Targets all;
+    const auto& things = d_.scene().things;
+    for (std::size_t i = 0; i < things.size(); ++i)
+        if (!things[i].is_ground && !things[i].is_worn) all.push_back(d_.target_of_thing(i));
+    return all.size() == 2 ? all : Targets{};
+}
+
+/// "both animals", "the furniture": each thing of the scene that is one; none where the word names a thing.
+Reader::Targets Reader::collective(const Phrase& phrase) const {
+    Targets all;
+    const bool kind = has(Class::animal_name, phrase.noun) || has(Class::furniture_name, phrase.noun) ||
+                      has(Class::person_name, phrase.noun) || has(Class::vehicle_name, phrase.noun) ||
+                      has(Class::plant_name, phrase.noun) || has(Class::clothes_name, phrase.noun);
+    const bool several = phrase.plural || phrase.count == "all" || phrase.noun == "furniture";
+    if (!kind || !several || phrase.owner || phrase.naming != Naming::Thing) return all;
+    const auto found = d_.things_named(phrase);
+    bool differ = false;
+    for (const auto index : found)
+        differ = differ || d_.scene().things[index].noun != d_.scene().things[found.front()].noun;
+    if (differ)
+        for (const auto index : found) all.push_back(d_.target_of_thing(index));
+    return all;
+}
+
+/// "what stands on the table", "both of them"; nothing where the object has a noun.
+std::optional<bool> Reader::untold_object(Targets& targets, Phrase& phrase) {
+    Cursor whatever = c_;
     Phrase carrier;
     if (whatever.take(Class::what_stands) && whatever.take(Class::relation) &&
         whatever.take_phrase(carrier)) {
@@ -117,10 +145,36 @@ bool Reader::object(Targets& targets, Phrase& phrase, bool split) {
         targets.push_back(on.front());
         return true;
     }
+    Cursor two = c_;
+    const bool alone = two.take(Class::word_both) && (two.done() || two.noun_length() == 0) &&
+                       !two.peek(Class::definite) && !two.peek(Class::of);
+    const auto all = alone ? both() : Targets{};
+    if (all.empty()) return std::nullopt;
+    c_.at = two.at;
+    phrase = {};
+    phrase.naming = Naming::They;
+    targets.insert(targets.end(), all.begin(), all.end());
+    return true;
+}
+
+bool Reader::object(Targets& targets, Phrase& phrase, bool split) {
+    if (const auto read = untold_object(targets, phrase)) return *read;
     if (!c_.take_phrase(phrase, split)) return false;
     if (phrase.excepted.size() > 1) return all_but(phrase.excepted, targets);
     if (phrase.owner && has(Class::colour_word, phrase.noun))
         phrase = Phrase(*phrase.owner);  // "the colors of the bear"
+    if (Cursor about = c_; phrase.naming == Naming::Everything && about.is(Class::word_about)) {
+        Phrase whole;  // "everything about the bear"
+        ++about.at;
+        if (about.take_phrase(whole) && d_.resolve(whole).found()) {
+            c_.at = about.at;
+            phrase = whole;
+        }
+    }
+    if (const auto several = collective(phrase); !several.empty()) {
+        targets.insert(targets.end(), several.begin(), several.end());
+        return true;
+    }
     Target found;
     if (phrase.naming == Naming::It) found = d_.pronoun(Naming::It);
     else found = d_.resolve(phrase);
@@ -230,9 +284,9 @@ bool Reader::make_clause() {
         return attribute_clause();
     }
     if (first.naming == Naming::Something) return false;
-    Cursor comparison = c_;
     if (!first.attributes.empty() && first.noun.empty() && first.indefinite) return attribute_clause();
-    if (has(Class::time_word, first.noun) && d_.things_named(first).empty()) {  // "make the light warmer"
+    const bool around = has(Class::time_word, first.noun) || has(Class::backdrop, first.noun);
+    if (around && d_.things_named(first).empty()) {  // "make the light warmer"
         c_.at = ahead.at;
         const auto how = c_.take_attributes();
         for (const auto& each : how) d_.environment(each.typed + " " + first.noun);
@@ -271,10 +325,12 @@ bool Reader::paint_clause() {
     if (!objects(targets)) return false;
     frame_ = Frame::Paint;
     if (c_.at_end_of_clause()) return fail(reason::Incomplete);
+    if (carve && c_.peek(Class::from)) return material_of(targets);  // "carve it from ice"
     Cursor how = c_;
     if (how.is(Class::word_in) || how.is(Class::word_with) || how.is(Class::word_to)) {
         ++how.at;
         how.take(Class::article);
+        if (how.peek(Class::definite) && how.peek(Class::colour_word, 1)) how.at += 2;  // "in the color blue"
         const auto attributes = how.take_attributes();
         if (!attributes.empty() && (how.at_end_of_clause() || how.peek(Class::colour_word) ||
                                     how.peek(Class::conjunction) || how.ends_phrase(0, true))) {
@@ -288,7 +344,9 @@ bool Reader::paint_clause() {
     if (!carve && gold.take_attribute(metal, false) && metal.quality == Quality::Material) {
         c_.at = gold.at;
         const std::size_t steps = d_.size();
-        for (const auto& target : targets) d_.step(Operation::Recolour, target, metal.value);
+        for (const auto& target : targets)
+            if (target.kind == Target::Kind::Made) d_.apply(target, metal);
+            else d_.step(Operation::Recolour, target, metal.value);
         skip_rest(steps);
         return true;
     }
@@ -307,10 +365,9 @@ bool Reader::turn_clause() {
     Phrase colour;
     Cursor whole = c_;
     if (whole.take_phrase(colour) &&
-        (has(Class::colour_word, colour.noun) || colour.noun == "material" || colour.noun == "pose" ||
-         colour.noun == "shape" || colour.noun == "size") &&
-        colour.owner) {
-        const auto target = expect(*colour.owner);
+        (has(Class::colour_word, colour.noun) || has(Class::quality, colour.noun)) &&
+        (colour.owner || colour.possessive)) {
+        const auto target = colour.owner ? expect(*colour.owner) : d_.pronoun(Naming::It);
         if (!target.found()) return false;
         c_.at = whole.at;
         d_.mention(target);
@@ -398,20 +455,41 @@ bool Reader::replace_clause() {
     if (!c_.take(Class::verb_replace)) return false;
     if (c_.done()) return fail(reason::Incomplete);
     Phrase first;
-    Cursor ahead = c_;
+    if (Cursor colour = c_; use) {  // "use blue"
+        const auto how = colour.take_attributes();
+        if (!how.empty() && how.front().quality == Quality::Colour && colour.at_end_of_clause() &&
+            d_.focus().found()) {
+            c_.at = colour.at;
+            return apply_all({d_.focus()}, how);
+        }
+    }
     if (use || substitute) {  // "use a cat instead of the bear", "substitute a cat for the bear"
         if (const auto read = use_clause(substitute)) return *read;
         if (use) return false;
     }
     if (swaps_colours()) return true;
     Targets targets;
-    if (!objects(targets)) return false;
+    Cursor whole = c_;
+    Phrase owned;
+    const bool of_colour =
+        whole.take_phrase(owned) && has(Class::colour_word, owned.noun) && d_.things_named(owned).empty();
+    if (of_colour && !owned.owner && d_.focus().found()) {  // "the color"
+        c_.at = whole.at;
+        targets.push_back(d_.focus());
+    } else if (c_.is(Class::word_with) && d_.focus().found()) {  // "replace with a horse"
+        targets.push_back(d_.focus());
+    } else if (!objects(targets)) return false;
     frame_ = Frame::Replace;
     const bool joint = c_.is(Class::word_with) || c_.is(Class::word_by) || c_.is(Class::word_for) ||
                        c_.is(Class::word_to) || c_.is(Class::word_against);
     if (joint) ++c_.at;
     else if (!c_.take(Class::into)) return fail(reason::Incomplete);
     if (c_.at_end_of_clause()) return fail(reason::Incomplete);
+    Cursor paint = c_;  // "replace its color with blue"
+    if (const auto how = paint.take_attributes(); of_colour && !how.empty() && paint.at_end_of_clause()) {
+        c_.at = paint.at;
+        return apply_all(targets, how);
+    }
     if (c_.peek(Class::nobody)) {
         ++c_.at;
         for (const auto& target : targets) d_.remove(target);
@@ -448,6 +526,15 @@ bool Reader::swap_clause() {
         d_.move(targets[0], "swap with", targets[1]);
         return true;
     }
+    if (targets.size() == 1 && c_.at_end_of_clause() && targets[0].reference.links[0].count == "all") {
+        Targets both;  // "swap the cars"
+        for (std::size_t i = 0; i < d_.scene().things.size(); ++i)
+            if (d_.scene().things[i].noun == targets[0].reference.root())
+                both.push_back(d_.target_of_thing(i));
+        if (both.size() != 2 || both[0].reference == both[1].reference) return fail(reason::Ambiguous);
+        d_.move(both[0], "swap with", both[1]);
+        return true;
+    }
     if (targets.size() == 1 && (c_.is(Class::word_with) || c_.is(Class::word_and))) {
         Cursor ahead = c_;
         ++ahead.at;
@@ -463,125 +550,6 @@ bool Reader::swap_clause() {
     }
     c_.at = start;
     return false;
-}
-
-bool Reader::give_clause() {
-    if (!c_.peek(Class::verb_give)) return false;
-    Cursor verb = c_;
-    const bool gives = c_.is(Class::word_give) || !c_.peek(Class::verb_make);
-    c_.take(Class::verb_give);
-    if (!gives) return false;
-    Targets targets;
-    Phrase first;
-    Cursor ahead = c_;
-    if (!ahead.take_phrase(first, true)) return fail(reason::Incomplete);
-    const bool whom = first.possessive && ahead.at_end_of_clause() && c_.peek(Class::pronoun_person);
-    if (whom) {  // "give her long hair"
-        ahead = c_;
-        ahead.take(Class::pronoun_person);
-        first = {};
-        first.naming = Naming::Person;
-    }
-    Target receiver = first.naming == Naming::It ? d_.pronoun(Naming::It, true) : d_.resolve(first);
-    const bool indirect = !receiver.found() || first.indefinite;
-    if (indirect && first.naming == Naming::Thing && ahead.is(Class::word_to)) {  // "give a hat to the bear"
-        Phrase whom;
-        ++ahead.at;
-        if (!ahead.take_phrase(whom)) return fail(reason::Incomplete);
-        receiver = whom.naming == Naming::It ? d_.pronoun(Naming::It, true) : expect(whom);
-        if (!receiver.found()) return false;
-        c_.at = ahead.at;
-        return own(receiver, first, "with");
-    }
-    if (!receiver.found()) return expect(first).found();
-    c_.at = ahead.at;
-    targets.push_back(receiver);
-    while (c_.peek(Class::conjunction)) {  // "give the bear and the cat hats"
-        Phrase more;
-        Cursor list = c_;
-        list.take(Class::conjunction);
-        if (!list.take_phrase(more, true) || !d_.resolve(more).found()) break;
-        c_.at = list.at;
-        targets.push_back(d_.resolve(more));
-    }
-    if (c_.is(Class::word_with) || c_.is(Class::word_a) == false) c_.take(Class::having);
-    if (c_.at_end_of_clause()) return fail(reason::Incomplete);
-    frame_ = Frame::Give;
-    const std::size_t here = c_.at;
-    const auto size = d_.size();
-    for (const auto& target : targets) {
-        c_.at = here;
-        if (!has_list(target, "with")) {
-            (void)size;
-            return false;
-        }
-        posts(target);
-    }
-    if (d_.size() == size) d_.mention(receiver);
-    return true;
-}
-
-bool Reader::dress_clause() {
-    if (!c_.take(Class::verb_dress)) return false;
-    Targets targets;
-    if (!objects(targets)) return false;
-    if (c_.is(Class::word_up)) ++c_.at;
-    if (c_.is(Class::word_as) || c_.is(Class::word_like)) {
-        ++c_.at;
-        Phrase role;
-        if (!c_.take_phrase(role) || role.noun.empty()) return fail(reason::Incomplete);
-        for (const auto& target : targets) d_.step(Operation::Alter, target, role.typed);
-        return true;
-    }
-    if (!c_.is(Class::word_in) && !c_.is(Class::word_with)) return fail(reason::Incomplete);
-    ++c_.at;
-    Attribute colour;
-    Cursor ahead = c_;
-    if (ahead.take_attribute(colour, false) && ahead.at_end_of_clause()) return false;
-    return has_list(targets.front(), "worn by");
-}
-
-bool Reader::cover_clause() {
-    const bool around = c_.peek(Class::verb_around).length > 0, fills = c_.peek(Class::verb_fill).length > 0;
-    if (!c_.take(Class::verb_cover)) return false;
-    Targets targets;
-    if (!objects(targets)) return fail(reason_.empty() ? reason::Incomplete : reason_), false;
-    const auto relation = c_.peek(Class::relation);
-    if (!c_.is(Class::word_in) && !c_.is(Class::word_with) && !c_.is(Class::word_by)) return false;
-    (void)relation;
-    ++c_.at;
-    Cursor ahead = c_;
-    std::vector<Attribute> found;
-    Attribute next;
-    ahead.take(Class::article);
-    const bool things =
-        ahead.word().text != ahead.word().singular && ahead.noun_length() > 0;  // "with flowers"
-    while (!things && !fills && ahead.take_attribute(next, true)) found.push_back(next);
-    const auto covering = ahead.peek(Class::covering);
-    if (covering && !around && !fills) {
-        ahead.at += covering.length;
-        c_.at = ahead.at;
-        return apply_all(targets,
-                         {{Quality::Material, std::string(covering.value), std::string(covering.value), ""}});
-    }
-    if (!found.empty() && ahead.at_end_of_clause()) {
-        c_.at = ahead.at;
-        return apply_all(targets, found);
-    }
-    Phrase phrase;
-    if (!c_.take_phrase(phrase) || phrase.noun.empty()) return fail(reason::Incomplete);
-    for (const auto& target : targets) {
-        if (own_pattern(target, phrase)) continue;
-        const auto made = d_.add(phrase,
-                                 around            ? "around"
-                                 : fills           ? "in"
-                                 : is_worn(phrase) ? "worn by"
-                                                   : "on",
-                                 {target});
-        d_.mention(made);
-        nested(made, target);
-    }
-    return true;
 }
 
 }  // namespace gse::language::plan

@@ -159,6 +159,18 @@ bool Draft::can_wear(const Target& target) const {
     return target.found() && is_being(target.reference.root());
 }
 
+/// Tells whether what lives has such a part: no wall, no wheels.
+bool Draft::may_have(const Target& owner, const Phrase& phrase) const {
+    const auto& root = owner.reference.root();
+    const bool lives = is_kind(root, Animal | Person) || has(Class::animal, root) || has(Class::person, root);
+    const auto head = word_of(head_of(phrase.noun)).singular;
+    Phrase whole;  // "the cage door"
+    whole.noun = whole.typed = phrase.noun.substr(0, std::min(phrase.noun.rfind(' '), phrase.noun.size()));
+    if (whole.noun.size() < phrase.noun.size() && things_named(whole).size() == 1) return true;
+    return !lives || is_kind(root, Plant) ||
+           !(has(Class::part_made, head) || has(Class::part_made, phrase.noun));
+}
+
 Target Draft::part_target(const Target& owner, const Phrase& phrase) const {
     if (const auto blank = phrase.noun.rfind(' '); blank != std::string::npos) {  // "the cage door"
         Phrase whole, last = phrase;
@@ -175,6 +187,12 @@ Target Draft::part_target(const Target& owner, const Phrase& phrase) const {
         if (attribute.quality == Quality::Side) link.attributes.push_back(attribute.value);
     part.reference.links.insert(part.reference.links.begin(), link);
     return part;
+}
+
+bool Draft::is_plural(const Target& target) const {
+    const auto& link = target.reference.links.front();
+    return !link.count.empty() || has(Class::pair_noun, link.noun) ||
+           (target.step && !steps_[*target.step].thing.count.empty());
 }
 
 Target Draft::pronoun(Naming naming, bool bearer) const {
@@ -206,8 +224,7 @@ Target Draft::pronoun(Naming naming, bool bearer) const {
         }
         return *last_;
     }
-    if (naming == Naming::They)
-        return last_ && last_->found() && !last_->reference.links.front().count.empty() ? *last_ : ambiguous;
+    if (naming == Naming::They) return last_ && last_->found() && is_plural(*last_) ? *last_ : ambiguous;
     return focus();
 }
 
@@ -243,12 +260,55 @@ Target Draft::of_several(const Phrase& phrase, const std::vector<std::size_t>& f
                                    [&](std::size_t index) { return scene_->things[index].noun == noun; });
     if (!side.empty() && alike)
         return {Target::Kind::There, {{{noun, "", {side}}}, false}, std::nullopt, std::nullopt, ""};
-    if ((phrase.count == "all" || phrase.plural || phrase.count == std::to_string(left.size())) && alike)
+    const bool part_of = phrase.some_of && phrase.count != "all";
+    const bool of_all = (phrase.count == "all" || phrase.plural) && !part_of;
+    if ((of_all || phrase.count == std::to_string(left.size())) && alike)
         return {Target::Kind::There, {{{noun, "all", {}}}, false}, std::nullopt, std::nullopt, ""};
     if (focus_ && std::find(left.begin(), left.end(), *focus_) != left.end()) return target_of_thing(*focus_);
+    const bool fewer = phrase.some_of && !phrase.count.empty() && phrase.count != "all";
+    if (fewer && alike && std::size_t(std::atoi(phrase.count.c_str())) < left.size())
+        return {Target::Kind::There, {{{noun, phrase.count, {}}}, false}, std::nullopt, std::nullopt, ""};
     if (phrase.single && alike)
         return {Target::Kind::There, {{{noun, "1", {}}}, false}, std::nullopt, std::nullopt, ""};
     return {Target::Kind::Ambiguous, {}, std::nullopt, std::nullopt, ""};
+}
+
+/// "the other one", "the second bear"; nothing where no such word stands.
+std::optional<Target> Draft::ordinal(const Phrase& phrase) const {
+    const auto side =
+        std::find_if(phrase.attributes.begin(), phrase.attributes.end(), [](const Attribute& each) {
+            return each.quality == Quality::Side && has(Class::ordinal, each.value);
+        });
+    if (phrase.another && phrase.definite && things_named(phrase).size() == 1)
+        return Target{Target::Kind::Missing, {}, std::nullopt, std::nullopt, "second " + phrase.noun};
+    if (side != phrase.attributes.end() && !phrase.owner && !is_part(phrase)) {  // "the other one"
+        std::vector<std::size_t> others;
+        for (std::size_t i = 0; i < scene_->things.size(); ++i)
+            if (!scene_->things[i].is_ground && !scene_->things[i].is_worn && focus_ != i)
+                others.push_back(i);
+        if (side->value == "other" && focus_ && others.size() == 1 &&
+            (phrase.noun.empty() || names(scene_->things[others.front()], phrase)))
+            return target_of_thing(others.front());
+        if (things_named(phrase).size() == 1)
+            return Target{
+                Target::Kind::Missing, {}, std::nullopt, std::nullopt, side->value + " " + phrase.noun};
+    }
+    return std::nullopt;
+}
+
+/// "the bear's hat", "the roof of the house".
+Target Draft::owned(const Phrase& phrase) const {
+    const Target missing{Target::Kind::Missing, {}, std::nullopt, std::nullopt, phrase.noun};
+    const auto owner = resolve(*phrase.owner);
+    if (const auto found = things_named(phrase);
+        !found.empty() && !(is_part(phrase) && scene_->things[found.front()].is_ground))
+        return target_of_thing(found.front());
+    if (owner.found() && !may_have(owner, phrase))
+        return {Target::Kind::Missing, {}, std::nullopt, std::nullopt, phrase.typed};
+    if (!owner.found() || (!is_part(phrase) && !is_worn(phrase))) return owner.found() ? missing : owner;
+    return is_worn(phrase) && !is_part(phrase) && !(kinds_of(phrase.noun) & Body)
+               ? missing
+               : part_target(owner, phrase);
 }
 
 Target Draft::resolve(const Phrase& phrase) const {
@@ -274,20 +334,14 @@ Target Draft::resolve(const Phrase& phrase) const {
         case Naming::Something: return missing;
         default: return pronoun(phrase.naming);
     }
+    if (const auto other = ordinal(phrase)) return *other;
     if (phrase.noun.empty()) {  // "the red one"
         std::vector<std::size_t> all;
         for (std::size_t i = 0; i < scene_->things.size(); ++i)
             if (!scene_->things[i].is_ground) all.push_back(i);
         return all.empty() || phrase.attributes.empty() ? missing : of_several(phrase, all);
     }
-    if (phrase.owner) {
-        const auto owner = resolve(*phrase.owner);
-        if (const auto found = things_named(phrase); !found.empty()) return target_of_thing(found.front());
-        if (!owner.found() || (!is_part(phrase) && !is_worn(phrase))) return owner.found() ? missing : owner;
-        return is_worn(phrase) && !is_part(phrase) && !(kinds_of(phrase.noun) & Body)
-                   ? missing
-                   : part_target(owner, phrase);
-    }
+    if (phrase.owner) return owned(phrase);
     const auto found = things_named(phrase);
     if (const auto made = made_named(phrase); made && (found.empty() || phrase.definite)) return *made;
     if (found.size() == 1) {
@@ -300,14 +354,19 @@ Target Draft::resolve(const Phrase& phrase) const {
     if (found.size() > 1) return of_several(phrase, found);
     if (has(Class::thing_name, phrase.noun) && phrase.definite)  // "every item on the desk" is not one thing
         return phrase.count == "all" ? pronoun(Naming::They) : focus();
-    if (is_part(phrase)) {
+    const bool new_thing = phrase.indefinite && !phrase.possessive && has(Class::thing, phrase.noun) &&
+                           (kinds_of(phrase.noun) & Body) == 0;
+    const bool clothes = is_worn(phrase) && !phrase.definite && !phrase.possessive && !phrase.plural &&
+                         (kinds_of(phrase.noun) & Body) == 0 && phrase.attributes.empty() && focus_ &&
+                         can_wear(focus());
+    if (is_part(phrase) && !new_thing && !clothes) {  // "on a pedestal", "a crown"
         const bool of_last =
             last_ && last_->kind == Target::Kind::There && !last_->thing && phrase.definite &&
             last_->reference.links.size() > 1;  // "paint the table legs red and the top white"
         Target owner = phrase.possessive || of_last ? pronoun(Naming::It, true) : focus();
         if (!owner.found() && !scene_->things.empty() && owner.kind == Target::Kind::Ambiguous)
             owner = target_of_thing(0);
-        if (owner.found()) return part_target(owner, phrase);
+        if (owner.found() && may_have(owner, phrase)) return part_target(owner, phrase);
     }
     return missing;
 }

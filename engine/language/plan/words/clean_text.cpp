@@ -99,8 +99,8 @@ const std::regex& code_pattern() {
 }
 
 /// Marks that a prompt has for programs that draw, and their plain form.
-const std::array<Rule, 19>& noise_rules() {
-    static const std::array<Rule, 19> Rules = {{
+const std::array<Rule, 23>& noise_rules() {
+    static const std::array<Rule, 23> Rules = {{
         {std::regex(R"(<(lora|lyco|hypernet|embedding|ti)[^>]*>)"), " "},
         {std::regex(R"(\bembedding:\S+)"), " "},
         {std::regex(R"(\bf/[0-9.]+|\b[0-9]+ ?mm\b|\biso ?[0-9]+\b)"), " "},
@@ -119,6 +119,10 @@ const std::array<Rule, 19>& noise_rules() {
         {std::regex(R"(\bw/)"), " with "},
         {std::regex(R"(_)"), " "},
         {std::regex(R"(\n+)"), " , "},
+        {std::regex(R"((^|\s)[SsVv]\*)"), " "},
+        {std::regex(R"(<?\b(sks|ohwx|zwx)\b>?)"), " "},
+        {std::regex(R"(\bscore_[0-9]+(_up)?\b)"), " "},
+        {std::regex(R"(\)[0-9]+(\.[0-9]+)?(?=\s|$|,))"), ")"},
         {std::regex(R"([*#~]|\xe2\x98\x86)"), " "},
     }};
     return Rules;

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace gse::language::plan {
 
@@ -31,17 +32,20 @@ enum class Class : std::uint16_t {
     fire_verb, meta_verb, meta_noun, meta, question, question_word, injection, narrative, subordinate,
     do_not, whatever, never_mind, correction, same_noise, irregular, irregular_verb, foreign, foreign_weak,
     empty, except, what_stands, shade_of, contrast_change, dressed_as, only, unwanted, hour, viewer, wish,
-    verb_around,
-    verb_fill, word_a, word_against, word_all, word_and, word_around, word_as, word_at, word_away, word_by,
-    word_chop, word_clear, word_cut, word_dark, word_down, word_during, word_except, word_facing,
-    word_factor, word_fall, word_for, word_from, word_get, word_give, word_half, word_has, word_have,
-    word_here, word_horizontally, word_in, word_it, word_its, word_leave, word_like, word_made, word_make,
-    word_moon, word_neither, word_nor, word_not, word_nothing, word_now, word_of, word_off, word_on,
-    word_one, word_ones, word_out, word_place, word_places, word_position, word_positions, word_put,
-    word_rainbow, word_remain, word_remains, word_same, word_sideways, word_sky, word_stars, word_stay,
-    word_stays, word_substitute, word_sun, word_take, word_there, word_throw, word_times, word_to, word_try,
-    word_unchanged, word_untouched, word_up, word_use, word_vertically, word_want, word_wide, word_wipe,
-    word_with, word_x, furniture, word_version, word_too,
+    verb_around, verb_fill, word_a, word_against, word_all, word_and, word_around, word_as, word_at,
+    word_away, word_by, word_chop, word_clear, word_cut, word_dark, word_down, word_during, word_except,
+    word_facing, word_factor, word_fall, word_for, word_from, word_get, word_give, word_half, word_has,
+    word_have, word_here, word_horizontally, word_in, word_it, word_its, word_leave, word_like, word_made,
+    word_make, word_moon, word_neither, word_nor, word_not, word_nothing, word_now, word_of, word_off,
+    word_on, word_one, word_ones, word_out, word_place, word_places, word_position, word_positions,
+    word_put, word_rainbow, word_remain, word_remains, word_same, word_sideways, word_sky, word_stars,
+    word_stay, word_stays, word_substitute, word_sun, word_take, word_there, word_throw, word_times,
+    word_to, word_try, word_unchanged, word_untouched, word_up, word_use, word_vertically, word_want,
+    word_wide, word_wipe, word_with, word_x, furniture, word_version, word_too, layer, seen_by,
+    time_of_day, said_by, where_is, style_kind, word_where, word_colored, part_made, verb_wear,
+    word_across, hand, elision, adverb, praise, verb_off, word_whose, plain_verb, word_about,
+    furniture_flat, word_into, word_years, word_both, ordinal, word_does, verb_need, quality, heap,
+    facial_hair, liked, verb_toss,
     Count
     // clang-format on
 };
@@ -102,6 +106,10 @@ bool is_word(std::string_view word);
 
 /// Word with its base forms.
 Word word_of(std::string text);
+
+/// "blue-eyed", "gold-rimmed": how a part is, and its name ("blue", "eyes"); empty for other words.
+std::pair<std::string, std::string> described_part(std::string_view word);
+inline bool describes_part(std::string_view word) { return !described_part(word).second.empty(); }
 
 /// Every word of the lexicon's English classes: what a misspelt word may stand for.
 std::span<const std::string_view> spellable_words();

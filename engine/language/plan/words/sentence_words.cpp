@@ -85,6 +85,10 @@ void spell(std::vector<std::string>& words, const std::string& piece) {
             words.push_back(american);
             return;
         }
+    if (describes_part(american)) {
+        words.push_back(american);
+        return;
+    }
     std::string joined = piece;
     std::erase(joined, '-');
     if (is_word(joined)) {
@@ -137,6 +141,10 @@ std::vector<std::string> slips_of(std::string_view typed, std::span<const std::s
         if (word.size() < 3) return;
         const bool is_needed = std::find(needed.begin(), needed.end(), word) != needed.end();
         if (!is_needed && typed.size() < 3 && !has(Class::worn, word)) return;
+        const bool usual = has(Class::worn, word) || has(Class::colour, word) || has(Class::ground, word) ||
+                           is_grammatical(word) || has(Class::part, word) || has(Class::masculine, word) ||
+                           has(Class::feminine, word) || has(Class::held, word);
+        if (typed.size() < 4 && !is_needed && !usual) return;  // "exe" is no eve
         if (!is_needed && !is_spellable(word)) {
             const bool other_start = word.front() != typed.front() && cost > 2;  // "kermit" is no hermit
             if (typed.size() < 5 || other_start || !is_word(word)) return;
@@ -145,6 +153,7 @@ std::vector<std::string> slips_of(std::string_view typed, std::span<const std::s
         if (is_needed) cost -= 2;
         // what sentences are made of, before parts of rare names ("bale" of "hay bale")
         if (has(Class::colour, word) || has(Class::worn, word) || is_grammatical(word)) cost -= 1;
+        if (has(Class::worn, word) && !has(Class::colour, word)) cost -= 1;
         if (std::none_of(found.begin(), found.end(), [&](const auto& each) { return each.second == word; }))
             found.emplace_back(cost, word);
     });
@@ -160,6 +169,7 @@ namespace {
 
 struct Evidence {
     int foreign = 0, weak = 0, english = 0, unknown = 0;
+    bool only_foreign = false;  // a weak word that is no English one
 };
 
 /// Words by language; those of courtesy are left out before.
@@ -176,11 +186,16 @@ Evidence evidence_of(const std::vector<std::string>& pieces) {
         if (std::isalpha(static_cast<unsigned char>(text[0])) == 0 &&
             static_cast<unsigned char>(text[0]) < 0x80)
             continue;
-        const bool weak = has(Class::foreign_weak, text), foreign = has(Class::foreign, text);
+        const auto elided = text.find('\'');  // "l'ours", "dell'orso"
+        const bool joined = elided != std::string::npos && elided + 2 < text.size() &&
+                            has(Class::elision, text.substr(0, elided));
+        const bool weak = has(Class::foreign_weak, text), foreign = has(Class::foreign, text) || joined;
         const bool english = is_word(text) || is_word(without_accents(text)) || has(Class::spelling, text);
         if (foreign && !weak && !is_word(text)) ++found.foreign;
-        else if (weak || (foreign && is_word(text))) ++found.weak;
-        else if (english) ++found.english;
+        else if (weak || (foreign && is_word(text))) {
+            ++found.weak;
+            found.only_foreign = found.only_foreign || !is_word(text);
+        } else if (english) ++found.english;
         else ++found.unknown;
     }
     return found;
@@ -188,25 +203,77 @@ Evidence evidence_of(const std::vector<std::string>& pieces) {
 
 bool is_foreign(const std::vector<std::string>& pieces) {
     const auto found = evidence_of(pieces);
-    if (found.foreign == 0) return false;
+    if (found.foreign == 0) return found.only_foreign && found.english == 0 && found.weak > 1;
     return found.foreign + found.unknown + found.weak > found.english || found.foreign >= 2;
 }
 
 }  // namespace
 
+/// "paint only its nose", "make just the hat blue": says as much without the adverb.
+void drop_adverbs(std::vector<Word>& words, std::span<const std::string> needed) {
+    const bool ordered = words.size() > 2 && has(Class::plain_verb, words[0].text) && words[1].text == ":";
+    if (ordered) words.erase(words.begin() + 1);        // "remove: bear"
+    for (std::size_t i = 0; i + 1 < words.size(); ++i)  // "a blue blue bear"
+        if (words.size() > 3 && words[i].text.size() > 1 && !words[i].mark &&
+            words[i].text == words[i + 1].text &&
+            std::find(needed.begin(), needed.end(), words[i].text) == needed.end())
+            words.erase(words.begin() + static_cast<std::ptrdiff_t>(i));
+    for (std::size_t i = 0; i + 2 < words.size(); ++i) {
+        const auto is_a = [&](std::size_t at, Class kind) {
+            return match(kind, std::span(words).subspan(at, 1)).length > 0;
+        };
+        const bool object = is_a(i + 2, Class::definite) || is_a(i + 2, Class::possessive) ||
+                            is_a(i + 2, Class::article) || is_a(i + 2, Class::pronoun_it);
+        if (is_a(i, Class::plain_verb) && is_a(i + 1, Class::adverb) && object)
+            words.erase(words.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+    }
+}
+
+/// Steps of a list behind slashes, as commas have them: "blue bear / red hat".
+std::string with_commas(std::string_view text) {
+    std::string commas(text);
+    for (std::size_t at = commas.find(" / "); at != std::string::npos; at = commas.find(" / "))
+        commas.replace(at, 3, ", ");
+    return commas;
+}
+
+/// Tells whether what stands there is said of "it", and not owned by it: "it's made of gold".
+bool is_predicate(const std::vector<std::string>& pieces, std::size_t at) {
+    const auto& word = pieces[at];
+    for (const auto kind : {Class::article, Class::negation, Class::degree, Class::like, Class::number})
+        if (has(kind, word)) return true;
+    const bool last = at + 1 == pieces.size() || std::ispunct(static_cast<unsigned char>(pieces[at + 1][0]));
+    const bool participle =
+        word == "made" || (word.size() > 4 && word.ends_with("ed")) || word.ends_with("ing");
+    const bool describes = has(Class::colour, word) || has(Class::material, word) ||
+                           has(Class::state, word) || has(Class::material_surface, word) ||
+                           has(Class::size, word);
+    return participle || (describes && last);
+}
+
 SentenceWords sentence_words(std::string_view clean, std::span<const std::string> needed) {
     SentenceWords found;
-    const auto pieces = pieces_of(clean);
+    const auto pieces = pieces_of(with_commas(clean));
     if (is_foreign(pieces)) {
         found.refused = reason::Language;
         return found;
     }
     std::vector<std::string> words;
-    for (const auto& piece : pieces) spell(words, without_accents(piece));
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        const auto piece = without_accents(pieces[i]);
+        if (piece == "it's" && i + 1 < pieces.size() && is_predicate(pieces, i + 1)) append(words, "it is");
+        else spell(words, piece);
+    }
     for (std::size_t i = 0; i + 1 < words.size(); ++i) {  // "sun glasses"
         const auto joined = words[i] + words[i + 1];
         const bool apart = has(Class::worn, words[i] + " " + words[i + 1]) ||
                            has(Class::compound, words[i] + " " + words[i + 1]);
+        const bool letter = words[i] == "t" && words[i + 1].starts_with("shirt");  // "a t shirt"
+        if (letter) {
+            words[i] = "t-" + words[i + 1];
+            words.erase(words.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+            continue;
+        }
         if (apart || words[i].size() < 3 || words[i + 1].size() < 3) continue;
         if (!has(Class::worn, joined) && !has(Class::thing, joined) && !has(Class::held, joined)) continue;
         words[i] = joined;
@@ -216,7 +283,12 @@ SentenceWords sentence_words(std::string_view clean, std::span<const std::string
         const bool letters = std::isalpha(static_cast<unsigned char>(word[0])) != 0;
         const bool is_needed = std::find(needed.begin(), needed.end(), word) != needed.end();
         if (letters && !is_word(word) && !is_needed && word.find('-') == std::string::npos) {
-            if (auto other = slips_of(word, needed, 1); !other.empty()) word = other.front();
+            auto others = slips_of(word, needed, found.words.empty() ? 5 : 1);
+            const auto verb = std::find_if(others.begin(), others.end(), [](const std::string& other) {
+                return has(Class::plain_verb, other);  // the first word is mostly an order: "mak it blue"
+            });
+            if (verb != others.end()) word = *verb;
+            else if (!others.empty()) word = others.front();
             else found.unknown.push_back(word);
         }
         auto made = word_of(word);
@@ -224,6 +296,7 @@ SentenceWords sentence_words(std::string_view clean, std::span<const std::string
                     word != "%" && static_cast<unsigned char>(word[0]) < 0x80;
         found.words.push_back(std::move(made));
     }
+    drop_adverbs(found.words, needed);
     const auto letters = static_cast<std::size_t>(
         std::count_if(found.words.begin(), found.words.end(), [](const Word& word) { return !word.mark; }));
     if (letters > 0 && found.unknown.size() * 2 >= letters) {
