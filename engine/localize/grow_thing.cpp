@@ -2,6 +2,7 @@
 #include "engine/localize/grow_thing.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "engine/localize/support_layers.h"
@@ -9,15 +10,19 @@
 namespace gse::localize {
 namespace {
 
-constexpr double VoxelsPerPicture = 100;  // in its height
-constexpr double Reach = 1.6;             // heights of the picture, from the seed
-constexpr double Giant = 0.15;            // of the height: larger Gaussians are sky or haze
-constexpr double NearlyAll = 0.97;        // of the voxels: then everything is the thing
+constexpr double VoxelsPerPicture = 140;  // in its height
+// Sizes at which the thing is looked at: its rows are those of most of them.
+constexpr std::array<double, 5> VoxelSizes{0.85, 1, 1.2, 1.4, 1.7};
+constexpr double Gap = 0.026;       // of the height: wider gaps part two things
+constexpr double Reach = 1.6;       // heights of the picture, from the seed
+constexpr double Giant = 0.15;      // of the height: larger Gaussians are sky or haze
+constexpr double NearlyAll = 0.97;  // of the voxels: then everything is the thing
 
 VoxelGrid grid_around(const GaussianSpans& gaussians, const GrowRequest& request) {
     GridFrame frame;
     frame.centre = request.seed, frame.up = request.up;
-    frame.side = request.extent / VoxelsPerPicture;
+    frame.side = request.voxel_size * request.extent / VoxelsPerPicture;
+    frame.link = static_cast<int>(std::lround(Gap * request.extent / frame.side));
     frame.reach = Reach * request.extent;
     frame.largest_scale = Giant * request.extent;
     return {gaussians, frame};
@@ -74,7 +79,7 @@ VoxelSet ground_at(const VoxelGrid& grid, const VoxelSet& set, const VoxelGrid::
     const Plane plane(grid, flat);
     VoxelSet result(set.size(), 0);
     for (std::size_t voxel = 0; voxel < set.size(); ++voxel)
-        result[voxel] = set[voxel] != 0 && std::abs(plane.distance(grid.place(voxel))) < thick ? 1 : 0;
+        result[voxel] = set[voxel] != 0 && plane.distance(grid.place(voxel)) < thick ? 1 : 0;
     return grid.connected(result, seed);
 }
 
@@ -102,7 +107,7 @@ public:
             return;
         }
     }
-    void cut_supports(bool ground) {
+    void cut_supports() {
         const auto supports = support_layers(grid_, set_);
         const VoxelSet whole = set_;
         const SupportLayers *below = nullptr, *above = nullptr;
@@ -111,7 +116,7 @@ public:
             if (support.top < seed_[2] && !flat) below = &support;
             else if (above == nullptr && (flat || support.last >= seed_[2] - 1)) above = &support;
         }
-        if (below != nullptr && !ground) {
+        if (below != nullptr) {
             const int high = std::min(highest_undecided(*below), seed_[2] - 1);
             keep(split_at(grid_, whole, below->first - 1, high, true));
             thing.from_support = true;
@@ -133,21 +138,38 @@ private:
     VoxelSet set_;
 };
 
-}  // namespace
-
-GrownThing grow_thing(const GaussianSpans& gaussians, const GrowRequest& request) {
+/// The thing as voxels of one size show it.
+GrownThing grown_at(const GaussianSpans& gaussians, const GrowRequest& request) {
     const auto grid = grid_around(gaussians, request);
     if (grid.size() == 0) return {std::vector<std::uint8_t>(gaussians.size, 0)};
     const auto seed = grid.place_of(request.seed);
     Growth growth(grid, seed, grid.connected(VoxelSet(grid.size(), 1), seed));
-    if (!request.ground) growth.cut_threads();
-    growth.cut_supports(request.ground);
-    if (request.ground && !growth.thing.from_above) growth.keep_ground();
+    if (request.ground) growth.keep_ground();
+    else growth.cut_threads(), growth.cut_supports();
     auto thing = std::move(growth.thing);
     const auto count = std::count(growth.set().begin(), growth.set().end(), std::uint8_t{1});
     thing.rows = static_cast<double>(count) >= NearlyAll * static_cast<double>(grid.size())
                      ? grid.all_rows(gaussians)
                      : grid.rows(gaussians, growth.set());
+    return thing;
+}
+
+}  // namespace
+
+GrownThing grow_thing(const GaussianSpans& gaussians, const GrowRequest& request) {
+    GrownThing thing;
+    std::vector<int> votes(gaussians.size, 0);
+    int support = 0, above = 0, thread = 0;
+    for (const double size : VoxelSizes) {
+        GrowRequest scaled = request;
+        scaled.voxel_size = size;
+        const auto one = grown_at(gaussians, scaled);
+        for (std::size_t row = 0; row < votes.size(); ++row) votes[row] += one.rows[row];
+        support += one.from_support, above += one.from_above, thread += one.from_thread;
+    }
+    const auto most = [](int count) { return 2 * count > static_cast<int>(VoxelSizes.size()); };
+    thing.from_support = most(support), thing.from_above = most(above), thing.from_thread = most(thread);
+    for (const int count : votes) thing.rows.push_back(most(count) ? 1 : 0);
     return thing;
 }
 

@@ -11,10 +11,11 @@ namespace gse::localize {
 
 /// Point that was clicked.
 struct GrowRequest {
-    Vec3 seed{};          // world units
-    Vec3 up{0, -1, 0};    // of the world
-    double extent = 1;    // height of the picture at the seed, world units: how fine the thing is looked at
-    bool ground = false;  // the seed lies on the ground, which is what is meant
+    Vec3 seed{};            // world units
+    Vec3 up{0, -1, 0};      // of the world
+    double extent = 1;      // height of the picture at the seed, world units: how fine the thing is looked at
+    bool ground = false;    // the seed lies on the ground, which is what is meant
+    double voxel_size = 1;  // of the usual one
 };
 
 /// Rows of a thing, and what it was separated from.

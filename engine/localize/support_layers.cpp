@@ -201,11 +201,11 @@ std::vector<double> log_odds(const VoxelGrid& grid, const VoxelSet& set, int low
     const Mask section = dilate(closed(grid.columns(set, high + 1, high + 1 + Window)), 2);
     const auto upper = colours_of(grid, set, high + 1, high + 1 + context, nullptr);
     auto lower = colours_of(grid, set, low - context, low, nullptr);
-    const bool told = upper.size() >= few && lower.size() >= few;
     Mask beside = section;
     for (auto& value : beside.data) value = value == 0 ? 1 : 0;
     const auto flat = colours_of(grid, set, low, high + 1, &beside);
     for (std::size_t i = 0; i < flat_weight; ++i) lower.insert(lower.end(), flat.begin(), flat.end());
+    const bool told = upper.size() >= few && lower.size() >= few;
     const ColourDensity standing(upper), support(lower);
     std::vector<double> odds(set.size(), 0);
     for (std::size_t voxel = 0; voxel < set.size(); ++voxel) {

@@ -14,7 +14,6 @@ namespace {
 constexpr double LeastOpacity = 0.1;  // of a Gaussian that fills a voxel
 constexpr double LeastFilled = 0.3;   // sum of the opacities in a solid voxel
 constexpr int Margin = 4;             // empty cells around the solid ones
-constexpr int Link = 3;               // cells: members that near to each other are linked
 
 double opacity_of(const GaussianSpans& gaussians, std::size_t row) {
     return 1 / (1 + std::exp(-static_cast<double>(gaussians.opacity_logit[row])));
@@ -157,9 +156,9 @@ VoxelSet VoxelGrid::connected(const VoxelSet& among, const Place& seed) const {
     while (!open.empty()) {
         const Place at = places_[open.back()];
         open.pop_back();
-        for (int z = at[2] - Link; z <= at[2] + Link; ++z)
-            for (int y = at[1] - Link; y <= at[1] + Link; ++y)
-                for (int x = at[0] - Link; x <= at[0] + Link; ++x) {
+        for (int z = at[2] - frame_.link; z <= at[2] + frame_.link; ++z)
+            for (int y = at[1] - frame_.link; y <= at[1] + frame_.link; ++y)
+                for (int x = at[0] - frame_.link; x <= at[0] + frame_.link; ++x) {
                     const int other = this->at(x, y, z);
                     if (other < 0) continue;
                     const auto voxel = static_cast<std::size_t>(other);

@@ -21,6 +21,7 @@ struct GridFrame {
     Vec3 up{0, -1, 0};
     double side = 1;           // of a voxel, world units
     double reach = 1;          // from the centre along each axis, world units
+    int link = 3;              // voxels: members that near to each other are linked
     double largest_scale = 1;  // world units: Gaussians of a larger standard deviation fill no voxel
 };
 
@@ -46,8 +47,8 @@ public:
     /// Centre of a voxel in the world.
     Vec3 centre_of(const Place& place) const;
 
-    /// Members of `among` that are linked with the member nearest to `seed`. Gaps of two empty voxels are
-    /// bridged. Empty if `among` is.
+    /// Members of `among` that are linked with the member nearest to `seed`, over gaps narrower than the
+    /// frame's link. Empty if `among` is.
     VoxelSet connected(const VoxelSet& among, const Place& seed) const;
     /// Columns with a member in the layers [low, high).
     Mask columns(const VoxelSet& set, int low, int high) const;

@@ -204,7 +204,7 @@ void draw_hint(Context& context, ImDrawList* list) {
                            "Heal: paint over a hole or a blemish   [ ] size   Esc leaves");
     std::string text = state.tool == Tool::Brush       ? "Brush: drag to paint"
                        : state.tool == Tool::Rectangle ? "Rectangle: drag a box"
-                       : state.tool == Tool::CutOut    ? "Cut out: drag a box around a thing"
+                       : state.tool == Tool::CutOut    ? "Cut out: click on a thing, or drag a box around it"
                                                        : "Lasso: drag around";
     const float room = state.high.x - state.low.x - context.em * 2;
     for (const char* part :

@@ -77,8 +77,8 @@ struct JobParameters {
           "on. Empty = read off the "
           "scene where the model's encoder can tell; \"none\" = not told.");
         f("use_label", self.use_label,
-          "Let the splats change that the scene's label column marks. Nothing is looked for, and the source "
-          "may be any word.");
+          "Let the splats change that a label of the scene marks: the one named like the source, else the "
+          "first. Nothing is looked for, and the source may be any word.");
         f("cut_out", self.cut_out,
           "Box around the object that may change, LEFT,TOP,RIGHT,BOTTOM as shares of the picture that "
           "\"render\" makes. Another picture than its default one is named by ,AZIMUTH,ELEVATION,ZOOM behind "

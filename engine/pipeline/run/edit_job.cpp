@@ -34,10 +34,14 @@ constexpr std::size_t InstanceViews = 12;  // renders a tuning learns from (METH
 // Share of the fitted distance of every other one, where views are automatic.
 constexpr double NearInstance = 0.6;
 
-/// The first label of a scene file.
-std::vector<std::uint8_t> label_of(const Scene& scene, const std::filesystem::path& path) {
-    if (!scene.labels.labels.empty()) {
-        const auto& bits = *scene.labels.labels.front().bits;
+/// The label of a scene file that is named like the source, else the first.
+std::vector<std::uint8_t> label_of(const Scene& scene, const std::filesystem::path& path,
+                                   const std::string& source) {
+    const auto& labels = scene.labels.labels;
+    if (!labels.empty()) {
+        const auto named = std::find_if(labels.begin(), labels.end(),
+                                        [&](const auto& label) { return label.name == source; });
+        const auto& bits = *(named == labels.end() ? labels.front() : *named).bits;
         if (std::find(bits.begin(), bits.end(), std::uint8_t{1}) != bits.end()) return bits;
     }
     throw Error(ErrorCode::InvalidArgument, "no splat of the scene is labelled",
@@ -149,7 +153,7 @@ EditJob::EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCach
         load_scene_with_cameras(recipe_.job.scene, recipe_.job.cameras, {.activated = recipe_.job.activated});
     if (recipe_.job.up == "auto" && !up.empty()) notes.push_back(up);
     for (const auto& note : notes) log::warning("{}", note);
-    if (recipe_.job.use_label) hints_.label = label_of(scene, recipe_.job.scene);
+    if (recipe_.job.use_label) hints_.label = label_of(scene, recipe_.job.scene, recipe_.request.source());
     times_.end();
     GivenCameras given;
     given.cameras = std::move(cameras);

@@ -10,7 +10,9 @@
 #include "engine/base/log.h"
 #include "engine/edit/request/edit_method.h"
 #include "engine/edit/request/vocabulary.h"
+#include "engine/io/project/project_file.h"
 #include "engine/language/plan/plan_text.h"
+#include "engine/language/vocabulary.h"
 #include "engine/language/words.h"
 #include "engine/pipeline/models/model_words.h"
 #include "engine/pipeline/models/recipe_model.h"
@@ -47,6 +49,20 @@ plan::SceneWords words_of_scene(const EditRecipe& recipe, const std::string& giv
     looking.use_dreambooth = false;
     EditJob job(std::move(looking), control, std::move(cache));
     return job.words_shown(std::move(scene));
+}
+
+bool take_named_label(EditRecipe& recipe) {
+    const auto source = language::normalised_prompt(recipe.request.source);
+    const auto known = model_words(model_path(recipe.job));
+    if (source.empty() || recipe.job.brings_label() || known.empty() ||
+        language::vocabulary_contains(known, source) || !is_project_file(recipe.job.scene))
+        return false;
+    const auto labels = read_project_summary(recipe.job.scene).labels;
+    recipe.job.use_label = std::any_of(labels.begin(), labels.end(), [&](const NamedLabel& label) {
+        return language::normalised_prompt(label.name) == source;
+    });
+    if (recipe.job.use_label) log::info("\"{}\" is a label of the project", source);
+    return recipe.job.use_label;
 }
 
 bool has_steps(const EditRecipe& recipe) {

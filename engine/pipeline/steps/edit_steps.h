@@ -31,6 +31,10 @@ struct EditSteps {
 language::plan::SceneWords words_of_scene(const EditRecipe& recipe, const std::string& given,
                                           const JobControl& control, std::shared_ptr<DiskCache> cache);
 
+/// Takes the label of a project that is named like the recipe's source, where the model does not know that
+/// word and nothing else says what may change. True where it did. Throws Error for a broken project.
+bool take_named_label(EditRecipe& recipe);
+
 /// False for a recipe whose target, mode or label was chosen: its sentence runs as it is.
 bool has_steps(const EditRecipe& recipe);
 
