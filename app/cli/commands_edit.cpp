@@ -124,7 +124,7 @@ void complete(EditOptions& options) {
         options.output = std::filesystem::path("out") /
                          (options.demo ? "demo" : std::filesystem::path(options.recipe.job.scene).stem());
     apply_model(options);
-    take_named_label(options.recipe);
+    if (!take_named_label(options.recipe)) take_known_words(options.recipe);
 }
 
 /// Completes the words of a sentence that is one edit.

@@ -10,10 +10,10 @@
 namespace gse::localize {
 namespace {
 
-constexpr double VoxelsPerPicture = 140;  // in its height
+constexpr double VoxelsPerPicture = 125;  // in its height
 // Sizes at which the thing is looked at: its rows are those of most of them.
-constexpr std::array<double, 5> VoxelSizes{0.85, 1, 1.2, 1.4, 1.7};
-constexpr double Gap = 0.026;       // of the height: wider gaps part two things
+constexpr std::array<double, 7> VoxelSizes{0.85, 0.95, 1.05, 1.2, 1.35, 1.5, 1.7};
+constexpr double Gap = 0.022;       // of the height: wider gaps part two things
 constexpr double Reach = 1.6;       // heights of the picture, from the seed
 constexpr double Giant = 0.15;      // of the height: larger Gaussians are sky or haze
 constexpr double NearlyAll = 0.97;  // of the voxels: then everything is the thing

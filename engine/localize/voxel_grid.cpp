@@ -151,21 +151,41 @@ VoxelSet VoxelGrid::connected(const VoxelSet& among, const Place& seed) const {
         if (squared < least) least = squared, nearest = voxel;
     }
     if (nearest == size()) return found;
-    std::vector<std::size_t> open{nearest};
-    found[nearest] = 1;
+    // Blocks of voxels stand for their members: neighbouring blocks with members are linked.
+    const int side = std::max(1, frame_.link);
+    Place blocks{};
+    for (std::size_t axis = 0; axis < 3; ++axis) blocks[axis] = dimensions_[axis] / side + 1;
+    const auto block = [&](int x, int y, int z) {
+        return (static_cast<std::size_t>(z) * static_cast<std::size_t>(blocks[1]) +
+                static_cast<std::size_t>(y)) *
+                   static_cast<std::size_t>(blocks[0]) +
+               static_cast<std::size_t>(x);
+    };
+    const auto block_of = [&](const Place& at) { return Place{at[0] / side, at[1] / side, at[2] / side}; };
+    enum : std::uint8_t { Empty, Waiting, Reached };
+    std::vector<std::uint8_t> states(block(0, 0, blocks[2]), Empty);
+    for (std::size_t voxel = 0; voxel < size(); ++voxel)
+        if (among[voxel] != 0) {
+            const auto at = block_of(places_[voxel]);
+            states[block(at[0], at[1], at[2])] = Waiting;
+        }
+    std::vector<Place> open{block_of(places_[nearest])};
+    states[block(open[0][0], open[0][1], open[0][2])] = Reached;
     while (!open.empty()) {
-        const Place at = places_[open.back()];
+        const Place at = open.back();
         open.pop_back();
-        for (int z = at[2] - frame_.link; z <= at[2] + frame_.link; ++z)
-            for (int y = at[1] - frame_.link; y <= at[1] + frame_.link; ++y)
-                for (int x = at[0] - frame_.link; x <= at[0] + frame_.link; ++x) {
-                    const int other = this->at(x, y, z);
-                    if (other < 0) continue;
-                    const auto voxel = static_cast<std::size_t>(other);
-                    if (among[voxel] == 0 || found[voxel] != 0) continue;
-                    found[voxel] = 1;
-                    open.push_back(voxel);
+        for (int z = std::max(0, at[2] - 1); z <= std::min(blocks[2] - 1, at[2] + 1); ++z)
+            for (int y = std::max(0, at[1] - 1); y <= std::min(blocks[1] - 1, at[1] + 1); ++y)
+                for (int x = std::max(0, at[0] - 1); x <= std::min(blocks[0] - 1, at[0] + 1); ++x) {
+                    auto& state = states[block(x, y, z)];
+                    if (state != Waiting) continue;
+                    state = Reached;
+                    open.push_back({x, y, z});
                 }
+    }
+    for (std::size_t voxel = 0; voxel < size(); ++voxel) {
+        const auto at = block_of(places_[voxel]);
+        if (among[voxel] != 0 && states[block(at[0], at[1], at[2])] == Reached) found[voxel] = 1;
     }
     return found;
 }

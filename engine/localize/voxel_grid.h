@@ -47,8 +47,8 @@ public:
     /// Centre of a voxel in the world.
     Vec3 centre_of(const Place& place) const;
 
-    /// Members of `among` that are linked with the member nearest to `seed`, over gaps narrower than the
-    /// frame's link. Empty if `among` is.
+    /// Members of `among` that are linked with the member nearest to `seed`. Gaps up to the frame's link
+    /// are bridged, those of more than twice as much are not. Empty if `among` is.
     VoxelSet connected(const VoxelSet& among, const Place& seed) const;
     /// Columns with a member in the layers [low, high).
     Mask columns(const VoxelSet& set, int low, int high) const;

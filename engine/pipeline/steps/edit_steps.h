@@ -35,6 +35,10 @@ language::plan::SceneWords words_of_scene(const EditRecipe& recipe, const std::s
 /// word and nothing else says what may change. True where it did. Throws Error for a broken project.
 bool take_named_label(EditRecipe& recipe);
 
+/// Puts known words in the place of unknown ones of the same meaning, in source and sentence alike, and logs
+/// them. Nothing where the recipe brings its label, or its source is known.
+void take_known_words(EditRecipe& recipe);
+
 /// False for a recipe whose target, mode or label was chosen: its sentence runs as it is.
 bool has_steps(const EditRecipe& recipe);
 

@@ -119,7 +119,20 @@ DOCTEST_TEST_CASE("an unknown source is refused before work; a label by hand is 
     DOCTEST_CHECK(harness.shell.state().viewport.tool == ui::Tool::CutOut);
     harness.frame(3);
     DOCTEST_CHECK(harness.find("panel.Labels") != nullptr);
-    model.labelled_by_hand = true;  // something was painted
+    harness.key(key::Escape);
+    DOCTEST_CHECK(harness.shell.state().viewport.tool == ui::Tool::Orbit);
+    harness.shell.show(ui::PanelId::Prompt);
+    harness.frame(3);
+    harness.application.calls.clear();
+    harness.modifiers(true, false, false);  // who asks for the edit is asked for the thing
+    harness.key(key::Enter);
+    harness.modifiers(false, false, false);
+    harness.frame(2);
+    const auto& calls = harness.application.calls;
+    DOCTEST_CHECK(std::count(calls.begin(), calls.end(), "add_label sign") == 1);
+    DOCTEST_CHECK(std::count(calls.begin(), calls.end(), "edit") == 0);
+    DOCTEST_CHECK(harness.shell.state().viewport.tool == ui::Tool::CutOut);
+    model.labelled_by_hand = true;  // something was clicked or painted
     harness.shell.show(ui::PanelId::Prompt);
     harness.frame(3);
     DOCTEST_CHECK(!harness.rect("prompt.locate").enabled);
