@@ -17,7 +17,7 @@ constexpr int Window = 6;    // layers that a cross-section is taken from
 constexpr int Sectors = 16;  // directions
 constexpr int SomeSectors = 7, ManySectors = 8, NearlyAllSectors = 14;
 constexpr double OtherColour = 1.2;  // contrast()
-constexpr double Tall = 0.35;        // height of what stands there, in sides of its cross-section
+constexpr double Tall = 0.5;         // height of what stands there, in sides of its cross-section
 constexpr double LeastShare = 0.03;  // of the members on either side: less is no thing
 constexpr int RunGap = 4;            // layers between evidence of one support
 
@@ -284,7 +284,7 @@ VoxelSet split_at(const VoxelGrid& grid, const VoxelSet& set, int low, int high,
 }
 
 std::vector<int> thin_layers(const VoxelGrid& grid, const VoxelSet& set) {
-    constexpr double thin = 0.1, least_share = 0.05;  // of the wider sections; of the members on either side
+    constexpr double thin = 0.13, least_share = 0.05;  // of the wider sections; of the members on either side
     constexpr int near = 3;
     const auto heights = heights_of(grid, set);
     if (heights.highest < 0) return {};

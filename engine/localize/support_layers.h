@@ -26,8 +26,8 @@ Mask section_above(const VoxelGrid& grid, const VoxelSet& set, int z);
 /// neighbours. `upper` = false: those of the support instead.
 VoxelSet split_at(const VoxelGrid& grid, const VoxelSet& set, int low, int high, bool upper);
 
-/// Layers where the members hang together by a thread: a cross-section below a tenth of those on both sides,
-/// between different colours.
+/// Layers where the members hang together by a thread: a cross-section below an eighth of those on both
+/// sides, between different colours.
 std::vector<int> thin_layers(const VoxelGrid& grid, const VoxelSet& set);
 
 }  // namespace gse::localize

@@ -31,8 +31,8 @@ class Searches(ProgramTest):
     def test_an_unknown_source_is_refused_before_work(self):
         process = self.edit("--source", "sign", "--prompt", "a golden sign on the grass", "--target",
                             "golden")
-        line = self.assert_one_sentence(process, '"sign"', "label it by hand instead", "--at X,Y", "--cut-out",
-                                        "--the-thing", "bear", "grass")
+        line = self.assert_one_sentence(process, '"sign"', "label it by hand instead", "--at X,Y",
+                                        "--cut-out", "--the-thing", "bear", "grass")
         self.assertNotIn('"in"', line)
         self.assertEqual(self.folder_listing(), [])
         # Before the scene is read: what is wrong with it is not even noticed.

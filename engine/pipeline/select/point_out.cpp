@@ -19,7 +19,7 @@
 namespace gse::pipeline {
 namespace {
 
-constexpr float Shown = 0.5f;   // alpha of a pixel that shows something
+constexpr float Shown = 0.5f;       // alpha of a pixel that shows something
 constexpr double NearClick = 0.02;  // of the picture's height: a click that near to something is on it
 
 NamedPicture picture_of_click(const std::string& text) {

@@ -208,7 +208,7 @@ DOCTEST_TEST_CASE("a box of the tool that cuts out asks for what is in it, once"
     DOCTEST_CHECK(std::count(calls.begin(), calls.end(), "cut_out 1") == 1);
     harness.drag(middle, {middle.x + 40, middle.y + 1});  // neither a click nor a box
     DOCTEST_CHECK(calls.back() == "cut_out 1");
-    harness.click("tool.cut_out");                       // in use already
+    harness.click("tool.cut_out");  // in use already
     DOCTEST_CHECK(harness.shell.state().viewport.tool == ui::Tool::CutOut);
     harness.key(key::Escape);
     DOCTEST_CHECK(harness.shell.state().viewport.tool == ui::Tool::Orbit);

