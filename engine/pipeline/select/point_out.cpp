@@ -12,6 +12,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/printable.h"
+#include "engine/edit/placement/ground_rows.h"
 #include "engine/math/unproject.h"
 #include "engine/pipeline/select/named_picture.h"
 #include "engine/scene/framing.h"
@@ -47,6 +48,14 @@ std::optional<std::pair<int, int>> shown_at(const Image& alpha, double x, double
             least = squared, nearest = {u, v};
         }
     return nearest;
+}
+
+/// Takes the ground's rows below the thing off it.
+localize::GrownThing without_ground(const GaussianSet& set, localize::GrownThing thing, const Vec3& up) {
+    const Vec3 axis = std::abs(normalized(up)[0]) < 0.5 ? Vec3{1, 0, 0} : Vec3{0, 0, 1};
+    for (const auto row : edit::ground_rows(set, thing.rows, up, normalized(cross(up, axis))))
+        thing.rows[row] = 0;
+    return thing;
 }
 
 void require_going(const JobControl& control) {
@@ -88,7 +97,8 @@ localize::GrownThing thing_at(const GaussianSet& set, const ClickRequest& reques
     grow.up = request.up;
     grow.extent = depth * request.camera.height / request.camera.fy;
     grow.ground = request.ground;
-    return localize::grow_thing(set.spans(), grow);
+    auto thing = localize::grow_thing(set.spans(), grow);
+    return request.ground ? thing : without_ground(set, std::move(thing), request.up);
 }
 
 localize::GrownThing largest_thing(const GaussianSet& set, const Vec3& up, const JobControl& control) {
@@ -100,7 +110,7 @@ localize::GrownThing largest_thing(const GaussianSet& set, const Vec3& up, const
     if (!seed || !(grow.extent > 0)) return {std::vector<std::uint8_t>(set.size(), 0)};
     require_going(control);
     grow.seed = *seed;
-    return localize::grow_thing(set.spans(), grow);
+    return without_ground(set, localize::grow_thing(set.spans(), grow), up);
 }
 
 std::string parted_text(const localize::GrownThing& thing) {

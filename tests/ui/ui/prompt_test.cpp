@@ -140,6 +140,20 @@ DOCTEST_TEST_CASE("an unknown source is refused before work; a label by hand is 
     DOCTEST_CHECK(harness.asks("prompt.edit", "edit"));
 }
 
+DOCTEST_TEST_CASE("another word for a known one is offered as that, and asks for no click") {
+    Harness harness({Wide, High, 1, Situation::Scene, false});
+    auto& model = harness.application.model();
+    model.request.source = "puppy";
+    model.request.prompt = "a golden puppy";
+    model.request.target = "golden";
+    model.known_words = {"a", "dog", "golden"};
+    harness.frame(2);
+    DOCTEST_REQUIRE(harness.find("prompt.source.suggestion") != nullptr);
+    harness.click("prompt.source.suggestion");
+    harness.frame(2);
+    DOCTEST_CHECK(model.request.source == "dog");
+}
+
 DOCTEST_TEST_CASE(
     "above the buttons stands which label the edit changes or what it searches for, and the other way") {
     Harness harness({Wide, High, 1, Situation::Scene, false});
