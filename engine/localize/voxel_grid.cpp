@@ -199,7 +199,12 @@ Mask VoxelGrid::columns(const VoxelSet& set, int low, int high) const {
 }
 
 std::vector<std::uint8_t> VoxelGrid::rows(const GaussianSpans& gaussians, const VoxelSet& set) const {
-    std::vector<int> owner = index_;
+    enum : std::uint8_t { Empty, Other, Member };
+    std::vector<std::uint8_t> owner(index_.size(), Empty);
+    for (std::size_t voxel = 0; voxel < size(); ++voxel) {
+        const auto& at = places_[voxel];
+        owner[cell(at[0], at[1], at[2])] = set[voxel] != 0 ? Member : Other;
+    }
     std::vector<Place> edge = places_, next;
     for (int step = 0; step < Margin; ++step, edge.swap(next)) {
         next.clear();
@@ -207,7 +212,7 @@ std::vector<std::uint8_t> VoxelGrid::rows(const GaussianSpans& gaussians, const 
             for (const auto& [x, y, z] : {Place{at[0] - 1, at[1], at[2]}, Place{at[0] + 1, at[1], at[2]},
                                           Place{at[0], at[1] - 1, at[2]}, Place{at[0], at[1] + 1, at[2]},
                                           Place{at[0], at[1], at[2] - 1}, Place{at[0], at[1], at[2] + 1}}) {
-                if (!within({x, y, z}) || owner[cell(x, y, z)] >= 0) continue;
+                if (!within({x, y, z}) || owner[cell(x, y, z)] != Empty) continue;
                 owner[cell(x, y, z)] = owner[cell(at[0], at[1], at[2])];
                 next.push_back({x, y, z});
             }
@@ -218,8 +223,7 @@ std::vector<std::uint8_t> VoxelGrid::rows(const GaussianSpans& gaussians, const 
         if (!reached(gaussians, row, at)) continue;
         const Place place{static_cast<int>(at[0]) - offset_[0], static_cast<int>(at[1]) - offset_[1],
                           static_cast<int>(at[2]) - offset_[2]};
-        const int voxel = within(place) ? owner[cell(place[0], place[1], place[2])] : -1;
-        if (voxel >= 0) result[row] = set[static_cast<std::size_t>(voxel)];
+        result[row] = within(place) && owner[cell(place[0], place[1], place[2])] == Member ? 1 : 0;
     }
     return result;
 }
