@@ -21,6 +21,7 @@ namespace gse::pipeline {
 namespace {
 
 constexpr float Shown = 0.5f;       // alpha of a pixel that shows something
+constexpr double Framed = 1.6;      // radii of a scene: height of the picture that shows it
 constexpr double NearClick = 0.02;  // of the picture's height: a click that near to something is on it
 
 NamedPicture picture_of_click(const std::string& text) {
@@ -105,7 +106,7 @@ localize::GrownThing largest_thing(const GaussianSet& set, const Vec3& up, const
     require_going(control);
     const gse::Bounds bounds = framing_bounds(set);
     localize::GrowRequest grow;
-    grow.up = up, grow.extent = 2 * bounds.radius();
+    grow.up = up, grow.extent = Framed * bounds.radius();
     const auto seed = localize::largest_thing(set.spans(), bounds.centre(), bounds.radius(), up);
     if (!seed || !(grow.extent > 0)) return {std::vector<std::uint8_t>(set.size(), 0)};
     require_going(control);
