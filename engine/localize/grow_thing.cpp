@@ -13,10 +13,11 @@ namespace {
 constexpr double VoxelsPerPicture = 125;  // in its height
 // Sizes at which the thing is looked at: its rows are those of most of them.
 constexpr std::array<double, 7> VoxelSizes{0.85, 0.95, 1.05, 1.2, 1.35, 1.5, 1.7};
-constexpr double Gap = 0.022;       // of the height: wider gaps part two things
-constexpr double Reach = 1.6;       // heights of the picture, from the seed
-constexpr double Giant = 0.15;      // of the height: larger Gaussians are sky or haze
-constexpr double NearlyAll = 0.97;  // of the voxels: then everything is the thing
+constexpr double Gap = 0.022;          // of the height: wider gaps part two things
+constexpr double Reach = 1.6;          // heights of the picture, from the seed
+constexpr int SurfaceNeighbours = 10;  // of 26: a surface has more, a crumb in a hollow thing has fewer
+constexpr double Giant = 0.15;         // of the height: larger Gaussians are sky or haze
+constexpr double NearlyAll = 0.97;     // of the voxels: then everything is the thing
 
 VoxelGrid grid_around(const GaussianSpans& gaussians, const GrowRequest& request) {
     GridFrame frame;
@@ -138,6 +139,17 @@ private:
     VoxelSet set_;
 };
 
+/// Members around a voxel, at most 26.
+int neighbours_of(const VoxelGrid& grid, const VoxelSet& set, std::size_t voxel) {
+    const auto& place = grid.place(voxel);
+    int count = -1;  // the voxel itself
+    for (int i = 0; i < 27; ++i) {
+        const int other = grid.at(place[0] + i % 3 - 1, place[1] + i / 3 % 3 - 1, place[2] + i / 9 - 1);
+        if (other >= 0) count += set[static_cast<std::size_t>(other)];
+    }
+    return count;
+}
+
 /// The thing as voxels of one size show it.
 GrownThing grown_at(const GaussianSpans& gaussians, const GrowRequest& request) {
     const auto grid = grid_around(gaussians, request);
@@ -194,16 +206,19 @@ std::optional<Vec3> largest_thing(const GaussianSpans& gaussians, const Vec3& ce
     Vec3 middle;
     for (std::size_t voxel = 0; voxel < grid.size(); ++voxel)
         if (largest[voxel] != 0) middle += grid.centre_of(grid.place(voxel)) / static_cast<double>(most);
-    // The middle itself may be empty: the nearest voxel of the thing stands for it.
+    // The middle itself may be empty, or hold a crumb: the nearest voxel of a surface stands for it.
     const auto at = grid.place_of(middle);
     std::optional<Vec3> seed;
     double least = 0;
-    for (std::size_t voxel = 0; voxel < grid.size(); ++voxel) {
-        if (largest[voxel] == 0) continue;
-        const auto& place = grid.place(voxel);
-        const double squared = std::pow(place[0] - at[0], 2.0) + std::pow(place[1] - at[1], 2.0) +
-                               std::pow(place[2] - at[2], 2.0);
-        if (!seed || squared < least) seed = grid.centre_of(place), least = squared;
+    for (const int neighbours : {SurfaceNeighbours, 0}) {
+        for (std::size_t voxel = 0; voxel < grid.size(); ++voxel) {
+            if (largest[voxel] == 0 || neighbours_of(grid, largest, voxel) < neighbours) continue;
+            const auto& place = grid.place(voxel);
+            const double squared = std::pow(place[0] - at[0], 2.0) + std::pow(place[1] - at[1], 2.0) +
+                                   std::pow(place[2] - at[2], 2.0);
+            if (!seed || squared < least) seed = grid.centre_of(place), least = squared;
+        }
+        if (seed) break;
     }
     return seed;
 }

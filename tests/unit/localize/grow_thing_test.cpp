@@ -152,6 +152,8 @@ DOCTEST_TEST_CASE("the largest thing that stands alone is the one on the highest
     DOCTEST_CHECK_FALSE(largest_thing(spans(GaussianData{}), {0, 0, 0}, 1, Up).has_value());
     Scene alone;
     alone.ball({3, 0, 0}, 0.4, Green, 0);
+    alone.row({3, 0, 0}, Green, 0);  // a crumb inside
+    alone.row({3, 0, 0.28}, Green, 0);
     const auto middle = largest_thing(spans(alone.data), {3, 0, 0}, 0.5, Up);
     DOCTEST_REQUIRE(middle.has_value());
     DOCTEST_CHECK(std::abs(length(*middle - Vec3{3, 0, 0}) - 0.4) < 0.1);  // on the ball, which is hollow
