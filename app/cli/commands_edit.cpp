@@ -124,6 +124,7 @@ void complete(EditOptions& options) {
         options.output = std::filesystem::path("out") /
                          (options.demo ? "demo" : std::filesystem::path(options.recipe.job.scene).stem());
     apply_model(options);
+    if (!take_named_label(options.recipe)) take_known_words(options.recipe);
 }
 
 /// Results beside their own scene would replace it, or be taken for it the next time.

@@ -14,6 +14,7 @@
 #include "engine/pipeline/run/views.h"
 #include "engine/pipeline/scene/scene_tools.h"
 #include "engine/pipeline/select/cut_out.h"
+#include "engine/pipeline/select/point_out.h"
 #include "engine/scene/label_ops.h"
 #include "engine/scene/stack_edits.h"
 #include "engine/scene/strength.h"
@@ -148,6 +149,29 @@ template <> void LabelController::on(const command::Select& one) {
     if (one.stroke_ends) ++workspace_.stroke;
 }
 
+namespace {
+
+/// Rows of the thing under a click or in a box, and a sentence about them.
+struct CutOutRows {
+    std::vector<std::uint8_t> rows;
+    std::string said;
+};
+
+CutOutRows clicked(const GaussianSet& set, const CutOutRequest& request, const JobControl& control) {
+    const auto& at = request.area.polygon.front();
+    const pipeline::ClickRequest click{
+        request.camera, static_cast<double>(at[0]), static_cast<double>(at[1]), request.settings, request.up,
+        request.ground};
+    auto thing = pipeline::thing_at(set, click, control);
+    const bool any = std::find(thing.rows.begin(), thing.rows.end(), std::uint8_t{1}) != thing.rows.end();
+    if (!any) return {{}, "There is nothing under the click."};
+    const auto parted = pipeline::parted_text(thing);
+    return {std::move(thing.rows), parted.empty() ? "The thing is labelled; drag a box around a part of it."
+                                                  : fmt::format("The thing is labelled, {}.", parted)};
+}
+
+}  // namespace
+
 template <> void LabelController::on(const command::CutOut& one) {
     if (!workspace_.require_scene()) return;
     if (workspace_.jobs->occupied())
@@ -160,20 +184,26 @@ template <> void LabelController::on(const command::CutOut& one) {
                           language::names_ground(recipe.request.source)};
     request.settings.background = parse_colour(view_.settings().background);
     request.settings.antialiased = state().info.antialiased;
-    auto rows = std::make_shared<std::vector<std::uint8_t>>();
+    auto found = std::make_shared<CutOutRows>();
     auto job = recipe.job;
     job.text_segmenter.clear();  // no word is looked for
     workspace_.jobs->start_work(
         JobKind::CutOut,
         {"Cut out",
          [=, set = view_.seen_document(), cache = models_.cache()](const JobControl& control) {
+             if (request.area.polygon.size() == 1) {
+                 control.report("labelling the thing under the click", 0, 0);
+                 *found = clicked(set, request, control);
+                 return;
+             }
              control.report("cutting out what is in the box", 0, 0);
-             *rows = pipeline::cut_out(set, request, open_segmenters(job, cache).clicks.get(), control);
+             found->rows = pipeline::cut_out(set, request, open_segmenters(job, cache).clicks.get(), control);
          },
-         [this, rows, operation = one.operation, camera = request.camera,
+         [this, found, operation = one.operation, camera = request.camera,
           up = request.up](const Error* error) {
              if (error != nullptr) return workspace_.report_end(*error);
-             take_cut_out(*rows, operation, camera, up);
+             take_cut_out(found->rows, operation, camera, up);
+             if (!found->said.empty()) workspace_.toast_step(found->said);
          }});
 }
 

@@ -31,7 +31,8 @@ class Searches(ProgramTest):
     def test_an_unknown_source_is_refused_before_work(self):
         process = self.edit("--source", "sign", "--prompt", "a golden sign on the grass", "--target",
                             "golden")
-        line = self.assert_one_sentence(process, '"sign"', "label it by hand instead", "bear", "grass")
+        line = self.assert_one_sentence(process, '"sign"', "label it by hand instead", "--at X,Y",
+                                        "--cut-out", "--the-thing", "bear", "grass")
         self.assertNotIn('"in"', line)
         self.assertEqual(self.folder_listing(), [])
         # Before the scene is read: what is wrong with it is not even noticed.
@@ -61,6 +62,35 @@ class Searches(ProgramTest):
         self.assert_one_sentence(process, "--cut-out", "left before right")
         process = self.edit("--source", "thingummy", "--prompt", "a golden thingummy", *box, "--use-label")
         self.assert_one_sentence(process, "--use-label and --cut-out", "leave one of them out")
+
+    def test_a_click_or_the_largest_thing_says_what_may_change(self):
+        words = ["--source", "thingummy", "--prompt", "a golden thingummy on the grass"]
+        for pointing, said in ([["--at", "0.5,0.5,0,15"], "what was clicked"],
+                               [["--the-thing"], "the largest thing that stands alone"]):
+            process = self.edit(*words, *pointing)
+            self.assertEqual(process.returncode, 0, process.stderr)
+            self.assertIn(f'"thingummy" is {said}', process.stderr)
+            self.assertIn("parted from what it stands on", process.stderr)
+            report = json.loads((self.folder / "out/report.json").read_text())
+            self.assertEqual(report["changed_outside_label"], 0)
+            self.assertGreater(report["labelled"], 2500)   # the bear's 2994 of 4914 splats
+            self.assertLess(report["labelled"], 3300)
+        # The name stays with the label: the project knows the word.
+        process = run("edit", self.folder / "out/edit.gsep", "--out", self.folder / "again", *QUICK,
+                      "--source", "thingummy", "--prompt", "a blue thingummy on the grass")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertIn('"thingummy" is a label of the project', process.stderr)
+        process = self.edit(*words, "--at", "0.01,0.01")
+        self.assert_one_sentence(process, "nothing is seen at", "gseditpro render")
+        process = self.edit(*words, "--at", "0.5")
+        self.assert_one_sentence(process, '--at "0.5" is no place', "give X,Y")
+        process = self.edit(*words, "--at", "0.5,0.5", "--the-thing")
+        self.assert_one_sentence(process, "--at and --the-thing", "leave one of them out")
+
+    def test_another_word_for_a_known_one_leads_to_it(self):
+        process = self.edit("--source", "bruin", "--prompt", "a golden bruin on the grass")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertIn('Looks for "bear": "bruin" is another word for it', process.stderr)
 
     def test_the_pictures_say_which_word_is_new(self):
         scene = self.folder / "hat.ply"

@@ -282,6 +282,7 @@ bool ask_partly(Context& context) {
 }  // namespace
 
 void run_edit(Context& context) {
+    if (asks_for_click(context)) return label_by_hand(context, context.request.source);
     if (!why_not_edit(context).empty()) return;
     const auto& present = context.model.scope.present;
     if (!context.state.prompt.seed_locked) roll_seed(context);
@@ -488,6 +489,11 @@ void add_label(Context& context) {
     show_panel(context.state, PanelId::Labels);
 }
 
+bool asks_for_click(const Context& context) {
+    return context.scene_open() && why_not_work(context).empty() && !context.request.source.empty() &&
+           !context.state.prompt.source_known && !context.model.labelled_by_hand;
+}
+
 void label_by_hand(Context& context, const std::string& name) {
     if (!context.scene_open()) return;
     const auto& labels = context.document().labels;
@@ -496,7 +502,7 @@ void label_by_hand(Context& context, const std::string& name) {
     if (found == labels.end()) context.emit(command::AddLabel{name});
     else context.emit(command::SetActiveLabel{static_cast<int>(found - labels.begin())});
     show_labelled(context);
-    // A box is the quickest way to a thing; the other tools correct it.
+    // A click or a box is the quickest way to a thing; the other tools correct it.
     context.state.viewport.tool = Tool::CutOut;
     context.state.viewport.stroke = false;
     show_panel(context.state, PanelId::Labels);

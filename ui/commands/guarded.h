@@ -75,6 +75,8 @@ void quit(Context& context);
 void add_label(Context& context);
 /// Adds a label of that name and takes the tool that cuts out an object, for objects that no words find.
 void label_by_hand(Context& context, const std::string& name);
+/// Tells whether an edit waits for a click on the source, which the model does not know.
+bool asks_for_click(const Context& context);
 void set_tool(Context& context, Tool tool);
 /// Switches the tint on, so that the labelled splats show.
 void show_labelled(Context& context);

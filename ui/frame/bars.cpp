@@ -40,7 +40,8 @@ void draw_tools(Context& context) {
     tool_button("tool.lasso", Icon::Lasso, Tool::Lasso,
                 with_key(context, "Lasso: label what is inside", Shortcut::Lasso));
     tool_button("tool.cut_out", Icon::CutOut, Tool::CutOut,
-                with_key(context, "Cut out: label the thing in a box, all its sides", Shortcut::CutOut));
+                with_key(context, "Cut out: label the thing under a click or in a box, all its sides",
+                         Shortcut::CutOut));
     tool_button("tool.place", Icon::Place, Tool::Place,
                 with_key(context, "Move, turn and resize what is labelled", Shortcut::Place));
     tool_button("tool.heal", Icon::Heal, Tool::Heal,

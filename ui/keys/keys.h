@@ -74,7 +74,7 @@ inline constexpr std::array<KeyHelp, 56> KeyTable{{
     {"Labels", "B", "Brush", Shortcut::Brush, "brush"},
     {"Labels", "R", "Rectangle", Shortcut::Rectangle, "rectangle"},
     {"Labels", "L", "Lasso", Shortcut::Lasso, "lasso"},
-    {"Labels", "C", "Cut out the thing in a box", Shortcut::CutOut, "cut_out"},
+    {"Labels", "C", "Cut out the thing under a click or in a box", Shortcut::CutOut, "cut_out"},
     {"Labels", "J", "Heal brush: paint over a hole or a blemish", Shortcut::HealBrush, "heal_brush"},
     {"Labels", "G", "Handles that move, turn and resize what is labelled", Shortcut::Place, "place"},
     {"Labels", "Shift", "Add"},

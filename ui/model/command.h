@@ -161,7 +161,7 @@ struct Select {
     SetOperation operation = SetOperation::Add;
     bool stroke_ends = true;
 };
-/// Selects the object in the box.
+/// Selects the object in the box, or the one under a polygon of one point.
 struct CutOut {
     ScreenRegion box;
     SetOperation operation = SetOperation::Add;

@@ -232,10 +232,12 @@ void draw_problem(Context& context) {
     coloured_text(palette::Warning, fmt::format("Nothing was labelled: {}.", search.message));
     dim_text(fmt::format("What helps: {}.", search.remedy));
     const std::string why = why_not_work(context);
-    if (button(context, {.name = "attention.by_hand",
-                         .text = "Label it by hand",
-                         .why_off = why,
-                         .tooltip = "Makes a label and gives you Cut out: drag a box around the thing"}))
+    if (button(
+            context,
+            {.name = "attention.by_hand",
+             .text = "Label it by hand",
+             .why_off = why,
+             .tooltip = "Makes a label and gives you Cut out: click on the thing, or drag a box around it"}))
         label_by_hand(context, context.model.attention_word);
     if (search.problem != edit::SearchProblem::Unsure) return;
     constexpr const char* anyway = "Label this all the same";

@@ -34,8 +34,8 @@ bool unread(const std::string& sentence, const std::string& phrase, const Senten
 
 std::string unknown_source(const std::string& source, const SentenceGround& ground) {
     if (language::vocabulary_contains(language::promptable_vocabulary(ground.known, ground.drawn), source))
-        return fmt::format("The model can draw \"{}\" but not find it: label it by hand instead", source);
-    return fmt::format("The model does not know the word \"{}\" and cannot find it: label it by hand instead",
+        return fmt::format("The model can draw \"{}\" but not find it: click on it in the view", source);
+    return fmt::format("The model does not know the word \"{}\" and cannot find it: click on it in the view",
                        language::unknown_word(ground.known, source));
 }
 

@@ -204,8 +204,13 @@ void draw_hint(Context& context, ImDrawList* list) {
                            "Heal: paint over a hole or a blemish   [ ] size   Esc leaves");
     std::string text = state.tool == Tool::Brush       ? "Brush: drag to paint"
                        : state.tool == Tool::Rectangle ? "Rectangle: drag a box"
-                       : state.tool == Tool::CutOut    ? "Cut out: drag a box around a thing"
+                       : state.tool == Tool::CutOut    ? "Cut out: click on a thing, or drag a box around it"
                                                        : "Lasso: drag around";
+    const auto& source = context.request.source;
+    const bool asked =
+        !source.empty() && !context.state.prompt.source_known && !context.model.labelled_by_hand;
+    if (state.tool == Tool::CutOut && asked)
+        text = fmt::format("I do not know \"{}\": click on it, or drag a box around it", source);
     const float room = state.high.x - state.low.x - context.em * 2;
     for (const char* part :
          {"Shift add", "Ctrl remove", "Alt intersect",

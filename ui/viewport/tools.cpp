@@ -12,6 +12,7 @@ namespace {
 constexpr float WipeGrabEm = 0.7f;
 constexpr float DabSpacing = 0.35f;  // of the radius, between the circles of a stroke
 constexpr float LassoSpacingPx = 3;
+constexpr float ClickPx = 4;  // a shorter drag is a click
 
 /// Point of the window in pixels of the viewport's texture.
 std::array<float, 2> to_texture(const Context& context, std::array<float, 2> point) {
@@ -95,6 +96,9 @@ void end_stroke(Context& context, ImVec2 mouse) {
     const bool box = state.tool == Tool::Rectangle || state.tool == Tool::CutOut;
     if (box) {
         const ImVec2 a = state.stroke_start;
+        if (state.tool == Tool::CutOut && std::hypot(a.x - mouse.x, a.y - mouse.y) < ClickPx)
+            return context.emit(
+                command::CutOut{{.polygon = {to_texture(context, {a.x, a.y})}}, state.stroke_operation});
         if (std::abs(a.x - mouse.x) < 2 || std::abs(a.y - mouse.y) < 2) return;
         state.path = {{a.x, a.y}, {mouse.x, a.y}, {mouse.x, mouse.y}, {a.x, mouse.y}};
     }

@@ -47,7 +47,9 @@ void require_findable(const CheckedRequest& request, const std::vector<std::stri
             language::vocabulary_contains(say, unknown)
                 ? fmt::format("the model can draw \"{}\" but not find it", unknown)
                 : fmt::format("the model does not know the word \"{}\" and cannot find it", unknown),
-            fmt::format("label it by hand instead, or use {}", language::words_to_use(unknown, known)));
+            fmt::format("label it by hand instead (--at X,Y clicks on it, --cut-out puts a box around it, "
+                        "--the-thing takes the largest thing), or use {}",
+                        language::words_to_use(unknown, known)));
     if (part && !language::shape_of_part(request.source()) &&
         !language::vocabulary_contains(known, request.source()))
         throw Error(

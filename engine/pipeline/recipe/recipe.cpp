@@ -129,8 +129,8 @@ std::string search_key(const CheckedRecipe& recipe) {
     hash.fields(static_cast<const edit::SearchSettings&>(recipe.request));
     hash.fields(recipe.attention);
     add_surroundings(hash, job);
-    hash.texts({job.cut_out, job.looked_from, job.segmenter, job.text_segmenter});
-    hash.numbers(job.use_label, recipe.use_dreambooth, recipe.guidance.plain_ground,
+    hash.texts({job.cut_out, job.at, job.looked_from, job.segmenter, job.text_segmenter});
+    hash.numbers(job.use_label, job.the_thing, recipe.use_dreambooth, recipe.guidance.plain_ground,
                  job.rasterizer == "cuda");  // other last digits
     if (recipe.use_dreambooth) hash.fields(recipe.dreambooth);
     return hash.key().hex();

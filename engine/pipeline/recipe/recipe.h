@@ -35,6 +35,8 @@ struct JobParameters {
     std::string front;
     bool use_label = false;
     std::string cut_out;
+    std::string at;
+    bool the_thing = false;
     std::string looked_from;
     int turntable_size = 480;
     int turntable_frames = 60;
@@ -75,15 +77,23 @@ struct JobParameters {
           "on. Empty = read off the "
           "scene where the model's encoder can tell; \"none\" = not told.");
         f("use_label", self.use_label,
-          "Let the splats change that the scene's label column marks. Nothing is looked for, and the source "
-          "may be any word.");
+          "Let the splats change that a label of the scene marks: the one named like the source, else the "
+          "first. Nothing is looked for, and the source may be any word.");
         f("cut_out", self.cut_out,
           "Box around the object that may change, LEFT,TOP,RIGHT,BOTTOM as shares of the picture that "
           "\"render\" makes. Another picture than its default one is named by ,AZIMUTH,ELEVATION,ZOOM behind "
           "it. The object is cut out of it with all its sides, and nothing is looked for.");
+        f("at", self.at,
+          "Place of the object that may change, X,Y as shares of the picture that \"render\" makes, as if it "
+          "were clicked. Another picture is named by ,AZIMUTH,ELEVATION or ,AZIMUTH,ELEVATION,ZOOM behind "
+          "it. "
+          "What is linked with that place and apart from what it stands on changes; nothing is looked for.");
+        f("the_thing", self.the_thing,
+          "Let the largest thing that stands alone change. Nothing is looked for, and the source may be any "
+          "word.");
         f("looked_from", self.looked_from,
-          "Azimuth in degrees from which the artist looks at the object, or made its label by hand. A box of "
-          "cut_out tells its own. That side is the front if none is given and the model's encoder is not "
+          "Azimuth in degrees from which the artist looks at the object, or made its label by hand. cut_out "
+          "and at tell their own. That side is the front if none is given and the model's encoder is not "
           "sure of one. Empty = not known.");
         f("turntable_size", self.turntable_size, "Side of each half of the before/after film in pixels.",
           Range{16, 4096});
@@ -92,7 +102,7 @@ struct JobParameters {
     }
 
     /// True when the source may be any word, since the label is known without it.
-    bool brings_label() const { return use_label || !cut_out.empty(); }
+    bool brings_label() const { return use_label || the_thing || !cut_out.empty() || !at.empty(); }
 };
 
 /// Settings of a run beside its request.

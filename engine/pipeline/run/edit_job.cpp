@@ -26,6 +26,7 @@
 #include "engine/pipeline/scene/label_names.h"
 #include "engine/pipeline/scene/scene_loading.h"
 #include "engine/pipeline/select/cut_out.h"
+#include "engine/pipeline/select/point_out.h"
 
 namespace gse::pipeline {
 namespace {
@@ -34,10 +35,14 @@ constexpr std::size_t InstanceViews = 12;  // renders a tuning learns from (METH
 // Share of the fitted distance of every other one, where views are automatic.
 constexpr double NearInstance = 0.6;
 
-/// The first label of a scene file.
-std::vector<std::uint8_t> label_of(const Scene& scene, const std::filesystem::path& path) {
-    if (!scene.labels.labels.empty()) {
-        const auto& bits = *scene.labels.labels.front().bits;
+/// The label of a scene file that is named like the source, else the first.
+std::vector<std::uint8_t> label_of(const Scene& scene, const std::filesystem::path& path,
+                                   const std::string& source) {
+    const auto& labels = scene.labels.labels;
+    if (!labels.empty()) {
+        const auto named = std::find_if(labels.begin(), labels.end(),
+                                        [&](const auto& label) { return label.name == source; });
+        const auto& bits = *(named == labels.end() ? labels.front() : *named).bits;
         if (std::find(bits.begin(), bits.end(), std::uint8_t{1}) != bits.end()) return bits;
     }
     throw Error(ErrorCode::InvalidArgument, "no splat of the scene is labelled",
@@ -55,6 +60,45 @@ std::vector<std::uint8_t> labelled_by_box(const Scene& scene, const CheckedRecip
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("nothing is seen in the box \"{}\" of --cut-out", job.cut_out),
                 "look at what gseditpro render shows with the same azimuth, elevation and zoom");
+}
+
+/// Label of --at or --the-thing.
+std::vector<std::uint8_t> labelled_by_pointing(const Scene& scene, const CheckedRecipe& recipe,
+                                               const JobControl& control) {
+    const auto& job = recipe.job;
+    const auto set = drawable(scene.gaussians);
+    localize::GrownThing thing;
+    if (job.at.empty()) {
+        thing = largest_thing(set, parse_up(job.up, scene.info), control);
+    } else {
+        auto request = click_request(job.at, scene, job.up);
+        request.ground = language::names_ground(recipe.request.source());
+        thing = thing_at(set, request, control);
+    }
+    const auto rows = std::count(thing.rows.begin(), thing.rows.end(), std::uint8_t{1});
+    if (rows == 0)
+        throw Error(ErrorCode::InvalidArgument,
+                    job.at.empty() ? "nothing stands alone in the scene"
+                                   : fmt::format("nothing is seen at \"{}\" of --at", job.at),
+                    "look at what gseditpro render shows with the same azimuth, elevation and zoom");
+    const auto parted = parted_text(thing);
+    log::info("\"{}\" is {}: {} of {} splats{}{}", recipe.request.source(),
+              job.at.empty() ? "the largest thing that stands alone" : "what was clicked", rows, set.size(),
+              parted.empty() ? "" : ", ", parted);
+    return std::move(thing.rows);
+}
+
+/// More than one word of what may change contradict each other. Throws Error.
+void require_one_label(const JobParameters& job) {
+    std::vector<std::string> options;
+    if (job.use_label) options.emplace_back("--use-label");
+    if (!job.cut_out.empty()) options.emplace_back("--cut-out");
+    if (!job.at.empty()) options.emplace_back("--at");
+    if (job.the_thing) options.emplace_back("--the-thing");
+    if (options.size() > 1)
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("{} and {} both say what may change", options[0], options[1]),
+                    "leave one of them out");
 }
 
 /// So that a recipe that was written elsewhere names the same files. Throws Error for one that is not there.
@@ -100,9 +144,7 @@ void warn_unknown_words(const std::vector<std::string>& words, const std::vector
 EditJob::EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCache> cache)
     : recipe_(check(std::move(recipe))), control_(std::move(control)) {
     check_recipe();
-    if (recipe_.job.use_label && !recipe_.job.cut_out.empty())
-        throw Error(ErrorCode::InvalidArgument, "--use-label and --cut-out both say what may change",
-                    "leave one of them out");
+    require_one_label(recipe_.job);
     times_.begin("load_scene");
     recipe_.job.scene = std::filesystem::absolute(recipe_.job.scene).lexically_normal().string();
     recipe_.job.lora = absolute_loras(recipe_.job);
@@ -112,7 +154,7 @@ EditJob::EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCach
         load_scene_with_cameras(recipe_.job.scene, recipe_.job.cameras, {.activated = recipe_.job.activated});
     if (recipe_.job.up == "auto" && !up.empty()) notes.push_back(up);
     for (const auto& note : notes) log::warning("{}", note);
-    if (recipe_.job.use_label) hints_.label = label_of(scene, recipe_.job.scene);
+    if (recipe_.job.use_label) hints_.label = label_of(scene, recipe_.job.scene, recipe_.request.source());
     times_.end();
     check_words(nullptr, scene.labels);
     GivenCameras given;
@@ -124,6 +166,10 @@ EditJob::EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCach
     if (!recipe_.job.cut_out.empty()) {
         times_.begin("cut_out");
         hints_.label = labelled_by_box(scene, recipe_, segmenters.clicks.get(), control_);
+        times_.end();
+    } else if (!recipe_.job.at.empty() || recipe_.job.the_thing) {
+        times_.begin("cut_out");
+        hints_.label = labelled_by_pointing(scene, recipe_, control_);
         times_.end();
     }
     begin(std::move(scene), std::move(model), std::move(segmenters), given);

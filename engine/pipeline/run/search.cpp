@@ -30,6 +30,7 @@
 #include "engine/localize/focus.h"
 #include "engine/pipeline/run/search_from.h"
 #include "engine/pipeline/select/cut_out.h"
+#include "engine/pipeline/select/point_out.h"
 
 namespace gse::pipeline {
 namespace {
@@ -281,9 +282,9 @@ private:
     /// From where the artist looked at the thing, radians; nothing where that is not known.
     std::optional<double> looked_from() const {
         const auto& job = recipe_.job;
-        if (!job.looked_from.empty() || job.cut_out.empty())
+        if (!job.looked_from.empty() || (job.cut_out.empty() && job.at.empty()))
             return parse_front(job.looked_from, "--looked-from");
-        return azimuth_of_box(job.cut_out) * Degree;
+        return (job.cut_out.empty() ? azimuth_of_click(job.at) : azimuth_of_box(job.cut_out)) * Degree;
     }
 
     /// The views with their front, if the recipe leaves it open. Their pictures tell it if the model's

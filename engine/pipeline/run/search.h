@@ -55,7 +55,7 @@ Located locate_by_label(RunContext& context, const Located& located, std::vector
 /// The label corrected by hand, [N] 0 or 1 (modify mode).
 Located with_label(const Located& located, const std::vector<std::uint8_t>& bits);
 
-/// What a search found, for a second look at it. Refers to its arguments.
+/// Finding of a search, for a second look at it. Refers to its arguments.
 edit::Finding finding_of(const RunContext& context, const Located& located);
 
 /// Question that a recipe puts to its views. Refers to its arguments.

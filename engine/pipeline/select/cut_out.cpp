@@ -2,11 +2,9 @@
 #include "engine/pipeline/select/cut_out.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <memory>
 #include <optional>
-#include <system_error>
 #include <utility>
 
 #include "engine/base/error.h"
@@ -17,6 +15,7 @@
 #include "engine/localize/clusters.h"
 #include "engine/pipeline/scene/scene_tools.h"
 #include "engine/pipeline/select/cut_out_sides.h"
+#include "engine/pipeline/select/named_picture.h"
 
 namespace gse::pipeline {
 namespace {
@@ -236,39 +235,27 @@ std::vector<std::uint8_t> seen_rows(const GaussianSet& set, const Camera& camera
     return rows;
 }
 
-/// Four or seven numbers with commas between; throws Error.
-std::vector<double> numbers_of(const std::string& text) {
-    std::vector<double> numbers;
-    std::size_t begin = 0;
-    while (begin <= text.size()) {
-        const auto end = std::min(text.find(',', begin), text.size());
-        const auto first = text.data() + begin, last = text.data() + end;
-        double number = 0;
-        const auto read = std::from_chars(first, last, number);
-        if (read.ec != std::errc{} || read.ptr != last || !std::isfinite(number)) break;
-        numbers.push_back(number);
-        begin = end + 1;
-    }
-    if (begin <= text.size() || (numbers.size() != 4 && numbers.size() != 7))
-        throw Error(ErrorCode::InvalidArgument, "--cut-out \"" + printable(text) + "\" is no box",
-                    "give LEFT,TOP,RIGHT,BOTTOM as shares of the picture, as in 0.3,0.2,0.7,0.9, and "
-                    ",AZIMUTH,ELEVATION,ZOOM behind it where needed");
-    return numbers;
+constexpr const char* BoxHint =
+    "give LEFT,TOP,RIGHT,BOTTOM as shares of the picture, as in 0.3,0.2,0.7,0.9, and ,AZIMUTH,ELEVATION,ZOOM "
+    "behind it where needed";
+
+NamedPicture picture_of_box(const std::string& text) {
+    const auto picture = named_picture(text, 4, {0, 3});
+    if (!picture)
+        throw Error(ErrorCode::InvalidArgument, "--cut-out \"" + printable(text) + "\" is no box", BoxHint);
+    return *picture;
 }
 
 }  // namespace
 
 CutOutRequest cut_out_request(const std::string& text, const Scene& scene, const std::string& up) {
-    const auto numbers = numbers_of(text);
-    const double left = numbers[0], top = numbers[1], right = numbers[2], bottom = numbers[3];
+    auto [place, parameters] = picture_of_box(text);
+    const double left = place[0], top = place[1], right = place[2], bottom = place[3];
     if (left < 0 || top < 0 || right > 1 || bottom > 1 || left >= right || top >= bottom)
         throw Error(ErrorCode::InvalidArgument,
                     "the box of --cut-out \"" + printable(text) + "\" does not lie in the picture",
                     "its sides are shares from 0 to 1: left before right, top before bottom");
-    RenderParameters parameters;
     parameters.up = up;
-    if (numbers.size() == 7)
-        parameters.azimuth = numbers[4], parameters.elevation = numbers[5], parameters.zoom = numbers[6];
     check_fields(parameters);
     CutOutRequest request;
     request.camera = choose_camera(scene, {}, parameters);
@@ -281,10 +268,7 @@ CutOutRequest cut_out_request(const std::string& text, const Scene& scene, const
     return request;
 }
 
-double azimuth_of_box(const std::string& text) {
-    const auto numbers = numbers_of(text);
-    return numbers.size() == 7 ? numbers[4] : RenderParameters{}.azimuth;
-}
+double azimuth_of_box(const std::string& text) { return picture_of_box(text).parameters.azimuth; }
 
 std::vector<std::uint8_t> cut_out(const GaussianSet& set, const CutOutRequest& request,
                                   edit::Segmenter* segmenter, const JobControl& control) {

@@ -14,6 +14,7 @@
 #include "engine/io/project/load_scene.h"
 #include "engine/io/project/project_file.h"
 #include "engine/language/plan/plan_text.h"
+#include "engine/language/synonyms.h"
 #include "engine/language/vocabulary.h"
 #include "engine/language/words.h"
 #include "engine/pipeline/models/model_words.h"
@@ -70,6 +71,40 @@ plan::SceneWords words_of_scene(const EditRecipe& recipe, const std::string& giv
     looking.use_dreambooth = false;
     EditJob job(std::move(looking), control, std::move(cache));
     return job.words_shown(std::move(scene));
+}
+
+bool take_named_label(EditRecipe& recipe) {
+    const auto source = language::normalised_prompt(recipe.request.source);
+    const auto known = model_words(model_path(recipe.job));
+    if (source.empty() || recipe.job.brings_label() || known.empty() ||
+        language::vocabulary_contains(known, source) || !is_project_file(recipe.job.scene))
+        return false;
+    const auto labels = read_project_summary(recipe.job.scene).labels;
+    recipe.job.use_label = std::any_of(labels.begin(), labels.end(), [&](const NamedLabel& label) {
+        return language::normalised_prompt(label.name) == source;
+    });
+    if (recipe.job.use_label) log::info("\"{}\" is a label of the project", source);
+    return recipe.job.use_label;
+}
+
+void take_known_words(EditRecipe& recipe) {
+    auto& request = recipe.request;
+    const auto known = model_words(model_path(recipe.job));
+    if (recipe.job.brings_label() || language::vocabulary_contains(known, request.source)) return;
+    const auto source = language::in_known_words(request.source, known);
+    if (!language::vocabulary_contains(known, source.text)) return;
+    for (const auto& word : source.replaced) {
+        log::info("{}", language::other_word_text(word));
+        // The words of the sentence that name the source; others are the model's to draw.
+        const auto own = [&](const std::string& text) {
+            auto words = known;
+            for (const auto& other : language::words_of(text))
+                if (other != word.typed) words.push_back(other);
+            return language::in_known_words(text, words).text;
+        };
+        request.prompt = own(request.prompt);
+    }
+    request.source = source.text;
 }
 
 bool has_steps(const EditRecipe& recipe) {

@@ -37,6 +37,14 @@ language::plan::SceneWords words_of_scene(const EditRecipe& recipe, const std::s
                                           const std::vector<std::string>& labels, const JobControl& control,
                                           std::shared_ptr<DiskCache> cache);
 
+/// Takes the label of a project that is named like the recipe's source, where the model does not know that
+/// word and nothing else says what may change. True where it did. Throws Error for a broken project.
+bool take_named_label(EditRecipe& recipe);
+
+/// Puts known words in the place of unknown ones of the same meaning, in source and sentence alike, and logs
+/// them. Nothing where the recipe brings its label, or its source is known.
+void take_known_words(EditRecipe& recipe);
+
 /// False for a recipe whose target, mode or label was chosen: its sentence runs as it is.
 bool has_steps(const EditRecipe& recipe);
 

@@ -103,4 +103,37 @@ DOCTEST_TEST_CASE(
     app.shut_down();
 }
 
+DOCTEST_TEST_CASE("a click labels the whole thing under it, by the name of what is asked for") {
+    const Place place;
+    Session session;
+    session.open_bear();
+    auto& app = session.app;
+    auto request = app.model().request;
+    request.source = "skull", request.prompt = "a golden skull", request.target = "golden";
+    app.run(command::SetRequest{request});
+    app.run(command::AddLabel{"skull"});
+    const auto& camera = app.model().camera;
+    ui::ScreenRegion click;
+    click.polygon = {{static_cast<float>(camera.width) / 2, static_cast<float>(camera.height) / 2}};
+    app.run(command::CutOut{click, ui::SetOperation::Add});
+    DOCTEST_REQUIRE(session.settled());
+    DOCTEST_CHECK(app.model().job.error.empty());
+    const auto& state = app.document().state();
+    DOCTEST_REQUIRE(state.labels.size() == 1);
+    DOCTEST_CHECK(state.labels[0].name == "skull");
+    const auto labelled = count_labelled(state.labels[0]);
+    DOCTEST_CHECK(labelled > state.current.size() * 50 / 100);  // the bear has six of ten splats
+    DOCTEST_CHECK(labelled < state.current.size() * 70 / 100);
+    app.update(session.preview);
+    DOCTEST_CHECK(app.model().scope.by_label);
+    DOCTEST_CHECK(app.model().labelled_by_hand);
+    click.polygon = {{2, 2}};  // beside everything
+    app.run(command::CutOut{click, ui::SetOperation::Replace});
+    DOCTEST_REQUIRE(session.settled());
+    DOCTEST_CHECK(count_labelled(app.document().state().labels[0]) == labelled);
+    app.run(command::Undo{});
+    DOCTEST_CHECK(count_labelled(app.document().state().labels[0]) == 0);
+    app.shut_down();
+}
+
 }  // namespace segmenter_test

@@ -119,12 +119,39 @@ DOCTEST_TEST_CASE("an unknown source is refused before work; a label by hand is 
     DOCTEST_CHECK(harness.shell.state().viewport.tool == ui::Tool::CutOut);
     harness.frame(3);
     DOCTEST_CHECK(harness.find("panel.Labels") != nullptr);
-    model.labelled_by_hand = true;  // something was painted
+    harness.key(key::Escape);
+    DOCTEST_CHECK(harness.shell.state().viewport.tool == ui::Tool::Orbit);
+    harness.shell.show(ui::PanelId::Prompt);
+    harness.frame(3);
+    harness.application.calls.clear();
+    harness.modifiers(true, false, false);  // who asks for the edit is asked for the thing
+    harness.key(key::Enter);
+    harness.modifiers(false, false, false);
+    harness.frame(2);
+    const auto& calls = harness.application.calls;
+    DOCTEST_CHECK(std::count(calls.begin(), calls.end(), "add_label sign") == 1);
+    DOCTEST_CHECK(std::count(calls.begin(), calls.end(), "edit") == 0);
+    DOCTEST_CHECK(harness.shell.state().viewport.tool == ui::Tool::CutOut);
+    model.labelled_by_hand = true;  // something was clicked or painted
     harness.shell.show(ui::PanelId::Prompt);
     harness.frame(3);
     DOCTEST_CHECK(!harness.rect("prompt.locate").enabled);
     DOCTEST_CHECK(harness.rect("prompt.edit").enabled);
     DOCTEST_CHECK(harness.asks("prompt.edit", "edit"));
+}
+
+DOCTEST_TEST_CASE("another word for a known one is offered as that, and asks for no click") {
+    Harness harness({Wide, High, 1, Situation::Scene, false});
+    auto& model = harness.application.model();
+    model.request.source = "puppy";
+    model.request.prompt = "a golden puppy";
+    model.request.target = "golden";
+    model.known_words = {"a", "dog", "golden"};
+    harness.frame(2);
+    DOCTEST_REQUIRE(harness.find("prompt.source.suggestion") != nullptr);
+    harness.click("prompt.source.suggestion");
+    harness.frame(2);
+    DOCTEST_CHECK(model.request.source == "dog");
 }
 
 DOCTEST_TEST_CASE(

@@ -203,7 +203,12 @@ DOCTEST_TEST_CASE("a box of the tool that cuts out asks for what is in it, once"
     const auto& calls = harness.application.calls;
     DOCTEST_CHECK(std::count(calls.begin(), calls.end(), "cut_out 4") == 1);
     DOCTEST_CHECK(harness.application.regions.empty());  // nothing was selected by the box itself
-    harness.click("tool.cut_out");                       // in use already
+    const auto middle = in_viewport(harness, 0.4f, 0.5f);
+    harness.drag(middle, {middle.x + 1, middle.y});  // a click: the thing under it
+    DOCTEST_CHECK(std::count(calls.begin(), calls.end(), "cut_out 1") == 1);
+    harness.drag(middle, {middle.x + 40, middle.y + 1});  // neither a click nor a box
+    DOCTEST_CHECK(calls.back() == "cut_out 1");
+    harness.click("tool.cut_out");  // in use already
     DOCTEST_CHECK(harness.shell.state().viewport.tool == ui::Tool::CutOut);
     harness.key(key::Escape);
     DOCTEST_CHECK(harness.shell.state().viewport.tool == ui::Tool::Orbit);

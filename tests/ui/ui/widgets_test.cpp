@@ -145,7 +145,7 @@ DOCTEST_TEST_CASE("what is said about a sentence") {
     DOCTEST_CHECK(facts.source_suggestions == std::vector<std::string>{"bear"});
     // What is looked for must be known, unless a label says where it is; other words only warn.
     DOCTEST_CHECK(facts.problem.find("\"baer\"") != std::string::npos);
-    DOCTEST_CHECK(facts.problem.find("by hand") != std::string::npos);
+    DOCTEST_CHECK(facts.problem.find("click on it") != std::string::npos);
     DOCTEST_CHECK(!facts.locate_problem.empty());
     DOCTEST_CHECK(ui::facts_of(request, {.known = known, .labelled_by_hand = true}).problem.empty());
     request.source = "bear";

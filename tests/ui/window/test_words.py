@@ -52,6 +52,30 @@ class Words(WindowTest):
         again.wait_widget("prompt.edit", enabled=True)
         again.close()
 
+    def test_an_unknown_thing_is_clicked(self):
+        window = self.start()
+        window.write("prompt.source", "skull")
+        window.write("prompt.sentence", "a golden skull on the grass")
+        time.sleep(0.5)
+        window.key("shift+Return")          # the edit asks for the thing first
+        window.wait_widget("panel.Labels")
+        self.assertFalse(window.state()["job"]["running"])
+        window.picture("words_05_click")
+        window.click("viewport", 0.5, 0.55)     # on the bear
+        window.wait(lambda s: s["labelled"] > 100 and not s["job"]["running"], "nothing was labelled", 60)
+        state = window.state()
+        self.assertLess(state["labelled"], state["splats"] * 0.7)    # without the grass
+        window.picture("words_06_clicked")
+        window.key("Escape")
+        window.click("tab.Prompt")
+        window.wait_widget("prompt.edit", enabled=True)
+        window.click("prompt.edit")
+        window.wait(lambda s: s["job"]["running"], "the edit did not start", 20)
+        window.idle(300)
+        self.assertEqual(window.state()["job"]["error"], "")
+        self.assertTrue(window.state()["result_waiting"])
+        window.close()
+
     def test_an_unknown_thing_is_labelled_by_hand_and_edited(self):
         window = self.start()
         window.write("prompt.source", "sign")

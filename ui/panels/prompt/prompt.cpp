@@ -8,6 +8,7 @@
 
 #include "engine/edit/request/edit_method.h"
 #include "engine/edit/request/unchecked_request.h"
+#include "engine/language/synonyms.h"
 #include "engine/language/vocabulary.h"
 #include "engine/language/words.h"
 #include "engine/scene/strength.h"
@@ -37,15 +38,18 @@ constexpr std::array<const char*, 4> ModeHelp{
 void draw_unknown_source(Context& context) {
     const auto& prompt = context.state.prompt;
     const std::string word = language::unknown_word(context.model.known_words, context.request.source);
+    const std::string synonym = language::known_synonym(word, context.model.known_words);
     if (context.model.labelled_by_hand) {
         dim_text(fmt::format("The model cannot find \"{}\": the label says where it is.", word));
         return;
     }
-    coloured_text(palette::Warning,
-                  language::vocabulary_contains(context.model.generated_vocabulary, word) &&
-                          !context.model.generated_vocabulary.empty()
-                      ? fmt::format("The model can draw \"{}\" but not find it.", word)
-                      : fmt::format("The model does not know \"{}\" and cannot find it.", word));
+    if (!synonym.empty()) wrapped_text(fmt::format("\"{}\" is another word for \"{}\".", word, synonym));
+    else
+        coloured_text(palette::Warning,
+                      language::vocabulary_contains(context.model.generated_vocabulary, word) &&
+                              !context.model.generated_vocabulary.empty()
+                          ? fmt::format("I can draw \"{}\" but not find it: click on it in the view.", word)
+                          : fmt::format("I do not know \"{}\": click on it in the view.", word));
     for (std::size_t i = 0; i < prompt.source_suggestions.size(); ++i) {
         const auto& suggestion = prompt.source_suggestions[i];
         const std::string text = fmt::format("Use \"{}\"", suggestion);
@@ -57,14 +61,14 @@ void draw_unknown_source(Context& context) {
             context.request_changed = true;
         }
     }
-    constexpr const char* by_hand = "Label it by hand instead";
+    constexpr const char* by_hand = "Click on it";
     if (!prompt.source_suggestions.empty()) flow(button_width(by_hand));
-    if (button(
-            context,
-            {.name = "prompt.source.by_hand",
-             .text = by_hand,
-             .why_off = context.scene_open() ? "" : "Open a scene first",
-             .tooltip = "Makes a label and gives you Cut out: drag a box around the thing that may change"}))
+    if (button(context, {.name = "prompt.source.by_hand",
+                         .text = by_hand,
+                         .why_off = context.scene_open() ? "" : "Open a scene first",
+                         .tooltip = "Gives you Cut out: click on the thing that may change, or drag a box "
+                                    "around it. It becomes a label "
+                                    "of that name"}))
         label_by_hand(context, context.request.source);
     if (prompt.source_suggestions.empty()) dim_text(fmt::format("Or use {}.", prompt.source_help));
 }

@@ -135,8 +135,8 @@ EditedViews LookCorrection::edit(const std::vector<EditView>& views, const EditV
     });
     std::vector<float> much(shading.parts());
     for (std::size_t part = 0; part < much.size(); ++part)
-        much[part] = static_cast<float>(
-            std::clamp((LookEnough - with[part] / std::max(all[part], 1.0)) / (LookEnough - LookPoor), 0.0, 1.0));
+        much[part] = static_cast<float>(std::clamp(
+            (LookEnough - with[part] / std::max(all[part], 1.0)) / (LookEnough - LookPoor), 0.0, 1.0));
     if (std::any_of(much.begin(), much.end(), [](float share) { return share > 0; }))
         log::info("parts of the redrawn views lack the look that is asked for: they are brought to it");
     double pixels = 0, right = 0;

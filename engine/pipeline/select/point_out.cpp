@@ -1,0 +1,125 @@
+// Surface under the click, and what grows from it.
+#include "engine/pipeline/select/point_out.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/base/printable.h"
+#include "engine/edit/placement/ground_rows.h"
+#include "engine/math/unproject.h"
+#include "engine/pipeline/select/named_picture.h"
+#include "engine/scene/framing.h"
+
+namespace gse::pipeline {
+namespace {
+
+constexpr float Shown = 0.5f;       // alpha of a pixel that shows something
+constexpr double Framed = 1.6;      // radii of a scene: height of the picture that shows it
+constexpr double NearClick = 0.02;  // of the picture's height: a click that near to something is on it
+
+NamedPicture picture_of_click(const std::string& text) {
+    auto picture = named_picture(text, 2, {0, 2, 3});
+    if (!picture)
+        throw Error(ErrorCode::InvalidArgument, "--at \"" + printable(text) + "\" is no place",
+                    "give X,Y as shares of the picture, as in 0.5,0.4, and ,AZIMUTH,ELEVATION or "
+                    ",AZIMUTH,ELEVATION,ZOOM behind it where needed");
+    return *std::move(picture);
+}
+
+/// Shown pixel nearest to the click, within reach.
+std::optional<std::pair<int, int>> shown_at(const Image& alpha, double x, double y) {
+    const double reach = NearClick * alpha.height;
+    std::optional<std::pair<int, int>> nearest;
+    double least = reach * reach;
+    const auto from = [&](double value) { return std::max(0, static_cast<int>(std::floor(value - reach))); };
+    const auto to = [&](double value, int size) {
+        return std::min(size - 1, static_cast<int>(std::floor(value + reach)));
+    };
+    for (int v = from(y); v <= to(y, alpha.height); ++v)
+        for (int u = from(x); u <= to(x, alpha.width); ++u) {
+            const double squared = std::pow(u + 0.5 - x, 2.0) + std::pow(v + 0.5 - y, 2.0);
+            if (!(alpha.at(u, v, 0) > Shown) || squared > least) continue;
+            least = squared, nearest = {u, v};
+        }
+    return nearest;
+}
+
+/// Takes the ground's rows below the thing off it.
+localize::GrownThing without_ground(const GaussianSet& set, localize::GrownThing thing, const Vec3& up) {
+    const Vec3 axis = std::abs(normalized(up)[0]) < 0.5 ? Vec3{1, 0, 0} : Vec3{0, 0, 1};
+    for (const auto row : edit::ground_rows(set, thing.rows, up, normalized(cross(up, axis))))
+        thing.rows[row] = 0;
+    return thing;
+}
+
+void require_going(const JobControl& control) {
+    if (control.stop_requested()) throw Error(ErrorCode::Cancelled, "labelling the thing was stopped");
+}
+
+}  // namespace
+
+ClickRequest click_request(const std::string& text, const Scene& scene, const std::string& up) {
+    auto [place, parameters] = picture_of_click(text);
+    if (place[0] < 0 || place[0] > 1 || place[1] < 0 || place[1] > 1)
+        throw Error(ErrorCode::InvalidArgument,
+                    "the place of --at \"" + printable(text) + "\" does not lie in the picture",
+                    "X and Y are shares from 0 to 1");
+    parameters.up = up;
+    check_fields(parameters);
+    ClickRequest request;
+    request.camera = choose_camera(scene, {}, parameters);
+    request.x = place[0] * parameters.width, request.y = place[1] * parameters.height;
+    request.settings = raster_settings(parameters, scene.info);
+    request.up = parse_up(up, scene.info);
+    return request;
+}
+
+double azimuth_of_click(const std::string& text) { return picture_of_click(text).parameters.azimuth; }
+
+localize::GrownThing thing_at(const GaussianSet& set, const ClickRequest& request,
+                              const JobControl& control) {
+    require_going(control);
+    Painter painter;
+    const auto& picture = painter.paint(set.spans(), request.camera, request.settings);
+    const auto pixel = shown_at(picture.alpha, request.x, request.y);
+    if (!pixel) return {std::vector<std::uint8_t>(set.size(), 0)};
+    const auto [x, y] = *pixel;
+    const auto depth = static_cast<double>(picture.depth.at(x, y, 0) / picture.alpha.at(x, y, 0));
+    require_going(control);
+    localize::GrowRequest grow;
+    grow.seed = unprojected(request.camera, x + 0.5, y + 0.5, depth);
+    grow.up = request.up;
+    grow.extent = depth * request.camera.height / request.camera.fy;
+    grow.ground = request.ground;
+    auto thing = localize::grow_thing(set.spans(), grow);
+    return request.ground ? thing : without_ground(set, std::move(thing), request.up);
+}
+
+localize::GrownThing largest_thing(const GaussianSet& set, const Vec3& up, const JobControl& control) {
+    require_going(control);
+    const gse::Bounds bounds = framing_bounds(set);
+    localize::GrowRequest grow;
+    grow.up = up, grow.extent = Framed * bounds.radius();
+    const auto seed = localize::largest_thing(set.spans(), bounds.centre(), bounds.radius(), up);
+    if (!seed || !(grow.extent > 0)) return {std::vector<std::uint8_t>(set.size(), 0)};
+    require_going(control);
+    grow.seed = *seed;
+    return without_ground(set, localize::grow_thing(set.spans(), grow), up);
+}
+
+std::string parted_text(const localize::GrownThing& thing) {
+    std::vector<std::string_view> from;
+    if (thing.from_support) from.emplace_back("what it stands on");
+    if (thing.from_above) from.emplace_back("what stands on it");
+    if (thing.from_thread) from.emplace_back("what a thin part joins it to");
+    return from.empty() ? std::string() : fmt::format("parted from {}", fmt::join(from, " and from "));
+}
+
+}  // namespace gse::pipeline

@@ -1,0 +1,39 @@
+// A thing that is pointed at, or that stands alone, for labelling without a word.
+#pragma once
+
+#include <string>
+
+#include "engine/base/progress.h"
+#include "engine/localize/grow_thing.h"
+#include "engine/pipeline/scene/scene_tools.h"
+
+namespace gse::pipeline {
+
+/// A click on a picture of the scene.
+struct ClickRequest {
+    Camera camera;
+    double x = 0, y = 0;        // in the camera's pixels
+    raster::Settings settings;  // of the picture
+    Vec3 up{0, -1, 0};          // of the world
+    bool ground = false;        // the ground is meant, not what stands on it
+};
+
+/// Click of --at: "X,Y", shares of the picture that `render` makes of the scene by default. Another picture
+/// is named by ",AZIMUTH,ELEVATION" or ",AZIMUTH,ELEVATION,ZOOM" behind it. Throws Error (InvalidArgument).
+ClickRequest click_request(const std::string& text, const Scene& scene, const std::string& up);
+
+/// Azimuth of that picture, degrees.
+double azimuth_of_click(const std::string& text);
+
+/// Thing under the click, on all its sides (localize::grow_thing). No row where the picture shows nothing
+/// within a fiftieth of its height. Throws Error (Cancelled).
+localize::GrownThing thing_at(const GaussianSet& set, const ClickRequest& request,
+                              const JobControl& control = {});
+
+/// The largest thing that stands alone. No row in an empty scene. Throws Error (Cancelled).
+localize::GrownThing largest_thing(const GaussianSet& set, const Vec3& up, const JobControl& control = {});
+
+/// "the thing was parted from what it stands on", and so on; empty where nothing was cut.
+std::string parted_text(const localize::GrownThing& thing);
+
+}  // namespace gse::pipeline
