@@ -42,9 +42,12 @@ public:
 private:
     void run() {
         pipeline::EditSteps steps;
-        if (pipeline::has_steps(recipe_))
+        if (!pipeline::take_named_label(recipe_)) pipeline::take_known_words(recipe_);
+        if (pipeline::has_steps(recipe_)) {
+            const auto labels = pipeline::names_in_scene(recipe_);
             steps = pipeline::steps_of_sentence(
-                recipe_, pipeline::words_of_scene(recipe_, {}, control_, nullptr), false);
+                recipe_, pipeline::words_of_scene(recipe_, {}, labels, control_, nullptr), false, labels);
+        }
         if (steps.nothing_to_change)
             throw Error(ErrorCode::InvalidArgument,
                         "the sentence asks for nothing that is not there already");
