@@ -157,7 +157,8 @@ DOCTEST_TEST_CASE(
     conditioning.views.outline = &guided_outline;
     guided_output(tells, views, t, conditioning);
     tells->forward(views, t, context.select(1, 1), nullptr, {}, telling(positive));
-    // Sums over another batch size round otherwise; weights of one standard deviation make values of hundreds.
+    // Sums over another batch size round otherwise; weights of one standard deviation make values of
+    // hundreds.
     constexpr double Rounding = 1e-4;  // of the largest value
     DOCTEST_CHECK((guided_outline - positive).abs().max().item<double>() <=
                   Rounding * positive.abs().max().item<double>());
