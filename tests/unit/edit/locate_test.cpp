@@ -407,4 +407,20 @@ DOCTEST_TEST_CASE("networks see a ground that is no part of the scene, and the v
                   before_black.confidence.part("labelled_share"));
 }
 
+DOCTEST_TEST_CASE("what wears an addition is looked for without it; a look stays in the sentence") {
+    const Quiet quiet;
+    Fixture hat;
+    edit::locate(hat.input(request_for("a ball wearing a hat", "hat")), hat.tools());
+    std::size_t of_ball = 0;
+    for (const auto& query : hat.attention.queries) {
+        DOCTEST_CHECK(query.prompt == (query.word == "ball" ? "a ball" : "a ball wearing a hat"));
+        of_ball += query.word == "ball" ? 1 : 0;
+    }
+    DOCTEST_CHECK(of_ball > 0);
+    DOCTEST_CHECK(of_ball < hat.attention.queries.size());
+    Fixture blue;
+    edit::locate(blue.input(request_for("a blue ball", "blue")), blue.tools());
+    DOCTEST_CHECK(blue.attention.queries.front().prompt == "a blue ball");
+}
+
 }  // namespace locate_test
