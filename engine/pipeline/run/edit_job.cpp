@@ -15,6 +15,8 @@
 #include "engine/base/log_quiet.h"
 #include "engine/edit/request/vocabulary.h"
 #include "engine/edit/words/dye_words.h"
+#include "engine/io/formats/scene_formats.h"
+#include "engine/io/project/project_file.h"
 #include "engine/language/grammar.h"
 #include "engine/language/news.h"
 #include "engine/language/vocabulary.h"
@@ -141,10 +143,17 @@ void warn_unknown_words(const std::vector<std::string>& words, const std::vector
     }
 }
 
+bool keeps_labels(const std::filesystem::path& scene) {
+    if (is_project_file(scene)) return true;
+    const io::SceneFormat* format = format_written_to(scene);
+    return format != nullptr && format->keeps_labels;
+}
+
 EditJob::EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCache> cache)
     : recipe_(check(std::move(recipe))), control_(std::move(control)) {
     check_recipe();
     require_one_label(recipe_.job);
+    if (!keeps_labels(recipe_.job.scene)) check_words(nullptr, {});  // before any work
     times_.begin("load_scene");
     recipe_.job.scene = std::filesystem::absolute(recipe_.job.scene).lexically_normal().string();
     recipe_.job.lora = absolute_loras(recipe_.job);

@@ -171,6 +171,9 @@ private:
     std::optional<neural::TuneReport> tuning_;
 };
 
+/// True for a project, and for a scene file whose format keeps labels: their names are words of the scene.
+bool keeps_labels(const std::filesystem::path& scene);
+
 /// The attention itself on the splats of a located job: sum(alpha T map) / sum(alpha T) over the views, [N]
 /// in [0,1].
 std::vector<float> splat_attention(EditJob& job);

@@ -41,13 +41,6 @@ void require_all(const EditSteps& steps) {
         undone->problem.remedy + (steps.steps.size() > 1 ? ", or use --partly to make the other steps" : ""));
 }
 
-/// True for a project, and a file whose format keeps labels.
-bool keeps_labels(const std::filesystem::path& scene) {
-    if (is_project_file(scene)) return true;
-    const io::SceneFormat* format = format_written_to(scene);
-    return format != nullptr && format->keeps_labels;
-}
-
 }  // namespace
 
 std::vector<std::string> names_in_scene(const EditRecipe& recipe) {
