@@ -35,8 +35,8 @@ class Searches(ProgramTest):
                                         "--cut-out", "--the-thing", "bear", "grass")
         self.assertNotIn('"in"', line)
         self.assertEqual(self.folder_listing(), [])
-        # Before the scene is read, where its format keeps no labels that may have the name: what is wrong with
-        # it is not even noticed.
+        # Before the scene is read, where its format keeps no labels that may have the name: what is wrong
+        # with it is not even noticed.
         nothing = self.write("empty.splat", b"")
         process = self.edit("--source", "baer", "--prompt", "a golden baer", "--target", "golden",
                             scene=nothing)

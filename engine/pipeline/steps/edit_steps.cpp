@@ -10,7 +10,6 @@
 #include "engine/base/log.h"
 #include "engine/edit/request/edit_method.h"
 #include "engine/edit/request/vocabulary.h"
-#include "engine/io/formats/scene_formats.h"
 #include "engine/io/project/load_scene.h"
 #include "engine/io/project/project_file.h"
 #include "engine/language/plan/plan_text.h"
