@@ -108,7 +108,8 @@ private:
         return fmt::format(
             "# Figures\n\nOne command writes this page; do not edit it by hand:\n\n```sh\ngseditpro-lab "
             "figures "
-            "--seeds \"{}\" --results FOLDER --out engine/FIGURES.md\n```\n\nMeasured on: {}, {} cores, {}; "
+            "--seeds \"{}\" --results FOLDER --real SUITE --out engine/FIGURES.md\n```\n\nMeasured on: {}, "
+            "{} cores, {}; "
             "the bundled model, everything "
             "else as it is set by default. What FOLDER lacks is measured, what it holds is taken. Goals and "
             "words are explained in "
