@@ -53,7 +53,7 @@ class RealSuites(ProgramTest):
         return process, json.loads((self.folder / "out/eval.json").read_text())
 
     def script_results(self):
-        """What the script makes of the same suite with the same settings."""
+        """Results of the script for the same suite and settings."""
         if not SCRIPT.exists():
             self.skipTest(f"[skip] {SCRIPT} is not there")
         spec = importlib.util.spec_from_file_location("real_suite", SCRIPT)

@@ -78,7 +78,7 @@ void WordSearch::exclude(std::vector<ViewEvidence>& views) const { exclude_views
 
 SoughtWord WordSearch::sought(const std::string& name, bool absent) const {
     const auto& said = request().sentence();
-    // Of what is added nothing is there yet: its word would draw attention off what will wear it.
+    // An addition is not there yet: its word would draw attention off the thing that will wear it.
     const bool adds = language::decide_mode(said, std::nullopt, std::nullopt).first == EditMode::Add;
     std::string sentence = adds && !absent ? said.before() : said.prompt();
     if (!language::has_phrase(sentence, name)) sentence = said.before();  // "on the snow" was "on the grass"

@@ -156,7 +156,7 @@ DOCTEST_TEST_CASE(
     const auto part = real_cameras(scene, task_of_kind("recolour"), set, {}, few);
     DOCTEST_CHECK(distance(part) < 0.5 * distance(whole));
     DOCTEST_CHECK(distance(part) > 0.2 * distance(whole));
-    // Of a ground all is shown; of an addition, where it goes too.
+    // All of a ground is shown, and the place of an addition too.
     DOCTEST_CHECK(distance(real_cameras(scene, task_of_kind("ground"), set, {}, few)) == distance(whole));
     auto add = task_of_kind("add");
     add.place_box = Bounds{{0, -9, 0}, {0, -8, 0}};

@@ -102,7 +102,8 @@ DOCTEST_TEST_CASE("an ellipsoid is as wide as its radii along its axes") {
     DOCTEST_CHECK(!shape.contains({0, 3.001, 0}));
     DOCTEST_CHECK(!shape.contains({0.9, 2.8, 0}));
     const auto turned = region(
-        R"({"ellipsoid": {"centre": [0, 0, 0], "radii": [1, 2, 3], "axes": [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]}})");
+        R"({"ellipsoid": {"centre": [0, 0, 0], "radii": [1, 2, 3],
+                          "axes": [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]}})");
     DOCTEST_CHECK(turned.contains({2.9, 0, 0}));
     DOCTEST_CHECK(!turned.contains({0, 0, 1.1}));
 }

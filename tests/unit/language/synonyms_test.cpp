@@ -19,7 +19,7 @@ DOCTEST_TEST_CASE("another word for a known one leads to it, in the plural too")
                                           {"blossoms", "flower"},
                                           {"bruin", "bear"}})
         DOCTEST_CHECK(known_synonym(typed, known) == expected);
-    // What is only of the same kind, wider, or known already is no other word.
+    // A noun of the same kind, a wider one and a known one are no other words.
     for (const char* typed :
          {"seal", "wolf", "panda", "animal", "vehicle", "cap", "helmet", "dog", "skull", ""})
         DOCTEST_CHECK(known_synonym(typed, known).empty());

@@ -87,7 +87,7 @@ private:
         };
         auto job = sequence.job_of(i, first, control_);
         const auto judgement = make(*job);
-        // Where nothing was taken, what is kept out is what there is to measure.
+        // A failed first step is measured all the same: nothing else is there.
         if (judgement.passed() || sequence.taken() == 0) keep(*job, judgement);
         if (!judgement.passed()) return leave_out(i, judgement.reason);
         follow(*job);
