@@ -110,8 +110,8 @@ private:
             "figures "
             "--seeds \"{}\" --results FOLDER --real SUITE --out engine/FIGURES.md\n```\n\nMeasured on: {}, "
             "{} cores, {}; "
-            "the bundled model, everything "
-            "else as it is set by default. What FOLDER lacks is measured, what it holds is taken. Goals and "
+            "the bundled model,\neverything "
+            "else as it is set by default. FOLDER's results are taken, others are measured.\nGoals and "
             "words are explained in "
             "[METHOD.md](METHOD.md#metrics).\n",
             run_.parameters.seeds, machine["processor"].get<std::string>(), machine["cores"].get<int>(),

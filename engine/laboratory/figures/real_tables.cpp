@@ -62,7 +62,7 @@ std::string scenes_text(const Json& summary) {
     auto text = fmt::format("\nUp axis: {} right, {} wrong, {} asked.", up["right"].get<int>(),
                             up["wrong"].get<int>(), up["asked"].get<int>());
     for (const auto& [mode, front] : summary["front"].items())
-        text += fmt::format(" Front, by {}: {} of {} within 15 degrees, {} beyond 90.", mode,
+        text += fmt::format("\nFront, by {}: {} of {} within 15 degrees, {} beyond 90.", mode,
                             front["within_15"].get<int>(), front["runs"].get<int>(),
                             front["beyond_90"].get<int>());
     return text + "\n\n";
