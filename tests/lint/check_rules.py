@@ -22,8 +22,9 @@ ARROWS = {
     "edit": {"base", "language", "math", "scene", "raster", "localize"},
     "neural": {"base", "language", "edit"},
     "evaluate": {"base", "math", "scene"},
+    "remote": {"base", "math", "scene", "io", "edit"},
     "pipeline": {"base", "language", "math", "scene", "io", "raster", "localize", "heal", "edit", "neural",
-                 "evaluate"},
+                 "evaluate", "remote"},
     "laboratory/synth": {"base", "math", "scene"},
     "laboratory/starter": {"base", "neural"},
     "laboratory/training": {"base", "math", "scene", "io", "raster", "localize", "neural", "evaluate",
@@ -68,6 +69,12 @@ SUB_ROOMS = {
         "plan/words": {"plan/notation"},
         "plan/grammar": {"plan/notation", "plan/words"},
         "plan": {"", "plan/notation", "plan/words", "plan/grammar"},
+    },
+    "remote": {
+        "api": set(),
+        "http": {"api"},
+        "protocols": {"api", "http"},
+        "views": {"api"},
     },
     "laboratory": {
         "synth": {"synth/objects"},
