@@ -16,11 +16,13 @@ namespace gse::edit {
 /// The upper part of a labelled thing.
 struct HeadRegion {
     std::vector<std::uint8_t> bits;  // [N]
-    // Its height, as a share of the whole thing's: the topmost part that is as high as it is wide.
+    // Its height, as a share of the whole thing's: the topmost part that is as high as it is wide, whose
+    // lower half is hardly wider than its upper one.
     double head = 1;
 };
 
-/// Head of the rows that `bits` [N] label, as high as so many `heads`. All rows if no part is as high as
+/// Head of the rows that `bits` [N] label, as high as so many `heads`. Its width is the narrowest horizontal
+/// extent, and rows farther to the side than 0.75 of that are left out. All rows if no part is as high as
 /// wide, or none can be seen.
 HeadRegion bust_of(const GaussianSet& set, std::span<const std::uint8_t> bits, const Vec3& up,
                    const Vec3& front, double heads = 1);

@@ -294,6 +294,9 @@ std::optional<Error> single_edit_problem(const EditRequest& request, const News&
         return refused;
     }
     const auto steps = news_among(plan.steps, news);
+    if (steps.empty() && plan.steps.size() > 1)
+        return Error(ErrorCode::InvalidArgument, "all that the sentence asks for is made already",
+                     "say what is to be different, or undo an edit first");
     if (steps.empty()) return std::nullopt;  // the same edit once more
     for (const auto& step : steps) {
         plan::StepProblem problem;

@@ -280,12 +280,14 @@ double planned_seconds(const Context& context) {
     if (prompt.steps.size() < 2 || estimate.step_seconds.size() != prompt.steps.size())
         return estimate.seconds;
     double sum = 0;
+    bool any = false;
     for (std::size_t i = 0; i < prompt.steps.size(); ++i) {
         if (!prompt.steps[i].problem.empty() || is_left_out(context, prompt.steps[i])) continue;
         if (estimate.step_seconds[i] < 0) return -1;
         sum += estimate.step_seconds[i];
+        any = true;
     }
-    return sum;
+    return any ? sum : -1;
 }
 
 std::string estimate_text(const Context& context) {
