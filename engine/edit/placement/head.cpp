@@ -16,12 +16,18 @@ namespace gse::edit {
 namespace {
 
 constexpr float SeenLogit = -2.2f;     // opacity 0.1: a haze above is no head
-constexpr double Steps = 50;           // slices of a thing
-constexpr double LeastHead = 0.12;     // of its height: a tip is no head
+constexpr int Steps = 100;             // slices of a thing
+constexpr int LeastHead = 8;           // slices: a tip is no head
 constexpr double HeadTrim = 0.03;      // of a slice's rows, at either end: a strand, a ray of a crown
 constexpr double MostWidening = 1.26;  // from the upper half to the whole: cones have 1.28 and more
+constexpr double Elongated = 1.6;      // length over width: a head and what it goes over into, as a neck
 constexpr double MostElongated = 3;    // length over width: two ears, the back of a chair
+constexpr double Back = 0.1;           // of the height, from the top: what an animal's back is seen in
+constexpr double LongBack = 2;         // length over width
+constexpr double LeastBack = 0.8;      // length over the thing's height
 constexpr double HeadSide = 0.75;  // of its width, from its middle: wings and hands beside it are none of it
+constexpr double Everywhere = std::numeric_limits<double>::infinity();
+
 struct Row {
     std::size_t row;
     Vec3 at;  // in the frame
@@ -108,12 +114,14 @@ HeadRegion bust_of(const GaussianSet& set, std::span<const std::uint8_t> bits, c
     HeadRegion bust{{bits.begin(), bits.end()}, 1};
     const TopDown thing(seen_rows(set, bits, make_frame(up, front)));
     if (thing.empty()) return bust;
-    constexpr double Everywhere = std::numeric_limits<double>::infinity();
-    for (double share = LeastHead; share < 1; share += 1 / Steps) {
+    for (int slices = LeastHead; slices < Steps; ++slices) {
+        const double share = static_cast<double>(slices) / Steps;
         const Vec3 middle = thing.middle(share / 2);
-        const auto [width, length] = thing.extents(share / 2, middle, Everywhere);
-        if (!(width > 0) || share * thing.height() < width || length > MostElongated * width) continue;
-        if (thing.extents(share, middle, width)[0] > MostWidening * width) continue;
+        const auto [narrowest, longest] = thing.extents(share / 2, middle, Everywhere);
+        const double width = longest > Elongated * narrowest ? narrowest : 0.5 * (narrowest + longest);
+        if (!(width > 0) || share * thing.height() < width || longest > MostElongated * width) continue;
+        const auto whole = thing.extents(share, middle, width);
+        if (whole[0] > MostWidening * narrowest) continue;
         bust.head = share;
         std::fill(bust.bits.begin(), bust.bits.end(), std::uint8_t{0});
         for (const auto& row : thing.upper(heads * share))
@@ -124,12 +132,26 @@ HeadRegion bust_of(const GaussianSet& set, std::span<const std::uint8_t> bits, c
     return bust;
 }
 
+bool is_head_unclear(const GaussianSet& set, std::span<const std::uint8_t> bits, const Vec3& up,
+                     const Vec3& front, const ModelTraits& traits) {
+    if (bust_of(set, bits, up, front).head < traits.small_head) return false;
+    const TopDown thing(seen_rows(set, bits, make_frame(up, front)));
+    if (thing.empty()) return false;
+    const auto [width, length] = thing.extents(Back, thing.middle(Back), Everywhere);
+    return length > LongBack * width && length > LeastBack * thing.height();
+}
+
+bool is_worn_at_head(const CheckedRequest& request) {
+    const auto& target = request.target();
+    return draws_place(request, EditMode::Add) && language::has_usual_place(target) &&
+           language::usual_place(target) != "around";
+}
+
 AttachmentTarget wearer_of(const CheckedRequest& request, const GaussianSet& set,
                            std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front, bool drawn,
                            const ModelTraits& traits) {
     const auto& target = request.target();
-    const bool at_head = language::has_usual_place(target) && language::usual_place(target) != "around";
-    if (drawn && at_head && draws_place(request, EditMode::Add)) {
+    if (drawn && is_worn_at_head(request)) {
         auto bust =
             bust_of(set, bits, up, front, language::usual_place(target) == "neck" ? traits.head_and_neck : 1);
         if (bust.head < traits.small_head) {
