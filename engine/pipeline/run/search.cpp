@@ -420,7 +420,6 @@ private:
     Located from_glance(const std::vector<double>& distances) {
         const Glance glance = best_glance(distances);
         if (!glance.sure()) return moved_in(views_on(glance.orbit, recipe_), {});
-        if (auto worn = moved_to_wearer(faced(views_on(glance.orbit, recipe_)))) return std::move(*worn);
         const auto mode = edit::decide_mode(recipe_.request, std::nullopt).first;
         const auto focused = focused_on(glance.result.label, mode, glance.orbit, views_.front);
         // A thing; a ground is seen as well from here.
@@ -453,8 +452,6 @@ private:
     /// Looks from the views as they are, and once more from nearer where what was found is small.
     Located moved_in(const Views& from, const std::vector<std::uint8_t>& by_hand) {
         const Views views = faced(from);
-        if (by_hand.empty())
-            if (auto worn = moved_to_wearer(views)) return std::move(*worn);
         Located located{views, recipe_, by_hand, look(recipe_, views, by_hand), target_read_, {}};
         const auto& result = located.result;
         const auto& label = thing_of(result);
@@ -479,23 +476,25 @@ private:
         return located;
     }
 
-    /// Place of a new thing on its wearer, which is found by the sentence before. The new word would draw
-    /// attention off the head. Nothing for other edits, or where no wearer is found.
-    std::optional<Located> moved_to_wearer(const Views& from) {
+    /// Place of a new thing on its wearer, which is found as a search for it alone finds it. The new word
+    /// would draw attention off the head. Nothing for other edits, or where no wearer is found.
+    std::optional<Located> on_wearer() {
         const auto mode = edit::decide_mode(recipe_.request, std::nullopt).first;
-        if (!moves() || mode != edit::EditMode::Add || !framed_as_figure(mode)) return std::nullopt;
+        if (mode != edit::EditMode::Add || !framed_as_figure(mode)) return std::nullopt;
         Search for_wearer = *this;
-        for_wearer.recipe_.request.mode = edit::EditMode::Modify;
-        const auto found = for_wearer.moved_in(from, {}).result;
-        if (found.problem != edit::SearchProblem::None) return std::nullopt;
-        const auto focused = focused_on(found.label, mode, from.orbit, from.front);
-        const bool moving = worth_moving(from.orbit, focused, mode, true);
-        Located worn = moved_in(moving ? views_on(focused, recipe_) : from, *found.label.bits);
-        worn.result.confidence = found.confidence;
+        for_wearer.recipe_.request = recipe_.request.search_for(recipe_.request.source());
+        const Located wearer = for_wearer.shown_whole(for_wearer.from_all_distances());
+        pedestal_ = for_wearer.pedestal_;
+        if (!wearer.found()) return std::nullopt;
+        const auto& label = wearer.result.label;
+        const auto focused = focused_on(label, mode, wearer.views.orbit, wearer.views.front);
+        Located worn = moved_in(views_on(focused, recipe_), *label.bits);
+        worn.result.confidence = wearer.result.confidence;
         return worn;
     }
 
     Located from_all_distances() {
+        if (auto worn = on_wearer()) return std::move(*worn);
         Located located = from_glance(distances_);
         std::vector<double> others;
         for (const double distance : ScanDistances)
