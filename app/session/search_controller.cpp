@@ -97,7 +97,8 @@ void SearchController::refresh_reading() {
 void SearchController::follow_document() {
     last_.set_undone(!workspace_.document.includes(last_.step()));
     const auto& state = workspace_.document.state();
-    sentence_.set_said(language::words_said(applied_sentences(state.stack)), things_added(state));
+    sentence_.set_said(language::words_said(applied_sentences(state.stack)), things_added(state),
+                       things_labelled(state));
 }
 
 EditRecipe SearchController::recipe() const {

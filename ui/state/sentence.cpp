@@ -94,8 +94,9 @@ StepFacts step_facts(const edit::EditRequest& request, const edit::PlannedStep& 
         return facts;
     }
     const auto source = language::normalised_prompt(request.source);
-    const bool about_source = planned.words->source == source,
-               labelled = ground.labelled_by_hand && about_source;
+    const bool about_source = planned.words->source == source;
+    const bool labelled =
+        (ground.labelled_by_hand && about_source) || language::contains(ground.made, planned.words->source);
     if (about_source && source_is_missing(source, ground)) {
         facts.problem = fmt::format("Waits until \"{}\" is labelled", source);
         return facts;
@@ -130,8 +131,11 @@ std::string problem_of(const edit::EditRequest& request, const SentenceGround& g
         return !problem.empty() && source_is_missing(source, ground) ? unknown_source(source, ground)
                                                                      : problem;
     }
-    if (const auto problem = edit::single_edit_problem(request, {ground.said, ground.read_target}))
+    if (const auto problem = edit::single_edit_problem(request, {ground.said, ground.read_target})) {
+        facts.refused = true;
+        facts.missing = edit::missing_thing(request, edit::assumed_scene(request, ground.made));
         return fmt::format("{}: {}", first_letter_up(problem->message()), problem->hint());
+    }
     std::optional<edit::CheckedRequest> valid;
     try {
         valid = edit::check(request, {ground.said, ground.read_target});

@@ -19,10 +19,12 @@ void AskedSentence::set(const edit::EditRequest& request) {
     plan();
 }
 
-void AskedSentence::set_said(std::vector<std::string> said, std::vector<std::string> made) {
-    if (said == said_ && made == made_) return;
+void AskedSentence::set_said(std::vector<std::string> said, std::vector<std::string> made,
+                             std::vector<std::string> named) {
+    if (said == said_ && made == made_ && named == named_) return;
     said_ = std::move(said);
     made_ = std::move(made);
+    named_ = std::move(named);
     plan();
 }
 
@@ -47,6 +49,12 @@ edit::StepProgress AskedSentence::steps_in(const language::plan::SceneWords& sce
 }
 
 void AskedSentence::plan() {
+    there_ = made_;
+    for (std::size_t tries = 0; tries < named_.size(); ++tries) {
+        const auto missing = edit::missing_thing(request_, scene());
+        if (missing.empty() || !language::contains(named_, missing)) break;
+        there_.push_back(missing);
+    }
     steps_ = edit::changes_of(request_, scene(), {said_, model_, {}});
     follows_plan_ = edit::follows_plan(request_, steps_, {said_, {}});
 }

@@ -310,6 +310,14 @@ std::optional<Error> single_edit_problem(const EditRequest& request, const News&
     return std::nullopt;
 }
 
+std::string missing_thing(const EditRequest& request, const plan::SceneWords& scene) {
+    if (!is_planned(request)) return {};
+    const auto plan = plan_of(request, scene);
+    const bool missing = plan.is_refusal() && !is_told_as_typed(request, plan) &&
+                         plan.steps.front().text == plan::reason::NotInScene;
+    return missing ? plan.steps.front().text2 : std::string();
+}
+
 std::optional<Error> refusal_of(const plan::Plan& plan, const std::string& source) {
     if (!plan.is_refusal()) return std::nullopt;
     const auto& step = plan.steps.front();
