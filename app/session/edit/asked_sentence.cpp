@@ -48,6 +48,11 @@ edit::StepProgress AskedSentence::steps_in(const language::plan::SceneWords& sce
     return {std::move(steps), scene, model_};
 }
 
+bool AskedSentence::speaks_of(const std::string& thing) const {
+    if (thing.empty() || thing == language::normalised_prompt(request_.source)) return false;
+    return language::contains(there_, thing) || edit::missing_thing(request_, scene()) == thing;
+}
+
 void AskedSentence::plan() {
     there_ = made_;
     for (std::size_t tries = 0; tries < named_.size(); ++tries) {

@@ -28,6 +28,8 @@ public:
     const std::vector<std::string>& said() const { return said_; }
     /// Things of the scene beside the source.
     const std::vector<std::string>& made() const { return there_; }
+    /// Tells whether the sentence speaks of such a thing beside its source.
+    bool speaks_of(const std::string& thing) const;
     /// Words of the scene as far as nobody has looked at pictures of it.
     language::plan::SceneWords scene() const { return edit::assumed_scene(request_, there_); }
     /// Takes the words that the model finds; none = it takes any.
