@@ -94,14 +94,31 @@ StandIn& shared_stand_in(const std::string& flavour) {
     return *found;
 }
 
-StandIn::StandIn(const std::string& flavour, const std::string& host) : host_(host) {
+StandIn::StandIn(const std::string& flavour, const std::string& host,
+                 const std::filesystem::path& certificate)
+    : flavour_(flavour), host_(host), certificate_(certificate) {
     setenv("PYTHONDONTWRITEBYTECODE", "1", 1);
+    start();
+}
+
+void StandIn::start() {
     const auto script = test::source_folder() / "tests/support/stand_in_server.py";
-    const int output = spawn({python(), script.string(), "--flavour", flavour, "--host", host}, process_);
+    std::vector<std::string> words{python(), script.string(), "--flavour", flavour_,
+                                   "--host", host_,           "--port",    std::to_string(port_)};
+    if (!certificate_.empty()) words.insert(words.end(), {"--certificate", certificate_.string()});
+    const int output = spawn(words, process_);
     const auto line = output >= 0 ? first_line(output) : std::string();
     if (output >= 0) close(output);
-    if (!line.starts_with("port ")) throw std::runtime_error("the stand-in does not start");
+    if (!line.starts_with("port ")) {
+        kill();
+        throw std::runtime_error("the stand-in does not start");
+    }
     port_ = std::stoi(line.substr(5));
+}
+
+void StandIn::restart() {
+    kill();
+    start();
 }
 
 StandIn::~StandIn() { kill(); }
@@ -115,11 +132,12 @@ void StandIn::kill() {
 
 std::string StandIn::url() const {
     const bool ipv6 = host_.find(':') != std::string::npos;
-    return "http://" + (ipv6 ? "[" + host_ + "]" : host_) + ":" + std::to_string(port_);
+    const std::string scheme = certificate_.empty() ? "http://" : "https://";
+    return scheme + (ipv6 ? "[" + host_ + "]" : host_) + ":" + std::to_string(port_);
 }
 
 nlohmann::json StandIn::control(const std::string& place) {
-    HttpClient client;
+    HttpClient client(certificate_);
     HttpRequest request;
     request.url = url() + place;
     request.direct = true;
