@@ -180,8 +180,8 @@ ServerTimes patient_times() {
 
 ServerTimes hasty_times() {
     ServerTimes times = patient_times();
-    times.answer = times.drawing = times.silence = Milliseconds(300);
-    times.body = Milliseconds(600);
+    times.answer = times.drawing = times.silence = Milliseconds(250);
+    times.body = Milliseconds(500);
     times.away = Milliseconds(600);
     return times;
 }
