@@ -217,6 +217,18 @@ DOCTEST_TEST_CASE("servers that hang or drip are given up") {
     }
 }
 
+DOCTEST_TEST_CASE("a drawing may take longer than the longest silence between two bytes") {
+    if (!can_stand_in()) return;
+    auto times = patient_times();
+    times.silence = Milliseconds(300);
+    for (const auto& [flavour, kind, at] :
+         {Place{"forge", ServerKind::Webui, ""}, Place{"vllm", ServerKind::OpenAi, ""}}) {
+        Tried tried(flavour, kind, times);
+        DOCTEST_CAPTURE(flavour);
+        DOCTEST_CHECK(tried.with("", "draw", {{"draw_s", "1.5"}}).code == -1);
+    }
+}
+
 DOCTEST_TEST_CASE("a server that is busy is asked again, and draws once") {
     if (!can_stand_in()) return;
     for (const auto& [flavour, kind, at] :

@@ -1,8 +1,10 @@
 // Stand-in server as a child process of the test.
 #include "tests/stress/remote/stand_in.h"
 
+#include <netinet/in.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -70,6 +72,17 @@ const std::string& python() {
     return program;
 }
 
+bool has_loopback() {
+    sockaddr_in place{};
+    place.sin_family = AF_INET;
+    place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    const int descriptor = socket(AF_INET, SOCK_STREAM, 0);
+    const bool bound =
+        descriptor >= 0 && bind(descriptor, reinterpret_cast<const sockaddr*>(&place), sizeof place) == 0;
+    if (descriptor >= 0) close(descriptor);
+    return bound;
+}
+
 bool pictures_are_read() {
     try {
         io::media();
@@ -80,10 +93,11 @@ bool pictures_are_read() {
 }  // namespace
 
 bool can_stand_in() {
-    static const bool pictures = pictures_are_read();
+    static const bool pictures = pictures_are_read(), loopback = has_loopback();
     if (python().empty()) test::skip_missing("python3 is not there");
+    else if (!loopback) test::skip("this machine has no loopback");
     else if (!pictures) test::skip_missing("this build reads no pictures");
-    return !python().empty() && pictures;
+    return !python().empty() && loopback && pictures;
 }
 
 StandIn& shared_stand_in(const std::string& flavour) {
