@@ -25,7 +25,8 @@ struct ServerFacts {
     bool takes_mask = true;                            // a mask tells it where the picture may change
     bool repeats = true;                               // one seed gives one picture
     bool reports_progress = false;
-    bool cancels = false;  // a job of ours can be ended without hitting another's
+    bool cancels = false;                 // a job of ours can be ended without hitting another's
+    std::vector<std::string> notes = {};  // for people: which inputs of a workflow are set
 };
 
 /// One picture to redraw. Pictures are [H,W,3] in [0,1], sides multiples of 64, all of one size.
@@ -41,6 +42,9 @@ struct RedrawOrder {
     double strength = 0.75;         // share of the noise levels that is run: 1 = from pure noise
     std::string sampler = {};       // empty = the server's choice
 };
+
+/// Hint of every error that says that a picture is too large for a server: a smaller one may do.
+constexpr const char* TooLargeHint = "draw at a smaller size, or free memory at the server";
 
 /// A picture as the server drew it: neither registered nor blended.
 struct RedrawnPicture {
