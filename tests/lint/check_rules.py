@@ -22,7 +22,7 @@ ARROWS = {
     "edit": {"base", "language", "math", "scene", "raster", "localize"},
     "neural": {"base", "language", "edit"},
     "evaluate": {"base", "math", "scene"},
-    "remote": {"base", "math", "scene", "io", "edit"},
+    "remote": {"base", "math", "scene", "io", "localize", "edit"},
     "pipeline": {"base", "language", "math", "scene", "io", "raster", "localize", "heal", "edit", "neural",
                  "evaluate", "remote"},
     "laboratory/synth": {"base", "math", "scene"},
