@@ -33,7 +33,7 @@ ARROWS = {
     "laboratory/eval": {"base", "language", "math", "scene", "io", "raster", "localize", "edit", "neural",
                         "evaluate", "pipeline", "laboratory/synth"},
     "laboratory/bench": {"base", "language", "math", "scene", "io", "raster", "localize", "heal", "edit",
-                         "neural", "evaluate", "pipeline", "vulkan", "preview",
+                         "neural", "evaluate", "remote", "pipeline", "vulkan", "preview",
                          "laboratory/synth", "laboratory/eval"},
     "laboratory/figures": {"base", "pipeline", "laboratory/bench", "laboratory/eval"},
     "window": {"base", "vulkan"},
