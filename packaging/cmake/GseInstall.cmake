@@ -1,7 +1,7 @@
 # What is installed where (the program looks for the rest in ../lib/gseditpro and ../share/gseditpro), and the
 # Debian package.
 install(TARGETS gseditpro RUNTIME DESTINATION bin)
-foreach(plugin gse_media gse_neural_plugin)
+foreach(plugin gse_media gse_neural_plugin gse_remote_plugin)
   if(TARGET ${plugin})
     # A libtorch outside of the system's folders stays where it is; the plug-in goes on finding it.
     set_target_properties(${plugin} PROPERTIES INSTALL_RPATH_USE_LINK_PATH TRUE)

@@ -2,6 +2,7 @@
 option(GSE_TESTS "Build the tests" ON)
 option(GSE_OPENCV "Use OpenCV (image and video files, GrabCut)" ON)
 option(GSE_NEURAL "Build the networks (needs libtorch)" ON)
+option(GSE_REMOTE "Build the client of image servers (needs libcurl)" ON)
 option(GSE_WINDOW "Build the window (needs Vulkan, GLFW, Dear ImGui)" ON)
 option(GSE_FUZZ "Build the fuzz targets with libFuzzer (clang)" OFF)
 set(GSE_SANITIZE "" CACHE STRING "Sanitizers for -fsanitize=, for example address,undefined or thread")

@@ -72,8 +72,10 @@ SUB_ROOMS = {
     },
     "remote": {
         "api": set(),
-        "http": {"api"},
-        "protocols": {"api", "http"},
+        "": {"api", "protocols"},
+        "picture": set(),
+        "http": {"api", "picture"},
+        "protocols": {"api", "http", "picture"},
         "views": {"api"},
     },
     "laboratory": {
@@ -165,6 +167,8 @@ LOCK_OWNERS = {
     "engine/pipeline/models/cached_model": "cache of answers",
     "engine/pipeline/models/model_words": "cache of vocabularies",
     "engine/pipeline/models/segmenters": "cache of weights",
+    "engine/remote/http/http_client": "exchanges on their way to the thread that drives them",
+    "engine/remote/http/http_transfer": "callers wait for the end of an exchange, or for a stop",
     "engine/vulkan/device": "messages of the validation layers, from threads of the driver",
     "engine/vulkan/instance": "the same",
 }

@@ -1,0 +1,22 @@
+// Entry point of the shared library that speaks to image servers.
+#include "engine/remote/api/remote_api.h"
+#include "engine/remote/protocols/connect.h"
+
+namespace gse::remote {
+namespace {
+
+class Plugin final : public RemoteApi {
+public:
+    std::unique_ptr<ImageServer> connect(const ServerAddress& address, const JobControl& job) override {
+        return remote::connect(address, job);
+    }
+    std::string keep_credentials(const std::string& url) override { return remote::keep_credentials(url); }
+};
+
+}  // namespace
+}  // namespace gse::remote
+
+extern "C" gse::remote::RemoteApi* gse_remote_api() {
+    static gse::remote::Plugin plugin;
+    return &plugin;
+}

@@ -1,0 +1,16 @@
+// Connection to an image server of any kind.
+#pragma once
+
+#include <memory>
+
+#include "engine/remote/api/remote_api.h"
+
+namespace gse::remote {
+
+/// See RemoteApi::connect().
+std::unique_ptr<ImageServer> connect(const ServerAddress& address, const JobControl& job);
+
+/// See RemoteApi::keep_credentials().
+std::string keep_credentials(const std::string& url);
+
+}  // namespace gse::remote

@@ -1,0 +1,34 @@
+// Protocol C: sd-server's jobs (stable-diffusion.cpp, /sdcpp/v1).
+#pragma once
+
+#include <memory>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/remote/api/image_server.h"
+#include "engine/remote/protocols/server_link.h"
+
+namespace gse::remote {
+
+/// Body of POST img_gen.
+nlohmann::json sdcpp_body(const RedrawOrder& order);
+
+/// Steps to ask of samplers that run the last int(strength * steps) + 1 of `steps`, so that `real` ones run.
+int steps_to_ask_of_levels(int real, double strength);
+
+class SdCppServer final : public ImageServer {
+public:
+    explicit SdCppServer(std::unique_ptr<ServerLink> link) : link_(std::move(link)) {}
+    ServerFacts probe(const JobControl& job) override;
+    RedrawnPicture redraw(const RedrawOrder& order, const JobControl& job) override;
+
+private:
+    std::string submit(const nlohmann::json& body, const JobControl& job);
+    /// The finished job; null where the server does not know it.
+    nlohmann::json wait_for_job(const std::string& id, std::size_t most_bytes, const JobControl& job);
+
+    std::unique_ptr<ServerLink> link_;
+    ServerFacts facts_;
+};
+
+}  // namespace gse::remote

@@ -1,0 +1,150 @@
+// WebUI servers: one request per picture, which is answered when it is drawn.
+#include "engine/remote/protocols/webui_server.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "engine/base/json.h"
+#include "engine/base/log.h"
+#include "engine/remote/http/unique_id.h"
+#include "engine/remote/picture/picture_codec.h"
+#include "engine/remote/protocols/order_checks.h"
+#include "engine/remote/protocols/server_error.h"
+
+namespace gse::remote {
+namespace {
+
+constexpr std::size_t ListBytes = std::size_t{4} << 20;
+constexpr std::size_t EchoedPictures = 2;  // sd-server sends picture and mask back
+constexpr int ProgressSteps = 100;
+
+Ask list_ask() {
+    Ask how;
+    how.most_bytes = ListBytes;
+    return how;
+}
+
+nlohmann::json task_body(const std::string& task) {
+    return {{"id_task", task}, {"id_live_preview", -1}, {"live_preview", false}};
+}
+
+/// The text of the one picture of an answer.
+std::string picture_text(const nlohmann::json& answer, const ServerUrl& url) {
+    const auto& images = value_of(answer, "images");
+    if (!images.is_array() || images.empty()) throw answer_error(url, "without a picture");
+    if (!images[0].is_string()) throw answer_error(url, "with a picture that is no text");
+    if (images[0].get_ref<const std::string&>().empty())
+        throw Error(ErrorCode::Foreign, fmt::format("{} drew nothing", url.nickname()),
+                    "the server's own messages say more");
+    return images[0].get<std::string>();
+}
+
+}  // namespace
+
+ServerFacts WebuiServer::probe(const JobControl& job) {
+    ServerFacts facts;
+    facts.kind = ServerKind::Webui;
+    facts.product = webui_product_name(product_);
+    facts.references = webui_references(product_);
+    facts.cancels = webui_has_tasks(product_);
+    facts.reports_progress = product_ != WebuiProduct::SdServer && product_ != WebuiProduct::KoboldCpp;
+    read_models(facts, job);
+    switch_model(facts, job);
+    return facts_ = facts;
+}
+
+void WebuiServer::read_models(ServerFacts& facts, const JobControl& job) {
+    const auto list = link_->ask_any_status(link_->get("/sdapi/v1/sd-models"), list_ask(), job);
+    if (list.status == 401 || list.status == 403 || (list.status >= 300 && list.status < 400))
+        throw status_error(list, link_->url(), link_->requests().has_secret());
+    if (list.status != 200 && product_ == WebuiProduct::Other)
+        throw status_error(list, link_->url(), link_->requests().has_secret());
+    if (list.status == 200) {
+        facts.models = texts_of(link_->json_of(list), "title");
+        if (facts.models.size() == 1) facts.model = facts.models[0];
+    }
+    if (const auto options = link_->try_json(link_->get("/sdapi/v1/options"), job))
+        if (const auto model = text_of(*options, "sd_model_checkpoint"); !model.empty()) facts.model = model;
+    if (const auto loras = link_->try_json(link_->get("/sdapi/v1/loras"), job))
+        facts.loras = texts_of(*loras, "name");
+    if (product_ == WebuiProduct::SdNext)
+        if (const auto version = link_->try_json(link_->get("/sdapi/v1/version"), job))
+            facts.version = shown(text_of(*version, "version"));
+}
+
+void WebuiServer::switch_model(ServerFacts& facts, const JobControl& job) {
+    if (wanted_model_.empty() || wanted_model_ == facts.model) return;
+    const auto known = std::find_if(facts.models.begin(), facts.models.end(), [&](const auto& title) {
+        return title == wanted_model_ || title.starts_with(wanted_model_ + " ") ||
+               title.starts_with(wanted_model_ + ".");
+    });
+    if (known == facts.models.end())
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("{} has no model \"{}\"", link_->url().nickname(), shown(wanted_model_)),
+                    "the server's list of models names those it has");
+    if (*known == facts.model) return;
+    job.report("the server loads the model", 0, 0);
+    Ask how;
+    how.repeat = Repeat::UnlessStarted;
+    how.draws = true;  // it answers when the model is loaded
+    if (product_ == WebuiProduct::SdNext)
+        link_->ask(
+            link_->requests().post("/sdapi/v1/checkpoint?sd_model_checkpoint=" + percent_encoded(*known),
+                                   nlohmann::json::object()),
+            how, job);
+    else link_->ask(link_->requests().post("/sdapi/v1/options", {{"sd_model_checkpoint", *known}}), how, job);
+    facts.model = *known;
+}
+
+void WebuiServer::report_progress(const std::string& task, const JobControl& job) {
+    if (!facts_.reports_progress || !job.progress) return;
+    const bool ours = webui_has_tasks(product_);
+    const auto json = link_->try_json(ours ? link_->requests().post("/internal/progress", task_body(task))
+                                           : link_->get("/sdapi/v1/progress?skip_current_image=true"),
+                                      job);
+    if (!json) return;
+    if (ours && value_of(*json, "queued") == true) {
+        job.report("waiting in the server's queue", 0, 0);
+        return;
+    }
+    const double share = number_of(*json, "progress", 0, 1, 0);
+    job.report("the server draws", static_cast<int>(share * ProgressSteps), ProgressSteps);
+}
+
+void WebuiServer::stop_task(const std::string& task) {
+    if (!webui_has_tasks(product_)) return;
+    // Interrupting stops whatever runs: only where that is ours.
+    auto interrupt = [requests =
+                          link_->requests()](const HttpResult& result) -> std::unique_ptr<NextRequest> {
+        if (!result.ok() || result.answer.status != 200) return nullptr;
+        if (value_of(try_parse_json(result.answer.body), "active") != true) return nullptr;
+        return std::make_unique<NextRequest>(
+            NextRequest{requests.post("/sdapi/v1/interrupt", nlohmann::json::object())});
+    };
+    link_->send_later(link_->requests().post("/internal/progress", task_body(task)), interrupt);
+}
+
+RedrawnPicture WebuiServer::redraw(const RedrawOrder& order, const JobControl& job) {
+    check_order(order, facts_);
+    if (leaves_nothing(order)) return {order.picture, facts_.model};
+    const auto task = fmt::format("task(gse-{})", unique_id());
+    Ask how;
+    how.repeat = Repeat::UnlessStarted;
+    how.draws = true;
+    how.most_bytes = picture_answer_bytes(order, EchoedPictures);
+    how.meanwhile = [&] { report_progress(task, job); };
+    job.report("the server draws", 0, 0);
+    try {
+        const auto request = link_->requests().post("/sdapi/v1/img2img", webui_body(order, product_, task));
+        const auto json = link_->ask_json(request, how, job);
+        const auto model = webui_model(json);
+        return {received_picture(picture_text(json, link_->url()), order.picture),
+                model.empty() ? facts_.model : shown(model)};
+    } catch (const Error& error) {
+        if (error.code() == ErrorCode::Cancelled) stop_task(task);
+        throw;
+    }
+}
+
+}  // namespace gse::remote

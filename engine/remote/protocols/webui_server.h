@@ -1,0 +1,32 @@
+// Protocol A: WebUI (/sdapi/v1) as A1111, Forge, SD.Next, koboldcpp and sd-server speak it.
+#pragma once
+
+#include <memory>
+
+#include "engine/remote/api/image_server.h"
+#include "engine/remote/protocols/server_link.h"
+#include "engine/remote/protocols/webui_request.h"
+
+namespace gse::remote {
+
+class WebuiServer final : public ImageServer {
+public:
+    /// `model` is switched to when the server is first asked; empty = the one that is loaded.
+    WebuiServer(std::unique_ptr<ServerLink> link, WebuiProduct product, std::string model)
+        : link_(std::move(link)), product_(product), wanted_model_(std::move(model)) {}
+    ServerFacts probe(const JobControl& job) override;
+    RedrawnPicture redraw(const RedrawOrder& order, const JobControl& job) override;
+
+private:
+    void read_models(ServerFacts& facts, const JobControl& job);
+    void switch_model(ServerFacts& facts, const JobControl& job);
+    void report_progress(const std::string& task, const JobControl& job);
+    void stop_task(const std::string& task);
+
+    std::unique_ptr<ServerLink> link_;
+    const WebuiProduct product_;
+    const std::string wanted_model_;
+    ServerFacts facts_;
+};
+
+}  // namespace gse::remote

@@ -1,0 +1,112 @@
+// Stops in every phase of an exchange: the caller returns, and only a job of its own is ended at the server.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "engine/remote/protocols/connect.h"
+#include "tests/stress/remote/stand_in.h"
+
+namespace gse::remote {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Stops a redraw `after` it has begun; milliseconds from the stop to its return.
+double stop_after(ImageServer& server, const RedrawOrder& order, Milliseconds after) {
+    std::stop_source stop;
+    Clock::time_point stopped;
+    std::thread stopper([&] {
+        std::this_thread::sleep_for(after);
+        stopped = Clock::now();
+        stop.request_stop();
+    });
+    JobControl job;
+    job.stop = stop.get_token();
+    const auto error = caught([&] { server.redraw(order, job); });
+    const auto returned = Clock::now();
+    stopper.join();
+    DOCTEST_CHECK(error.is(ErrorCode::Cancelled));
+    return std::chrono::duration<double, std::milli>(returned - stopped).count();
+}
+
+double middle(std::vector<double> values) {
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
+                     values.end());
+    return values[values.size() / 2];
+}
+
+/// Waits until the server was asked for a path, but not for ever.
+bool comes_to_ask(StandIn& stand_in, const std::string& end) {
+    for (int i = 0; i < 200; ++i) {
+        if (!stand_in.asked(end).empty()) return true;
+        std::this_thread::sleep_for(Milliseconds(20));
+    }
+    return false;
+}
+
+DOCTEST_TEST_CASE("a stop returns at once while connecting, sending, waiting, receiving and polling") {
+    if (!can_stand_in()) return;
+    struct Phase {
+        const char *flavour, *fault, *at;
+        ServerKind kind;
+    };
+    for (const auto& phase : {Phase{"forge", "hang", "draw", ServerKind::Webui},
+                              Phase{"forge", "drip", "draw", ServerKind::Webui},
+                              Phase{"sdserver", "hang", "draw", ServerKind::SdCpp},
+                              Phase{"sdserver", "hang", "poll", ServerKind::SdCpp},
+                              Phase{"sdserver", "drip", "poll", ServerKind::SdCpp}}) {
+        auto& stand_in = shared_stand_in(phase.flavour);
+        auto address = stand_in.address();
+        address.kind = phase.kind;
+        const auto server = connect(address, {});
+        stand_in.set({{"fault", phase.fault}, {"at", phase.at}});
+        const auto order = small_order();
+        std::vector<double> times;
+        for (int i = 0; i < 40; ++i) times.push_back(stop_after(*server, order, Milliseconds(i % 40)));
+        DOCTEST_CAPTURE(phase.fault);
+        DOCTEST_CAPTURE(phase.at);
+        DOCTEST_CHECK(middle(times) < 100);
+    }
+}
+
+DOCTEST_TEST_CASE("a job in the queue is cancelled at the server, also where its number had not come yet") {
+    if (!can_stand_in()) return;
+    auto& stand_in = shared_stand_in("sdserver");
+    const auto busy = connect(stand_in.address(), {}), other = connect(stand_in.address(), {});
+    stand_in.set({{"draw_s", "2"}});
+    std::stop_source stop;
+    JobControl job;
+    job.stop = stop.get_token();
+    std::thread first([&] { caught([&] { busy->redraw(small_order(), job); }); });
+    DOCTEST_REQUIRE(comes_to_ask(stand_in, "/job-1"));
+    stop_after(*other, small_order(), Milliseconds(200));
+    DOCTEST_CHECK(comes_to_ask(stand_in, "/job-2/cancel"));
+    DOCTEST_CHECK(stand_in.asked("/job-1/cancel").empty());
+    stop.request_stop();
+    first.join();
+    DOCTEST_CHECK(comes_to_ask(stand_in, "/job-1/cancel"));
+}
+
+DOCTEST_TEST_CASE("a WebUI is interrupted only while it draws for us") {
+    if (!can_stand_in()) return;
+    auto& stand_in = shared_stand_in("forge");
+    const auto busy = connect(stand_in.address(), {}), other = connect(stand_in.address(), {});
+    stand_in.set({{"draw_s", "3"}});
+    std::stop_source stop;
+    JobControl job;
+    job.stop = stop.get_token();
+    std::thread first([&] { caught([&] { busy->redraw(small_order(), job); }); });
+    DOCTEST_REQUIRE(comes_to_ask(stand_in, "/img2img"));
+    stop_after(*other, small_order(), Milliseconds(200));
+    DOCTEST_CHECK(comes_to_ask(stand_in, "/internal/progress"));
+    std::this_thread::sleep_for(Milliseconds(100));
+    DOCTEST_CHECK(stand_in.asked("/interrupt").empty());
+    stop.request_stop();
+    first.join();
+    DOCTEST_CHECK(comes_to_ask(stand_in, "/interrupt"));
+}
+
+}  // namespace
+}  // namespace gse::remote

@@ -1,0 +1,172 @@
+// Connections: which protocol is spoken, passwords, proxies, addresses of unusual form.
+#include <doctest/doctest.h>
+
+#include <sys/stat.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "engine/base/file.h"
+#include "engine/remote/protocols/connect.h"
+#include "tests/stress/remote/stand_in.h"
+#include "tests/test_paths.h"
+
+namespace gse::remote {
+namespace {
+
+/// Sets a variable of the environment for as long as it lives.
+class Variable {
+public:
+    Variable(const char* name, const std::string& value) : name_(name) {
+        if (const char* before = std::getenv(name)) before_ = before;
+        setenv(name, value.c_str(), 1);
+    }
+    ~Variable() {
+        if (before_.empty()) unsetenv(name_);
+        else setenv(name_, before_.c_str(), 1);
+    }
+
+private:
+    const char* name_;
+    std::string before_;
+};
+
+DOCTEST_TEST_CASE("each server is recognised by what it answers") {
+    if (!can_stand_in()) return;
+    struct Known {
+        const char *flavour, *product;
+        ServerKind kind;
+    };
+    for (const auto& known :
+         {Known{"sdserver", "sd-server", ServerKind::SdCpp}, Known{"kcpp", "koboldcpp", ServerKind::Webui},
+          Known{"sdnext", "SD.Next", ServerKind::Webui}, Known{"forge", "Forge", ServerKind::Webui},
+          Known{"a1111", "A1111", ServerKind::Webui}, Known{"lookalike", "WebUI", ServerKind::Webui}}) {
+        auto& stand_in = shared_stand_in(known.flavour);
+        const auto facts = connect(stand_in.address(), {})->probe({});
+        DOCTEST_CAPTURE(known.flavour);
+        DOCTEST_CHECK(facts.kind == known.kind);
+        DOCTEST_CHECK(facts.product == known.product);
+        for (const auto& entry : stand_in.log()) DOCTEST_CHECK(entry["method"] == "GET");
+    }
+}
+
+DOCTEST_TEST_CASE("servers that speak no known protocol are told apart") {
+    if (!can_stand_in()) return;
+    auto& invoke = shared_stand_in("invoke");
+    DOCTEST_CHECK(caught([&] { connect(invoke.address(), {}); }).says("InvokeAI"));
+    auto& plain = shared_stand_in("none");
+    DOCTEST_CHECK(caught([&] { connect(plain.address(), {}); }).hint.find("--api") != std::string::npos);
+    plain.set({{"fault", "html_200"}, {"at", "probe"}});
+    DOCTEST_CHECK(caught([&] { connect(plain.address(), {}); }).says("speaks no protocol"));
+    auto address = plain.address();
+    address.kind = ServerKind::SdCpp;
+    plain.reset();
+    DOCTEST_CHECK(caught([&] { connect(address, {}); }).says("404"));
+}
+
+DOCTEST_TEST_CASE("nobody listening is said at once") {
+    if (!can_stand_in()) return;
+    StandIn stand_in("sdserver");
+    const auto address = stand_in.address();
+    stand_in.kill();
+    const auto error = caught([&] { connect(address, {}); });
+    DOCTEST_CHECK(error.is(ErrorCode::Foreign));
+    DOCTEST_CHECK(error.says("nobody answers at 127.0.0.1:"));
+}
+
+DOCTEST_TEST_CASE("passwords come from the environment, the file or the address, and are refused once") {
+    if (!can_stand_in()) return;
+    test::ScratchFolder folder;
+    const Variable config("GSE_CONFIG_DIR", folder.path().string());
+    auto& stand_in = shared_stand_in("forge");
+    stand_in.set({{"password", "basic anna:geheim:1"}});
+    DOCTEST_CHECK(caught([&] { connect(stand_in.address(), {}); }).says("wants a password"));
+    {
+        const Variable token("GSEDITPRO_SERVER_TOKEN", "anna:geheim:1");
+        connect(stand_in.address(), {})->redraw(small_order(), {});
+    }
+    {
+        const Variable token("GSEDITPRO_SERVER_TOKEN", "anna:wrong");
+        const auto error = caught([&] { connect(stand_in.address(), {}); });
+        DOCTEST_CHECK(error.says("refuses the password"));
+        DOCTEST_CHECK(error.message.find("wrong") == std::string::npos);
+    }
+    const auto typed = "http://anna:geheim%3A1@127.0.0.1:" + std::to_string(stand_in.port()) + "/";
+    const auto kept = keep_credentials(typed);
+    DOCTEST_CHECK(kept == stand_in.url());
+    const auto file = folder.path() / "servers.json";
+    struct stat status {};
+    DOCTEST_REQUIRE(stat(file.c_str(), &status) == 0);
+    DOCTEST_CHECK((status.st_mode & 0777) == 0600);
+    connect(stand_in.address(), {});
+    chmod(file.c_str(), 0644);
+    DOCTEST_CHECK(caught([&] { connect(stand_in.address(), {}); }).says("can be read by others"));
+}
+
+DOCTEST_TEST_CASE("a secret goes to its own origin only") {
+    if (!can_stand_in()) return;
+    test::ScratchFolder folder;
+    const Variable config("GSE_CONFIG_DIR", folder.path().string());
+    auto& first = shared_stand_in("forge");
+    auto& second = shared_stand_in("a1111");
+    keep_credentials("http://anna:geheim@127.0.0.1:" + std::to_string(first.port()));
+    connect(second.address(), {});
+    for (const auto& entry : second.log()) DOCTEST_CHECK(entry["secret"] == "");
+    const auto server = connect(first.address(), {});
+    DOCTEST_CHECK(first.log().back()["secret"] == "Basic");
+    first.set({{"fault", "redirect"}, {"target", second.url() + "/sdapi/v1/img2img"}});
+    DOCTEST_CHECK(caught([&] { server->redraw(small_order(), {}); }).says("sends us on to " + second.url()));
+    DOCTEST_CHECK(second.asked("/img2img").empty());
+}
+
+DOCTEST_TEST_CASE("a secret is not sent unencrypted to a public address") {
+    const Variable token("GSEDITPRO_SERVER_TOKEN", "abc");
+    ServerAddress address;
+    for (const char* url : {"http://example.com", "http://8.8.8.8:7860", "http://a:b@example.com/x"}) {
+        address.url = url;
+        const auto error = caught([&] { connect(address, {}); });
+        DOCTEST_CHECK(error.is(ErrorCode::InvalidArgument));
+        DOCTEST_CHECK(error.says("unencrypted"));
+    }
+}
+
+DOCTEST_TEST_CASE("bearer tokens are sent as such") {
+    if (!can_stand_in()) return;
+    const Variable token("GSEDITPRO_SERVER_TOKEN", "sk-123");
+    auto& stand_in = shared_stand_in("sdserver");
+    stand_in.set({{"password", "bearer sk-123"}});
+    DOCTEST_CHECK(connect(stand_in.address(), {})->probe({}).product == "sd-server");
+}
+
+DOCTEST_TEST_CASE("a proxy of the environment sees nothing of this machine's servers") {
+    if (!can_stand_in()) return;
+    auto& trap = shared_stand_in("none");
+    const Variable one("http_proxy", trap.url()), all("ALL_PROXY", trap.url());
+    auto& stand_in = shared_stand_in("sdserver");
+    connect(stand_in.address(), {})->redraw(small_order(), {});
+    const Variable none("no_proxy", "127.0.0.1");  // for the stand-in's own log
+    DOCTEST_CHECK(trap.log().empty());
+}
+
+DOCTEST_TEST_CASE("servers are found below a path and over IPv6") {
+    if (!can_stand_in()) return;
+    auto& stand_in = shared_stand_in("sdnext");
+    stand_in.set({{"prefix", "/studio/sd"}});
+    auto address = stand_in.address();
+    address.url += "/studio/sd/";
+    DOCTEST_CHECK(connect(address, {})->probe({}).product == "SD.Next");
+    DOCTEST_CHECK(caught([&] { connect(stand_in.address(), {}); }).is(ErrorCode::Foreign));
+}
+
+DOCTEST_TEST_CASE("plain HTTP behind an https address is no safe connection") {
+    if (!can_stand_in()) return;
+    auto& stand_in = shared_stand_in("sdserver");
+    auto address = stand_in.address();
+    address.url.replace(0, 4, "https");
+    const auto error = caught([&] { connect(address, {}); });
+    DOCTEST_CHECK(error.is(ErrorCode::Foreign));
+    DOCTEST_CHECK(error.says("no safe connection"));
+}
+
+}  // namespace
+}  // namespace gse::remote
