@@ -75,7 +75,8 @@ SUB_ROOMS = {
         "": {"api", "protocols"},
         "picture": set(),
         "http": {"api", "picture"},
-        "protocols": {"api", "http", "picture"},
+        "workflow": {"api"},
+        "protocols": {"api", "http", "picture", "workflow"},
         "views": {"api"},
     },
     "laboratory": {

@@ -14,6 +14,7 @@ NODES = {
     "VAELoader": ["vae_name"],
     "CLIPTextEncode": ["text", "clip"], "VAEEncode": ["pixels", "vae"], "VAEDecode": ["samples", "vae"],
     "SetLatentNoiseMask": ["samples", "mask"], "FluxGuidance": ["conditioning", "guidance"],
+    "InpaintModelConditioning": ["positive", "negative", "vae", "pixels", "mask", "noise_mask"],
     "ReferenceLatent": ["conditioning", "latent"], "ConditioningZeroOut": ["conditioning"],
     "KSampler": ["model", "seed", "steps", "cfg", "sampler_name", "scheduler", "positive", "negative",
                  "latent_image", "denoise"],
@@ -58,6 +59,10 @@ class Graph:
             before = self.value(inputs["conditioning"])
             self.value(inputs["latent"])
             return {**before, "references": before["references"] + 1}
+        if kind == "InpaintModelConditioning":
+            if output < 2:
+                return self.value(inputs["positive" if output == 0 else "negative"])
+            return {"picture": self.value(inputs["pixels"]), "mask": self.value(inputs["mask"])}
         if kind == "VAEEncode":
             return {"picture": self.value(inputs["pixels"]), "mask": None}
         if kind == "SetLatentNoiseMask":
@@ -97,6 +102,12 @@ def route(handler, method, path, query, value):
     if path == "/interrupt":
         world.interrupted = True
         return handler.send_json({})
+    if place[:2] == ["api", "jobs"] and world.new_comfy:
+        job = world.jobs.get(place[2], {})
+        world.interrupted = world.interrupted or job.get("status") == "running"
+        if job.get("status") == "queued":
+            job["status"] = "cancelled"
+        return handler.send_json({})
     return handler.send_json({"error": "no such place"}, 404)
 
 
@@ -113,8 +124,9 @@ def upload(handler):
     if pictures.decode_png(content) is None:
         return handler.send_bytes(b"", "text/plain", 400)
     folder = fields["subfolder"][1].decode()
-    handler.world.uploads[f"{folder}/{name} [{fields['type'][1].decode()}]"] = content
-    return handler.send_json({"name": name, "subfolder": folder, "type": fields["type"][1].decode()})
+    kind = fields["type"][1].decode()
+    handler.world.uploads[f"{folder}/{name}" + ("" if kind == "input" else f" [{kind}]")] = content
+    return handler.send_json({"name": name, "subfolder": folder, "type": kind})
 
 
 def errors_of(world, graph):
@@ -123,8 +135,9 @@ def errors_of(world, graph):
         kind, inputs = node.get("class_type"), node.get("inputs", {})
         missing = [name for name in NODES.get(kind, ["class_type"]) if name not in inputs]
         wrong = kind in ("LoadImage", "LoadImageMask") and inputs.get("image") not in world.uploads
+        wrong = wrong or (world.fault == "no_temp" and "[temp]" in str(inputs.get("image")))
         if missing or wrong:
-            words = "Required input is missing" if missing else "Invalid image file"
+            words = "Required input is missing" if missing else "Invalid image file: " + str(inputs["image"])
             found[number] = {"errors": [{"type": "x", "message": words, "details": ",".join(missing)}],
                              "dependent_outputs": [], "class_type": kind}
     return found

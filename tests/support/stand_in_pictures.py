@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """Pictures of the stand-in server: PNG with zlib alone, a deterministic drawing, broken files on purpose."""
+import functools
 import random
 import struct
 import zlib
@@ -26,6 +27,7 @@ class Picture:
             out += pixel[:3] if self.channels == 4 else pixel[:1] * 3
         return Picture(self.width, self.height, 3, bytes(out))
 
+    @functools.lru_cache(None)
     def luma(self):
         colour = self.colour().data
         return [(colour[i] * 299 + colour[i + 1] * 587 + colour[i + 2] * 114) // 1000
@@ -88,6 +90,7 @@ def unfilter(raw, width, height, step):
     return bytes(out)
 
 
+@functools.lru_cache(64)
 def decode_png(data):
     """Picture of an 8-bit PNG without interlace; None for everything else."""
     if data[:8] != SIGNATURE:
@@ -135,10 +138,16 @@ def block_means(picture):
 
 
 def draw(picture, mask, prompt, seed, noise=0, drift=0, exact_outside=False):
-    """The answer to a request: a pure function of what it holds. `mask` is a list of 0 and 255, or None."""
+    """The answer to a request: a pure function of what it holds. `mask` is a list of 0 to 255, or None."""
+    kept = None if mask is None else bytes(255 if value > 127 else 0 for value in mask)
+    return drawn(picture, kept, prompt, seed, noise, drift, exact_outside)
+
+
+@functools.lru_cache(64)
+def drawn(picture, mask, prompt, seed, noise, drift, exact_outside):
     source = picture.colour()
     width, height = source.width, source.height
-    inside = [255] * (width * height) if mask is None else mask
+    inside = bytes((255,)) * (width * height) if mask is None else mask
     colour = colour_of(prompt)
     chosen = [i for i, value in enumerate(inside) if value > 127]
     disc = None

@@ -4,15 +4,16 @@ request.
 
     stand_in_server.py [--flavour sdserver] [--host 127.0.0.1]
 
-The first line of output names the port. GET /gse/set?NAME=VALUE sets knobs (see World), GET /gse/log tells
-what was asked, GET /gse/reset forgets both. Faults count requests of the kind `at`: draw, poll, upload, view,
-progress, probe.
+The first line of output names the port. GET /gse/set?NAME=VALUE sets knobs (see World), /gse/reset?NAME=VALUE
+forgets everything first, /gse/log tells what was asked. Faults count requests of the kind `at`: draw, poll,
+upload, view, progress, probe.
 """
 import argparse
 import base64
 import hashlib
 import json
 import re
+import sys
 import threading
 import time
 import urllib.parse
@@ -42,7 +43,7 @@ class World:
         self.rate, self.target, self.status, self.words, self.retry_after = 20, "", 0, "", ""
         self.draw_s, self.noise, self.drift = 0.0, 0, 0
         self.password, self.model, self.prefix = "", "stand-in", ""
-        self.queue_limit = 64
+        self.queue_limit, self.new_comfy = 64, 0
         self.jobs, self.log, self.uploads, self.tasks = {}, [], {}, {}
         self.next_job, self.interrupted = 1, False
 
@@ -210,6 +211,8 @@ class Handler(BaseHTTPRequestHandler):
                 self.world.set(name, value)
         elif path == "/gse/reset":
             self.world.reset()
+            for name, value in query.items():
+                self.world.set(name, value)
         elif path == "/gse/log":
             with self.world.lock:
                 return self.send_json(self.world.log)
@@ -430,9 +433,10 @@ class Handler(BaseHTTPRequestHandler):
             world.next_job += 1
             job = {"id": number, "kind": "img_gen", "status": "queued", "created": int(time.time())}
             world.jobs[number] = job
+            first = dict(job)
         threading.Thread(target=self.work, args=(job, picture, value), daemon=True).start()
         target = "http://127.0.0.1:1" if self.fault == "poll_elsewhere" else ""
-        return self.send_json({**job, "poll_url": f"{target}/sdcpp/v1/jobs/{number}"}, 202)
+        return self.send_json({**first, "poll_url": f"{target}/sdcpp/v1/jobs/{number}"}, 202)
 
     def work(self, job, picture, value):
         world = self.world
@@ -470,6 +474,8 @@ class Server(ThreadingHTTPServer):
 
     def handle_error(self, request, client_address):
         """Clients that hang up are no news."""
+        if not isinstance(sys.exc_info()[1], OSError):
+            super().handle_error(request, client_address)
 
 
 def main():

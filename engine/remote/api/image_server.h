@@ -25,7 +25,8 @@ struct ServerFacts {
     bool takes_mask = true;                            // a mask tells it where the picture may change
     bool repeats = true;                               // one seed gives one picture
     bool reports_progress = false;
-    bool cancels = false;  // a job of ours can be ended without hitting another's
+    bool cancels = false;                 // a job of ours can be ended without hitting another's
+    std::vector<std::string> notes = {};  // for people: which inputs of a workflow are set
 };
 
 /// One picture to redraw. Pictures are [H,W,3] in [0,1], sides multiples of 64, all of one size.

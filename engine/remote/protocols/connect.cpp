@@ -3,7 +3,9 @@
 
 #include "engine/base/error.h"
 #include "engine/remote/http/credentials.h"
+#include "engine/remote/protocols/comfy_server.h"
 #include "engine/remote/protocols/detection.h"
+#include "engine/remote/protocols/openai_server.h"
 #include "engine/remote/protocols/sdcpp_server.h"
 #include "engine/remote/protocols/server_link.h"
 #include "engine/remote/protocols/webui_server.h"
@@ -25,9 +27,10 @@ std::unique_ptr<ImageServer> server_of(const DetectedServer& found, std::unique_
         case ServerKind::SdCpp: return std::make_unique<SdCppServer>(std::move(link));
         case ServerKind::Webui:
             return std::make_unique<WebuiServer>(std::move(link), found.product, address.model);
-        default: break;
+        case ServerKind::OpenAi: return std::make_unique<OpenAiServer>(std::move(link), address.model);
+        case ServerKind::Comfy: return std::make_unique<ComfyServer>(std::move(link), address);
     }
-    throw Error(ErrorCode::Unsupported, "this protocol is not spoken here");
+    throw Error(ErrorCode::InvalidArgument, "this protocol is not known");
 }
 
 }  // namespace

@@ -56,7 +56,9 @@ DOCTEST_TEST_CASE("a stop returns at once while connecting, sending, waiting, re
                               Phase{"forge", "drip", "draw", ServerKind::Webui},
                               Phase{"sdserver", "hang", "draw", ServerKind::SdCpp},
                               Phase{"sdserver", "hang", "poll", ServerKind::SdCpp},
-                              Phase{"sdserver", "drip", "poll", ServerKind::SdCpp}}) {
+                              Phase{"sdserver", "drip", "poll", ServerKind::SdCpp},
+                              Phase{"vllm", "hang", "draw", ServerKind::OpenAi},
+                              Phase{"comfy", "hang", "view", ServerKind::Comfy}}) {
         auto& stand_in = shared_stand_in(phase.flavour);
         auto address = stand_in.address();
         address.kind = phase.kind;
@@ -64,7 +66,7 @@ DOCTEST_TEST_CASE("a stop returns at once while connecting, sending, waiting, re
         stand_in.set({{"fault", phase.fault}, {"at", phase.at}});
         const auto order = small_order();
         std::vector<double> times;
-        for (int i = 0; i < 40; ++i) times.push_back(stop_after(*server, order, Milliseconds(i % 40)));
+        for (int i = 0; i < 30; ++i) times.push_back(stop_after(*server, order, Milliseconds(i % 40)));
         DOCTEST_CAPTURE(phase.fault);
         DOCTEST_CAPTURE(phase.at);
         DOCTEST_CHECK(middle(times) < 100);
@@ -87,6 +89,30 @@ DOCTEST_TEST_CASE("a job in the queue is cancelled at the server, also where its
     stop.request_stop();
     first.join();
     DOCTEST_CHECK(comes_to_ask(stand_in, "/job-1/cancel"));
+}
+
+DOCTEST_TEST_CASE("a ComfyUI job is ended while it waits or draws, and nobody else's") {
+    if (!can_stand_in()) return;
+    for (const char* new_comfy : {"0", "1"}) {
+        auto& stand_in = shared_stand_in("comfy");
+        stand_in.set({{"new_comfy", new_comfy}});
+        const auto busy = connect(stand_in.address(), {}), other = connect(stand_in.address(), {});
+        busy->redraw(small_order(), {});  // both know the nodes
+        other->redraw(small_order(), {});
+        stand_in.set({{"draw_s", "4"}});
+        std::stop_source stop;
+        JobControl job;
+        job.stop = stop.get_token();
+        std::thread first([&] { caught([&] { busy->redraw(small_order(), job); }); });
+        while (stand_in.asked("/prompt").size() < 3) std::this_thread::sleep_for(Milliseconds(10));
+        stop_after(*other, small_order(), Milliseconds(300));
+        DOCTEST_CHECK(comes_to_ask(stand_in, "/cancel"));
+        std::this_thread::sleep_for(Milliseconds(100));
+        DOCTEST_CHECK(stand_in.asked("/interrupt").empty());
+        stop.request_stop();
+        first.join();
+        if (new_comfy[0] == '0') DOCTEST_CHECK(comes_to_ask(stand_in, "/interrupt"));
+    }
 }
 
 DOCTEST_TEST_CASE("a WebUI is interrupted only while it draws for us") {

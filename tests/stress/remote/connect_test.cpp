@@ -40,7 +40,10 @@ DOCTEST_TEST_CASE("each server is recognised by what it answers") {
     for (const auto& known :
          {Known{"sdserver", "sd-server", ServerKind::SdCpp}, Known{"kcpp", "koboldcpp", ServerKind::Webui},
           Known{"sdnext", "SD.Next", ServerKind::Webui}, Known{"forge", "Forge", ServerKind::Webui},
-          Known{"a1111", "A1111", ServerKind::Webui}, Known{"lookalike", "WebUI", ServerKind::Webui}}) {
+          Known{"a1111", "A1111", ServerKind::Webui}, Known{"lookalike", "WebUI", ServerKind::Webui},
+          Known{"comfy", "ComfyUI", ServerKind::Comfy}, Known{"vllm", "vLLM-Omni", ServerKind::OpenAi},
+          Known{"openai", "OpenAI", ServerKind::OpenAi},
+          Known{"local", "OpenAI look-alike", ServerKind::OpenAi}}) {
         auto& stand_in = shared_stand_in(known.flavour);
         const auto facts = connect(stand_in.address(), {})->probe({});
         DOCTEST_CAPTURE(known.flavour);

@@ -1,10 +1,14 @@
 // Pictures redrawn by the stand-in over each protocol: what was sent, and what came back.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "engine/base/file.h"
+#include "engine/base/json.h"
 #include "engine/remote/protocols/connect.h"
 #include "tests/stress/remote/stand_in.h"
+#include "tests/test_paths.h"
 
 namespace gse::remote {
 namespace {
@@ -84,6 +88,111 @@ DOCTEST_TEST_CASE("every WebUI redraws inside the mask and keeps the rest") {
             DOCTEST_CHECK(entry["path"] != "/internal/sysinfo");
         }
     }
+}
+
+DOCTEST_TEST_CASE("servers of the OpenAI protocol redraw inside a mask of either convention") {
+    if (!can_stand_in()) return;
+    for (const std::string flavour : {"sdserver", "vllm", "openai", "local"}) {
+        DOCTEST_CAPTURE(flavour);
+        StandIn& stand_in = shared_stand_in(flavour);
+        auto address = stand_in.address();
+        address.kind = ServerKind::OpenAi;
+        const bool seeds = flavour == "sdserver" || flavour == "vllm";
+        DOCTEST_CHECK(connect(address, {})->probe({}).repeats == seeds);
+        check_redraws(stand_in, address, seeds);
+        const auto sent = stand_in.asked("/edits").at(0)["fields"];
+        const std::string mask = flavour == "vllm" ? "mask_image" : "mask";
+        int masks = 0;
+        for (const auto& field : sent) {
+            DOCTEST_CHECK(field[0] != "image[]");
+            if (field[0] != mask) continue;
+            ++masks;
+            DOCTEST_CHECK(field[2]["white"] == 32 * 32);
+            if (mask == "mask") DOCTEST_CHECK(field[2]["clear"] == 32 * 32);
+        }
+        DOCTEST_CHECK(masks == 1);
+    }
+}
+
+DOCTEST_TEST_CASE("ComfyUI runs the bundled workflows and keeps nothing") {
+    if (!can_stand_in()) return;
+    StandIn& stand_in = shared_stand_in("comfy");
+    check_redraws(stand_in, stand_in.address());
+    const auto sent = stand_in.asked("/prompt").at(0)["json"];
+    DOCTEST_CHECK(sent["prompt"]["9"]["class_type"] == "PreviewImage");
+    DOCTEST_CHECK(sent["prompt"]["7"]["inputs"]["steps"] == 20);
+    DOCTEST_CHECK(sent["prompt"]["7"]["inputs"]["denoise"] == 0.75);
+    DOCTEST_CHECK(sent["prompt"]["1"]["inputs"]["ckpt_name"] == "stand-in.safetensors");
+    DOCTEST_CHECK(!sent["client_id"].get<std::string>().empty());
+    for (const auto& upload : stand_in.asked("/upload/image"))
+        for (const auto& field : upload["fields"]) {
+            if (field[0] == "type") DOCTEST_CHECK(field[2] == "temp");
+            if (field[0] == "image") DOCTEST_CHECK(field[1].get<std::string>().starts_with("gse_"));
+        }
+    std::size_t forgotten = 0;
+    for (int i = 0; i < 100 && forgotten == 0; ++i)
+        for (const auto& entry : stand_in.asked("/history")) forgotten += entry["method"] == "POST" ? 1u : 0u;
+    DOCTEST_CHECK(forgotten > 0);
+}
+
+DOCTEST_TEST_CASE("the workflow follows from mask, references and wish") {
+    if (!can_stand_in()) return;
+    StandIn& stand_in = shared_stand_in("comfy");
+    auto order = small_order();
+    const auto redrawn = [&](const ServerAddress& address) {
+        stand_in.reset();
+        connect(address, {})->redraw(order, {});
+        std::vector<std::string> kinds;
+        const auto sent = stand_in.asked("/prompt").at(0);
+        for (const auto& node : sent["json"]["prompt"]) kinds.push_back(node["class_type"]);
+        return kinds;
+    };
+    const auto count = [](const std::vector<std::string>& kinds, const std::string& kind) {
+        return std::count(kinds.begin(), kinds.end(), kind);
+    };
+    auto address = stand_in.address();
+    DOCTEST_CHECK(count(redrawn(address), "InpaintModelConditioning") == 1);
+    order.mask = {};
+    DOCTEST_CHECK(count(redrawn(address), "LoadImageMask") == 0);
+    address.workflow = "edit";
+    DOCTEST_CHECK(count(redrawn(address), "ReferenceLatent") == 1);
+    order.references = {order.picture};
+    DOCTEST_CHECK(count(redrawn(address), "ReferenceLatent") == 2);
+}
+
+DOCTEST_TEST_CASE("loaders that know no temporary folder get their pictures from another") {
+    if (!can_stand_in()) return;
+    StandIn& stand_in = shared_stand_in("comfy");
+    const auto server = connect(stand_in.address(), {});
+    stand_in.set({{"fault", "no_temp"}, {"at", "nothing"}});
+    DOCTEST_CHECK(server->redraw(small_order(), {}).picture.width == 64);
+    DOCTEST_CHECK(server->redraw(small_order(), {}).picture.width == 64);
+    DOCTEST_CHECK(stand_in.asked("/prompt").size() == 3);
+}
+
+DOCTEST_TEST_CASE("a workflow that the server cannot run is refused before a picture is sent") {
+    if (!can_stand_in()) return;
+    StandIn& stand_in = shared_stand_in("comfy");
+    const test::ScratchFolder folder;
+    const auto refused = [&](const std::string& extra) {
+        auto address = stand_in.address();
+        address.workflow = folder.path() / "mine.json";
+        auto graph = parse_json(read_file(test::source_folder() / "assets/workflows/img2img.json"), "it");
+        graph.update(parse_json(extra, "extra"));
+        write_file(address.workflow, graph.dump());
+        return caught([&] { connect(address, {}); });
+    };
+    DOCTEST_CHECK(refused("{}").code == -1);
+    DOCTEST_CHECK(
+        refused(R"({"90":{"class_type":"Fancy","inputs":{}}})").says("lacks nodes of the workflow: Fancy"));
+    DOCTEST_CHECK(
+        refused(R"({"90":{"class_type":"PaidApi","inputs":{"image":["2",0]}}})").says("paid service"));
+    DOCTEST_CHECK(refused(R"({"90":{"class_type":"VAELoader","inputs":{"vae_name":"x.pt"}}})")
+                      .says("does not have \"x.pt\""));
+    DOCTEST_CHECK(stand_in.asked("/upload/image").empty());
+    auto address = stand_in.address();
+    address.model = "other.safetensors";
+    DOCTEST_CHECK(caught([&] { connect(address, {})->redraw(small_order(), {}); }).says("other.safetensors"));
 }
 
 DOCTEST_TEST_CASE("references go to servers that take them, and to no others") {

@@ -95,8 +95,9 @@ struct Tried {
         server = connect(address, {});
     }
     Caught with(const std::string& fault, const std::string& at, const Knobs& more = {}) {
-        stand_in.reset({{"fault", fault}, {"at", at}});
-        if (!more.empty()) stand_in.set(more);
+        Knobs knobs = more;
+        knobs.insert({{"fault", fault}, {"at", at}});
+        stand_in.reset(knobs);
         return caught([&] { server->redraw(small_order(), {}); });
     }
     void check(const Fault& fault, const std::string& at) {
@@ -122,7 +123,8 @@ struct Place {
 DOCTEST_TEST_CASE("answers that break HTTP or JSON end in one sentence") {
     if (!can_stand_in()) return;
     for (const auto& [flavour, kind, at] :
-         {Place{"forge", ServerKind::Webui, "draw"}, Place{"sdserver", ServerKind::SdCpp, "draw"}}) {
+         {Place{"forge", ServerKind::Webui, "draw"}, Place{"sdserver", ServerKind::SdCpp, "draw"},
+          Place{"vllm", ServerKind::OpenAi, "draw"}, Place{"comfy", ServerKind::Comfy, "draw"}}) {
         Tried tried(flavour, kind);
         for (const auto& fault : transport_faults()) tried.check(fault, at);
     }
@@ -146,6 +148,11 @@ DOCTEST_TEST_CASE("pictures that are damaged, hidden bombs or of another kind ar
     for (const auto& fault : picture_faults()) webui.check(fault, "draw");
     Tried jobs("sdserver", ServerKind::SdCpp);
     for (const auto& fault : picture_faults()) jobs.check(fault, "poll");
+    Tried forms("vllm", ServerKind::OpenAi);
+    for (const auto& fault : picture_faults()) forms.check(fault, "draw");
+    Tried comfy("comfy", ServerKind::Comfy);
+    for (const auto& fault : picture_faults())
+        if (!std::string(fault.name).starts_with("b64_")) comfy.check(fault, "view");
 }
 
 DOCTEST_TEST_CASE("pictures of unusual kinds are taken as colours of the size that came") {
@@ -187,13 +194,17 @@ DOCTEST_TEST_CASE("answers without a picture end in one sentence") {
     Tried jobs("sdserver", ServerKind::SdCpp);
     for (const char* fault : {"images_none", "images_blank", "images_null"})
         DOCTEST_CHECK(jobs.with(fault, "poll").says("without a picture"));
+    Tried forms("vllm", ServerKind::OpenAi);
+    for (const char* fault : {"images_none", "images_blank", "images_null", "images_number"})
+        DOCTEST_CHECK(forms.with(fault, "draw").says("without a picture"));
+    DOCTEST_CHECK(forms.with("images_url", "draw").says("the address of a picture"));
 }
 
 DOCTEST_TEST_CASE("servers that hang or drip are given up") {
     if (!can_stand_in()) return;
     for (const auto& [flavour, kind, at] :
          {Place{"forge", ServerKind::Webui, "draw"}, Place{"sdserver", ServerKind::SdCpp, "draw"},
-          Place{"sdserver", ServerKind::SdCpp, "poll"}}) {
+          Place{"sdserver", ServerKind::SdCpp, "poll"}, Place{"comfy", ServerKind::Comfy, "view"}}) {
         Tried tried(flavour, kind, hasty_times());
         DOCTEST_CAPTURE(flavour);
         DOCTEST_CAPTURE(at);
@@ -254,6 +265,29 @@ DOCTEST_TEST_CASE("ends of a job other than a picture are told in the server's w
     DOCTEST_CHECK(tried.with("cancelled", "poll").says("cancelled the job"));
     DOCTEST_CHECK(tried.with("unknown_status", "poll").says("unknown state of the job (\"pondering\")"));
     DOCTEST_CHECK(tried.with("poll_elsewhere", "draw").code == -1);
+}
+
+DOCTEST_TEST_CASE("ends of a ComfyUI job other than a picture are told in the server's words") {
+    if (!can_stand_in()) return;
+    Tried tried("comfy", ServerKind::Comfy);
+    DOCTEST_CHECK(tried.with("node_errors", "draw")
+                      .says("refuses the workflow: node 9 PreviewImage: bad \\x1b[31mvalue (seed)"));
+    DOCTEST_CHECK(tried.with("execution_error", "poll")
+                      .says("failed to draw: \"node 3 KSampler: bad \\x1b[31mthing\""));
+    DOCTEST_CHECK(tried.with("execution_memory", "poll").says("ran out of memory"));
+    DOCTEST_CHECK(tried.with("interrupted", "poll").says("was interrupted"));
+    DOCTEST_CHECK(tried.with("no_outputs", "poll").says("without a picture"));
+    DOCTEST_CHECK(tried.with("old_server", "draw").code == -1);
+    DOCTEST_CHECK(tried.with("null_status", "poll").code == -1);
+    DOCTEST_CHECK(tried.with("two_images", "poll").code == -1);
+    DOCTEST_CHECK(tried.with("evil_name", "poll").code == -1);
+    const auto view = tried.stand_in.asked("/view").at(0)["query"];
+    DOCTEST_CHECK(view["filename"] == "../we\"ird #1.png");
+    DOCTEST_CHECK(view["subfolder"] == "a b");
+    DOCTEST_CHECK(tried.with("job_lost", "poll", {{"times", "1"}}).code == -1);
+    DOCTEST_CHECK(tried.stand_in.asked("/prompt").size() == 2);
+    DOCTEST_CHECK(tried.with("job_lost", "poll").says("forgets its jobs"));
+    DOCTEST_CHECK(tried.with("validation", "upload").is(Invalid));
 }
 
 DOCTEST_TEST_CASE("a server that dies in the middle is named, and a queue that stays full is given up") {

@@ -129,10 +129,7 @@ nlohmann::json StandIn::control(const std::string& place) {
     return parse_json(result.answer.body, "the stand-in's answer");
 }
 
-void StandIn::reset(const Knobs& knobs) {
-    control("/gse/reset");
-    if (!knobs.empty()) set(knobs);
-}
+void StandIn::reset(const Knobs& knobs) { control("/gse/reset" + query_of(knobs)); }
 
 void StandIn::set(const Knobs& knobs) { control("/gse/set" + query_of(knobs)); }
 
@@ -158,7 +155,7 @@ ServerTimes patient_times() {
     times.slow_poll = Milliseconds(20);
     times.first_retry = Milliseconds(10);
     times.longest_retry = Milliseconds(40);
-    times.busy = Milliseconds(400);
+    times.busy = Milliseconds(200);
     times.away = Milliseconds(2000);
     return times;
 }

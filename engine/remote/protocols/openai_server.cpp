@@ -1,0 +1,76 @@
+// OpenAI's picture edits: one form per picture, answered when it is drawn. The standard knows no seed.
+#include "engine/remote/protocols/openai_server.h"
+
+#include <algorithm>
+
+#include "engine/remote/picture/picture_codec.h"
+#include "engine/remote/protocols/order_checks.h"
+#include "engine/remote/protocols/server_error.h"
+
+namespace gse::remote {
+namespace {
+
+constexpr std::size_t ModelListBytes = std::size_t{4} << 20;
+constexpr std::size_t MostPictures = 4;
+
+OpenAiProduct product_of(ServerLink& link, const nlohmann::json& models, const JobControl& job) {
+    if (const auto jobs = link.look("/sdcpp/v1/capabilities", job); jobs && jobs->is_object())
+        return OpenAiProduct::SdServer;
+    const auto owners = texts_of(value_of(models, "data"), "owned_by");
+    const auto owned_by = [&](const char* name) {
+        return std::find(owners.begin(), owners.end(), name) != owners.end();
+    };
+    if (owned_by("vllm")) return OpenAiProduct::Vllm;
+    if (link.url().host == "api.openai.com" || owned_by("openai")) return OpenAiProduct::OpenAi;
+    return OpenAiProduct::Other;
+}
+
+std::string picture_in(const nlohmann::json& answer, const ServerUrl& url) {
+    const auto& data = value_of(answer, "data");
+    if (!data.is_array() || data.empty()) throw answer_error(url, "without a picture");
+    auto picture = text_of(data[0], "b64_json");
+    if (!picture.empty()) return picture;
+    if (!text_of(data[0], "url").empty())
+        throw answer_error(url, "with the address of a picture instead of a picture");
+    throw answer_error(url, "without a picture");
+}
+
+}  // namespace
+
+ServerFacts OpenAiServer::probe(const JobControl& job) {
+    Ask how;
+    how.most_bytes = ModelListBytes;
+    const auto models = link_->ask_json(link_->get("/v1/models"), how, job);
+    if (!value_of(models, "data").is_array()) throw answer_error(link_->url(), "without a list of models");
+    product_ = product_of(*link_, models, job);
+    ServerFacts facts;
+    facts.kind = ServerKind::OpenAi;
+    facts.product = openai_product_name(product_);
+    facts.models = texts_of(value_of(models, "data"), "id");
+    if (!wanted_model_.empty()) facts.model = wanted_model_;
+    else if (facts.models.size() == 1) facts.model = facts.models[0];
+    if (!facts.models.empty() && !facts.model.empty() &&
+        std::find(facts.models.begin(), facts.models.end(), facts.model) == facts.models.end())
+        throw Error(ErrorCode::InvalidArgument,
+                    link_->url().nickname() + " has no model \"" + shown(facts.model) + "\"",
+                    "the server's list of models names those it has");
+    facts.references = MostPictures - 1;
+    facts.repeats = product_ == OpenAiProduct::SdServer || product_ == OpenAiProduct::Vllm;
+    return facts_ = facts;
+}
+
+RedrawnPicture OpenAiServer::redraw(const RedrawOrder& order, const JobControl& job) {
+    check_order(order, facts_);
+    if (leaves_nothing(order)) return {order.picture, facts_.model};
+    Ask how;
+    how.repeat = Repeat::UnlessStarted;
+    how.draws = true;
+    how.most_bytes = picture_answer_bytes(order, 0);
+    job.report("the server draws", 0, 0);
+    const auto request =
+        link_->requests().post_parts("/v1/images/edits", openai_parts(order, product_, facts_.model));
+    const auto json = link_->ask_json(request, how, job);
+    return {received_picture(picture_in(json, link_->url()), order.picture), facts_.model};
+}
+
+}  // namespace gse::remote

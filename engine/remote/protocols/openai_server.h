@@ -1,0 +1,27 @@
+// Protocol B: picture edits of the OpenAI interface (/v1/images/edits), as several programs speak it.
+#pragma once
+
+#include <memory>
+
+#include "engine/remote/api/image_server.h"
+#include "engine/remote/protocols/openai_request.h"
+#include "engine/remote/protocols/server_link.h"
+
+namespace gse::remote {
+
+class OpenAiServer final : public ImageServer {
+public:
+    /// `model` is the one to draw with; empty = the server's only one, else the server's choice.
+    OpenAiServer(std::unique_ptr<ServerLink> link, std::string model)
+        : link_(std::move(link)), wanted_model_(std::move(model)) {}
+    ServerFacts probe(const JobControl& job) override;
+    RedrawnPicture redraw(const RedrawOrder& order, const JobControl& job) override;
+
+private:
+    std::unique_ptr<ServerLink> link_;
+    const std::string wanted_model_;
+    OpenAiProduct product_ = OpenAiProduct::Other;
+    ServerFacts facts_;
+};
+
+}  // namespace gse::remote
