@@ -11,8 +11,7 @@
 #include "engine/io/image/image_file.h"
 #include "engine/pipeline/models/view_server.h"
 #include "engine/remote/api/server_kind.h"
-#include "engine/remote/views/acceptance.h"
-#include "engine/remote/views/picture_source.h"
+#include "engine/remote/views/remote_view_editor.h"
 
 namespace gse::app {
 namespace {
@@ -75,6 +74,7 @@ void print_facts(const ViewServer& views) {
     print("masks       {}\nreferences  {}\nrepeats     {}\n", facts.takes_mask ? "yes" : "no",
           facts.references, facts.repeats ? "yes" : "no");
     for (const auto& model : facts.models) print("offers      {}\n", printable(model));
+    for (const auto& note : facts.notes) print("note        {}\n", printable(note));
 }
 
 void run_server_command(ServerOptions& options, const CommandContext& context) {
@@ -86,6 +86,7 @@ void run_server_command(ServerOptions& options, const CommandContext& context) {
     if (options.json) {
         auto json = views.to_json();
         json["models"] = views.facts().models;
+        json["notes"] = views.facts().notes;
         json["takes_mask"] = views.facts().takes_mask;
         json["references"] = views.facts().references;
         json["repeats"] = views.facts().repeats;

@@ -9,7 +9,16 @@
 #include "engine/edit/request/checked_request.h"
 #include "engine/remote/api/image_server.h"
 #include "engine/remote/api/server_settings.h"
-#include "engine/remote/views/remote_view_editor.h"
+
+namespace gse::remote {
+
+class PictureSource;
+enum class Agreement;
+struct ModelFamily;
+struct RemoteDrawing;
+struct ServerUse;
+
+}  // namespace gse::remote
 
 namespace gse::pipeline {
 
@@ -21,13 +30,14 @@ public:
     /// (InvalidArgument) for settings that are none or do not fit the server.
     ViewServer(std::shared_ptr<remote::ImageServer> server, const remote::ServerSettings& settings,
                std::shared_ptr<AnswerCache> cache, const JobControl& job);
+    ~ViewServer();
 
-    const remote::ServerFacts& facts() const { return source_.facts(); }
-    const remote::ModelFamily& family() const { return drawing_.family; }
-    remote::Agreement agreement() const { return drawing_.agreement; }
+    const remote::ServerFacts& facts() const;
+    const remote::ModelFamily& family() const;
+    remote::Agreement agreement() const;
     /// Side of the pictures that are sent, px.
-    int side() const { return drawing_.side; }
-    const remote::ServerUse& use() const { return source_.use(); }
+    int side() const;
+    const remote::ServerUse& use() const;
 
     /// Draws the views of a request. The server stays alive.
     std::unique_ptr<edit::MultiViewEditor> editor(const edit::CheckedRequest& request,
@@ -40,8 +50,8 @@ public:
 private:
     std::shared_ptr<remote::ImageServer> server_;
     std::shared_ptr<AnswerCache> cache_;
-    remote::PictureSource source_;
-    remote::RemoteDrawing drawing_;  // without its text
+    std::unique_ptr<remote::PictureSource> source_;
+    std::unique_ptr<remote::RemoteDrawing> drawing_;  // without its text
 };
 
 /// The server at the settings' address. Name and password that stand in the address are kept in the user's

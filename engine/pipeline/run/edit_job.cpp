@@ -172,7 +172,8 @@ EditJob::EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCach
     times_.begin("load_model");
     auto model = open_recipe_model(recipe_.job, cache);
     auto segmenters = open_segmenters(recipe_.job, cache);
-    auto server = open_view_server(recipe_.server, cache, control_);
+    std::shared_ptr<ViewServer> server;  // not asked where nothing is drawn
+    if (!recipe_.request.is_rearranged()) server = open_view_server(recipe_.server, cache, control_);
     times_.end();
     if (!recipe_.job.cut_out.empty()) {
         times_.begin("cut_out");
@@ -224,6 +225,13 @@ void EditJob::check_recipe() const {
     parse_front(recipe_.job.front);
     parse_front(recipe_.job.looked_from, "--looked-from");
     raster::require_rasterizer(recipe_.job.rasterizer);
+    if (!recipe_.server.used()) return;
+    if (!edit::method_of(recipe_.request).draws_views())
+        throw Error(ErrorCode::InvalidArgument, "a server draws views, and this method follows a gradient",
+                    "leave --method or --server out");
+    if (recipe_.use_dreambooth)
+        throw Error(ErrorCode::InvalidArgument, "a server's model cannot be tuned from here",
+                    "leave --dreambooth or --server out");
 }
 
 /// Checks the words, after it has taken the label that one of them is the name of. A word that the model can

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -31,6 +32,20 @@ Image at_asked_size(Image answer, int side, std::string& note) {
 bool is_large(const Similarity& moved) {
     return std::hypot(moved.dx, moved.dy) > MostShift || std::abs(moved.scale - 1) > MostScale ||
            std::abs(moved.angle) > MostScale;
+}
+
+/// Slope of the light of every pixel, from differences of its neighbours.
+std::vector<double> edges_of(const Image& picture) {
+    const auto light = [&](int x, int y) {
+        x = std::clamp(x, 0, picture.width - 1), y = std::clamp(y, 0, picture.height - 1);
+        return picture.at(x, y, 0) + picture.at(x, y, 1) + picture.at(x, y, 2);
+    };
+    std::vector<double> edges;
+    edges.reserve(picture.pixel_count());
+    for (int y = 0; y < picture.height; ++y)
+        for (int x = 0; x < picture.width; ++x)
+            edges.push_back(std::hypot(light(x + 1, y) - light(x - 1, y), light(x, y + 1) - light(x, y - 1)));
+    return edges;
 }
 
 /// Moves the picture back where that makes its surroundings alike.
@@ -86,14 +101,15 @@ double change_inside(const Image& before, const Image& after, const Mask& mask) 
     return pixels > 0 ? sum / static_cast<double>(pixels) : 0;
 }
 
-double correlation(const Image& a, const Image& b) {
-    GSE_CHECK_EQ(a.data.size(), b.data.size());
-    const auto count = static_cast<double>(a.data.size());
-    const double mean_a = std::accumulate(a.data.begin(), a.data.end(), 0.0) / count;
-    const double mean_b = std::accumulate(b.data.begin(), b.data.end(), 0.0) / count;
+double edge_correlation(const Image& picture, const Image& other) {
+    GSE_CHECK_EQ(picture.data.size(), other.data.size());
+    const auto a = edges_of(picture), b = edges_of(other);
+    const auto count = static_cast<double>(a.size());
+    const double mean_a = std::accumulate(a.begin(), a.end(), 0.0) / count;
+    const double mean_b = std::accumulate(b.begin(), b.end(), 0.0) / count;
     double product = 0, square_a = 0, square_b = 0;
-    for (std::size_t i = 0; i < a.data.size(); ++i) {
-        const double of_a = a.data[i] - mean_a, of_b = b.data[i] - mean_b;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        const double of_a = a[i] - mean_a, of_b = b[i] - mean_b;
         product += of_a * of_b, square_a += of_a * of_a, square_b += of_b * of_b;
     }
     return square_a > 0 && square_b > 0 ? product / std::sqrt(square_a * square_b) : 0;

@@ -32,8 +32,9 @@ double psnr_outside(const Image& sent, const Image& drawn, const Mask& mask);
 /// Mean absolute difference of two pictures inside `mask`; 0 where nothing is.
 double change_inside(const Image& before, const Image& after, const Mask& mask);
 
-/// Correlation of the grey values of two pictures of one size, -1 to 1; 0 where one of them is even.
-double correlation(const Image& a, const Image& b);
+/// Correlation of the edges of two pictures of one size, -1 to 1; 0 where one of them is even. Colours do not
+/// count: it tells whether two pictures show one thing from one side.
+double edge_correlation(const Image& picture, const Image& other);
 
 /// Checks size, displacement, surroundings and change of an answer to `frame`.
 CheckedPicture check_answer(const ViewFrame& frame, Image answer);

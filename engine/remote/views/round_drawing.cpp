@@ -34,6 +34,10 @@ bool picture_is_reference(const ServerFacts& facts, const ModelFamily& family) {
     return family.instructed() && by_references && facts.references > 0;
 }
 
+bool is_square(const Image& picture) {
+    return std::abs(picture.width - picture.height) <= SameAspect * picture.width;
+}
+
 Mask difference(const Mask& mask, const Mask& without) {
     Mask result = mask;
     for (std::size_t i = 0; i < result.data.size(); ++i)
@@ -46,8 +50,8 @@ Mask difference(const Mask& mask, const Mask& without) {
 RoundDrawing::RoundDrawing(PictureSource& source, const RemoteDrawing& drawing,
                            const std::vector<edit::EditView>& views, const edit::EditViewsRequest& request,
                            const JobControl& job)
-    : source_(source), drawing_(drawing), views_(views), request_(request), job_(job), squares_(views.size()),
-      flaws_(views.size(), Flaw::None) {
+    : source_(source), drawing_(drawing), views_(views), request_(request), job_(job),
+      squares_(views.size()) {
     const int crop = crop_side(views);
     for (const auto& view : views)
         frames_.push_back(
@@ -112,10 +116,11 @@ void RoundDrawing::draw_sheet(const std::vector<std::size_t>& cells, const Image
         asked.picture = sheet_of(pictures, drawing_.side);
         asked.mask = as_image(sheet_mask(masks, drawing_.side));
         if (attempt > 0) asked.seed = server_seed(Random::stream(request_.seed, SeedStream).next());
-        const Image answer = at_side(ask_server(std::move(asked)), drawing_.side);
+        const Image came = ask_server(std::move(asked));
+        const Image answer = at_side(came, drawing_.side);
         bool flawed = false;
         for (std::size_t i = first; i < cells.size(); ++i) {
-            auto checked = check_answer(frames[i], cut_cell(answer, i));
+            auto checked = check_answer(frames[i], is_square(came) ? cut_cell(answer, i) : came);
             if (best[i].picture.data.empty() || best[i].flaw != Flaw::None) best[i] = std::move(checked);
             flawed = flawed || best[i].flaw != Flaw::None;
         }
@@ -151,7 +156,7 @@ void RoundDrawing::draw_like(std::size_t view, const Image& key) {
     auto checked = ask(frames_[view], std::move(asked));
     const bool copied =
         checked.picture.width == key.width && !checked.picture.data.empty() &&
-        correlation(checked.picture, key) > correlation(checked.picture, frames_[view].picture);
+        edge_correlation(checked.picture, key) > edge_correlation(checked.picture, frames_[view].picture);
     if (!copied) return take(view, std::move(checked));
     log::info("the server copied the reference into a view, which is drawn without it");
     draw_alone(view);
@@ -184,7 +189,8 @@ void RoundDrawing::draw_warped(std::size_t view, const std::vector<std::size_t>&
     if (static_cast<double>(filled.mask.count()) > LeastHole * mask_pixels) {
         const auto frame =
             frame_of(filled, frames_[view].section, drawing_.side, drawing_.family.latent_cell);
-        auto checked = ask(frame, order_for(view));
+        // Parts of the mask may lie beside the object.
+        auto checked = ask(frame, order_for(view), true);
         if (checked.flaw != Flaw::None) return take(view, std::move(checked));
         filled.rendered = pasted(filled, frame, checked.picture);
     }
@@ -216,7 +222,7 @@ RedrawOrder RoundDrawing::order_for(std::size_t view) const {
         prompt_for_view(drawing_.family, drawing_.text, views_[view].view_words, request_.round > 0));
 }
 
-CheckedPicture RoundDrawing::ask(const ViewFrame& frame, RedrawOrder order) {
+CheckedPicture RoundDrawing::ask(const ViewFrame& frame, RedrawOrder order, bool may_stay) {
     if (frame.mask.count() == 0) return {frame.picture};  // nothing may change
     order.picture = frame.picture;
     order.mask = as_image(frame.sent_mask);
@@ -228,6 +234,7 @@ CheckedPicture RoundDrawing::ask(const ViewFrame& frame, RedrawOrder order) {
                 order.strength = std::min(1.0, order.strength + RaisedStrength);
         }
         checked = check_answer(frame, ask_server(order));
+        if (may_stay && checked.flaw == Flaw::Unedited) checked.flaw = Flaw::None, checked.note.clear();
         if (checked.flaw != Flaw::None) continue;
         checked.picture = match_colours(checked.picture, frame.picture, frame.sent_mask);
         return checked;
@@ -258,7 +265,6 @@ Image RoundDrawing::ask_server(RedrawOrder order) {
 
 void RoundDrawing::take(std::size_t view, CheckedPicture checked) {
     ++done_;
-    flaws_[view] = checked.flaw;
     round_.drift += checked.drift;
     auto& notes = round_.notes;
     if (!checked.note.empty()) {

@@ -60,8 +60,9 @@ private:
 
     RedrawOrder order(std::string prompt) const;
     RedrawOrder order_for(std::size_t view) const;
-    /// Asks for one frame, and once more with another seed where the answer is of no use.
-    CheckedPicture ask(const ViewFrame& frame, RedrawOrder order);
+    /// Asks for one frame, and once more with another seed where the answer is of no use. `may_stay`: what is
+    /// drawn may look as the scene did.
+    CheckedPicture ask(const ViewFrame& frame, RedrawOrder order, bool may_stay = false);
     Image ask_server(RedrawOrder order);
     void take(std::size_t view, CheckedPicture checked);
     std::size_t key_view() const;
@@ -74,7 +75,6 @@ private:
     const JobControl& job_;
     std::vector<ViewFrame> frames_;
     std::vector<Image> squares_;  // per view: as it was drawn, [S,S,3]; empty where nothing of use came
-    std::vector<Flaw> flaws_;     // per view
     DrawnRound round_;
     std::size_t done_ = 0;  // views, for the progress
 };

@@ -224,8 +224,11 @@ DOCTEST_TEST_CASE("reference: others are shown the first view as it was drawn, a
                                 order.picture);
     };
     auto views = views_of_wall(4);
-    for (std::size_t v = 0; v < views.size(); ++v)  // each shows something else around the object
-        views[v].rendered = views[v].original = waves(Side, 31.0 * static_cast<double>(v));
+    for (std::size_t v = 0; v < views.size(); ++v) {  // one ground, and another side of the object in each
+        views[v].mask = disc(Side, 40);
+        views[v].rendered = views[v].original = gse::test::where(
+            as_image(views[v].mask), waves(Side, 31.0 * static_cast<double>(v)), waves(Side));
+    }
     const auto edited = setup.edit(drawing_of(Agreement::Reference, "flux2"), views);
     DOCTEST_CHECK(setup.server.orders[0].references.empty());
     DOCTEST_CHECK(setup.server.orders[1].references.size() == 1);
@@ -249,6 +252,25 @@ DOCTEST_TEST_CASE("warp: what another view shows is carried over along the surfa
     const auto nothing = warp_by_depth({&views[0]}, {&pictures[0]}, hidden[2]);
     DOCTEST_CHECK(nothing.known.count() == 0);
     DOCTEST_CHECK(nothing.picture.data == hidden[2].rendered.data);
+}
+
+DOCTEST_TEST_CASE("warp: parts of a mask that lie beside the object may stay as they are") {
+    auto views = views_of_wall(3);
+    for (auto& view : views) {
+        const auto object =
+            disc(Side, 22, Side / 2.0 - 4.0 * static_cast<double>(&view - &views[0]), Side / 2.0);
+        for (std::size_t i = 0; i < object.data.size(); ++i) {
+            if (object.data[i] != 0) continue;
+            view.depth.data[i] = 0;
+            if (view.mask.data[i] == 0) continue;
+            for (std::size_t c = 0; c < 3; ++c)
+                view.rendered.data[i * 3 + c] = view.original.data[i * 3 + c] = 0;
+        }
+    }
+    Setup setup;
+    const auto edited = setup.edit(drawing_of(Agreement::Warp, "sd15-inpainting"), views);
+    DOCTEST_CHECK(edited.scalars.at("rejected") == 0);
+    DOCTEST_CHECK(setup.server.orders.size() == 1 + 2 * 2);
 }
 
 DOCTEST_TEST_CASE("editor: something new comes with its outline") {
