@@ -267,7 +267,7 @@ void add_server_bench(CLI::App& bench, CommandContext& context) {
         const auto rows =
             bench_server(assets_path() / "scenes/bear/scene.ply", options->parameters, context.job());
         if (!options->output.empty()) write_file(options->output, agreement_json(rows).dump(2) + "\n");
-        print("{}", agreement_text(rows));
+        fmt::print("{}", agreement_text(rows));
     });
 }
 

@@ -9,8 +9,8 @@
 #include "engine/base/file.h"
 #include "engine/base/log.h"
 #include "engine/base/printable.h"
-#include "engine/language/words.h"
 #include "engine/pipeline/models/remote_loader.h"
+#include "engine/pipeline/models/server_instruction.h"
 #include "engine/remote/api/server_kind.h"
 #include "engine/remote/api/server_url.h"
 #include "engine/remote/views/remote_view_editor.h"
@@ -67,10 +67,10 @@ int ViewServer::side() const { return drawing_->side; }
 const remote::ServerUse& ViewServer::use() const { return source_->use(); }
 
 std::unique_ptr<edit::MultiViewEditor> ViewServer::editor(const edit::CheckedRequest& request,
+                                                          edit::EditMode mode,
                                                           const std::string& negative_prompt) {
     auto drawing = *drawing_;
-    drawing.text = {request.sentence().prompt(), language::normalised_prompt(edit::instruction_of(request)),
-                    negative_prompt};
+    drawing.text = {request.sentence().prompt(), server_instruction(request, mode), negative_prompt};
     return std::make_unique<remote::RemoteViewEditor>(*source_, std::move(drawing));
 }
 

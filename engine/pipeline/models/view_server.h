@@ -39,8 +39,8 @@ public:
     int side() const;
     const remote::ServerUse& use() const;
 
-    /// Draws the views of a request. The server stays alive.
-    std::unique_ptr<edit::MultiViewEditor> editor(const edit::CheckedRequest& request,
+    /// Draws the views of a request in that mode. The server stays alive.
+    std::unique_ptr<edit::MultiViewEditor> editor(const edit::CheckedRequest& request, edit::EditMode mode,
                                                   const std::string& negative_prompt);
     /// Key of all that the pictures follow from beside the request; no address.
     std::string key() const;

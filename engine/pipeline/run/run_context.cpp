@@ -116,8 +116,8 @@ std::unique_ptr<edit::MultiViewEditor> RunContext::place_drawing(const CheckedRe
     const auto known = language::promptable_vocabulary(model_->known_words(), model_->generated_vocabulary());
     if (server_ && !language::vocabulary_contains(known, sentence.target()))
         return std::make_unique<UneditedAtServer>(
-            server_->editor(recipe.request, recipe.guidance.negative_prompt), server_->side(), painter_,
-            drawn_, render_settings(scene_, recipe.request));
+            server_->editor(recipe.request, edit::EditMode::Add, recipe.guidance.negative_prompt),
+            server_->side(), painter_, drawn_, render_settings(scene_, recipe.request));
     if (!model_->supports_scene_conditioning()) return nullptr;
     auto views = model_->views(sentence.prompt(), neural::SdsParameters{});
     return views ? std::make_unique<MeteredViews>(std::move(views), place_cost_) : nullptr;

@@ -160,7 +160,7 @@ void ViewCandidate::add_editors(const DrawStrategy& strategy, const std::optiona
     const auto& plan = scene_edit_.plan;
     const auto& model = scene_edit_.context.model();
     if (auto* server = scene_edit_.context.server()) {
-        editors_.push_back(server->editor(request_, recipe.guidance.negative_prompt));
+        editors_.push_back(server->editor(request_, plan.mode, recipe.guidance.negative_prompt));
         if (drawn != nullptr) add<CachedViews>(*editors_.back(), *drawn);
         return;
     }

@@ -16,6 +16,7 @@ constexpr double LeastShare = 0.01;  // of the pixels that count, for an estimat
 constexpr int CoarsestSide = 64;     // px of the exhaustive search, at most
 constexpr int FinestSide = 512;      // px: larger pictures add nothing to the precision that is needed
 constexpr double SearchShare = 0.1;  // of the side: shifts that the search tries
+constexpr double MostReach = 0.2;    // share of the side: beyond it the steps have diverged
 constexpr int Iterations = 12;       // of Gauss-Newton on a level
 constexpr double Outlier = 0.1;      // residual from which on a pixel counts less (Huber)
 constexpr double LeastStep = 1e-4;   // px: a smaller step ends a level
@@ -220,7 +221,7 @@ std::optional<Similarity> register_pictures(const Image& sent, const Image& draw
     const auto levels = pyramid_of(sent, drawn, changed);
     Similarity similarity = best_shift(levels.back());
     for (auto level = levels.rbegin(); level != levels.rend(); ++level)
-        if (!refine(*level, similarity)) return std::nullopt;
+        if (!refine(*level, similarity) || similarity.reach() > MostReach) return std::nullopt;
     return similarity;
 }
 

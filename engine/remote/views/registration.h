@@ -18,7 +18,8 @@ struct Similarity {
 
 /// Displacement of `drawn` against `sent`, [S,S,3] both, over pixels outside of `changed` [S,S]. An
 /// exhaustive search of shifts at a coarse size, then Gauss-Newton on the similarity and an offset of
-/// brightness. Nothing where fewer than a hundredth of the pixels count, or they show no structure.
+/// brightness. Nothing where fewer than a hundredth of the pixels count, where they
+/// show no structure, and where no displacement of at most a fifth of the side was found.
 std::optional<Similarity> register_pictures(const Image& sent, const Image& drawn, const Mask& changed);
 
 /// Drawn picture moved back onto the sent one; bilinear, its rim repeated.

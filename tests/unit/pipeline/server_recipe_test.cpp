@@ -2,6 +2,7 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
+#include "engine/pipeline/models/server_instruction.h"
 #include "engine/pipeline/models/view_server.h"
 #include "engine/pipeline/recipe/recipe.h"
 
@@ -32,6 +33,31 @@ DOCTEST_TEST_CASE("server recipe: an address is cut where secrets may stand") {
     DOCTEST_CHECK(remote::without_secrets("http://127.0.0.1:1234") == "http://127.0.0.1:1234");
     DOCTEST_CHECK(remote::without_secrets("host:80/a@b") == "host:80/a@b");
     DOCTEST_CHECK(remote::without_secrets("me@pw@host/x?y=z") == "host/x");
+}
+
+DOCTEST_TEST_CASE("server instruction: tells the change in a sentence with articles") {
+    const auto told = [](const char* source, const char* prompt, const char* target, edit::EditMode mode) {
+        edit::EditRequest request;
+        request.source = source, request.prompt = prompt, request.target = target;
+        return server_instruction(edit::check(request), mode);
+    };
+    using Mode = edit::EditMode;
+    DOCTEST_CHECK(told("bear", "a golden bear", "golden", Mode::Modify) ==
+                  "turn the bear into a golden bear");
+    DOCTEST_CHECK(told("bear", "a bear made of gold", "gold", Mode::Modify) ==
+                  "turn the bear into a bear made of gold");
+    DOCTEST_CHECK(told("hat", "a bear wearing a green hat", "green", Mode::Modify) ==
+                  "turn the hat into a green hat");
+    DOCTEST_CHECK(told("grass", "a bear on the snow", "snow", Mode::Modify) == "turn the grass into snow");
+    DOCTEST_CHECK(told("bear", "a bear wearing a golden sombrero", "sombrero", Mode::Add) ==
+                  "add a golden sombrero to the bear");
+    DOCTEST_CHECK(told("bear", "a bear wearing black sunglasses", "sunglasses", Mode::Add) ==
+                  "add black sunglasses to the bear");
+    DOCTEST_CHECK(told("bear", "a red panda", "panda", Mode::Replace) == "replace the bear with a red panda");
+    edit::EditRequest own;
+    own.source = "bear", own.prompt = "a golden bear", own.target = "golden";
+    own.instruction = "gild it";
+    DOCTEST_CHECK(server_instruction(edit::check(own), Mode::Modify) == "gild it");
 }
 
 DOCTEST_TEST_CASE("server plan: views and masks grow together") {
