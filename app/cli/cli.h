@@ -116,6 +116,7 @@ void add_merge_command(CLI::App& app, CommandContext& context);        // merge
 void add_transform_command(CLI::App& app, CommandContext& context);    // transform
 void add_plan_command(CLI::App& app, CommandContext& context);         // plan
 void add_project_command(CLI::App& app, CommandContext& context);      // project
+void add_server_command(CLI::App& app, CommandContext& context);       // server
 void add_laboratory_pointers(CLI::App& app, CommandContext& context);  // commands that gseditpro-lab has
 
 }  // namespace gse::app

@@ -6,6 +6,7 @@
 
 #include "app/cli/cli.h"
 #include "app/cli/dreambooth_options.h"
+#include "app/cli/server_options.h"
 #include "app/engine_names.h"
 #include "app/session/state/edit_project.h"
 #include "engine/base/error.h"
@@ -118,6 +119,7 @@ void complete(EditOptions& options) {
         for (auto* option : options.command->get_options())
             if (option->count() > 0) option->run_callback();
     }
+    settle_server(*options.command, options.recipe.server);
     if (options.recipe.job.scene.empty())
         throw Error(ErrorCode::InvalidArgument, "no scene is named", "give a scene file, --recipe or --demo");
     if (options.output.empty())
@@ -438,6 +440,7 @@ void add_edit_commands(CLI::App& app, CommandContext& context) {
     auto edit = std::make_shared<EditOptions>();
     auto* edit_command = app.add_subcommand("edit", "Change a scene by one sentence");
     add_options(*edit_command, edit);
+    add_server_options(*edit_command, edit->recipe.server);
     edit_command->add_flag(
         "--gate,!--no-gate", edit->gate,
         "Method sds: first show what the model makes of four views, in evidence/gate_*.png, and warn when "

@@ -32,6 +32,8 @@
 #include "engine/laboratory/bench/raster/stability_bench.h"
 #include "engine/laboratory/bench/scale_bench.h"
 #include "engine/laboratory/bench/search_bench.h"
+#include "engine/laboratory/bench/server_bench.h"
+#include "engine/pipeline/models/installed.h"
 #include "engine/pipeline/models/neural_loader.h"
 #include "engine/raster/bench.h"
 
@@ -251,6 +253,24 @@ void add_heal_bench(CLI::App& bench, CommandContext& context) {
     });
 }
 
+void add_server_bench(CLI::App& bench, CommandContext& context) {
+    struct Options {
+        ServerBenchParameters parameters;
+        std::filesystem::path output;
+    };
+    auto options = std::make_shared<Options>();
+    auto* command = bench.add_subcommand(
+        "server", "Ways to make a server's views agree, with a server here that contradicts itself");
+    command->add_option("--out", options->output, "File for the figures as JSON");
+    bind_fields(*command, options->parameters, "Server");
+    command->callback([options, &context] {
+        const auto rows =
+            bench_server(assets_path() / "scenes/bear/scene.ply", options->parameters, context.job());
+        if (!options->output.empty()) write_file(options->output, agreement_json(rows).dump(2) + "\n");
+        fmt::print("{}", agreement_text(rows));
+    });
+}
+
 /// A subject that asks the model: its fields and the model's options.
 template <class Parameters>
 void add_model_subject(CLI::App& bench, CommandContext& context, const char* name, const char* help,
@@ -344,6 +364,7 @@ void add_bench_command(CLI::App& app, CommandContext& context) {
         bench_locate);
     add_edit_bench(*bench, context);
     add_heal_bench(*bench, context);
+    add_server_bench(*bench, context);
     add_model_subject<ScaleBenchParameters>(*bench, context, "scale",
                                             "How time and memory grow with splats, pixels, views and labels",
                                             bench_scale);

@@ -87,6 +87,8 @@ struct EditedViews {
     std::vector<Image> changes = {};
     /// Per view [H,W,1] in [0,1]: coverage of each pixel by the new object. Empty if the model cannot tell.
     std::vector<Image> outlines = {};
+    /// Per view: 1 = nothing of use came, and the scene is not fitted to it. Empty = all can be used.
+    std::vector<std::uint8_t> rejected = {};
     std::map<std::string, double> scalars = {};
     bool unfinished = false;  // what they lack is laid over the edited scene: pictures like the scene do not
                               // mean that nothing came
@@ -102,6 +104,8 @@ public:
     /// True when a network that is shown the unedited views draws rounds that are not `anew`. It keeps their
     /// shapes, however much noise there is in the beginning.
     virtual bool supports_appearance_editing() const { return false; }
+    /// True when all views of a round show a new thing in one colour, though the sentence names none.
+    virtual bool agrees_on_colour() const { return false; }
 };
 
 /// Attention query: the places in the image of each of these words of the prompt.

@@ -63,21 +63,28 @@ void require_findable(const CheckedRequest& request, const std::vector<std::stri
 void require_known_words(const CheckedRequest& request, const std::vector<std::string>& known,
                          const std::vector<std::string>& drawn, bool labelled_by_hand,
                          const std::vector<std::string>& labels) {
-    const auto say = language::promptable_vocabulary(known, drawn);
     if (request.whole_scene() && !known.empty())
         throw Error(ErrorCode::InvalidArgument,
                     "the look of a whole scene is drawn by models of an open vocabulary alone",
                     "choose a model such as Stable Diffusion or InstructPix2Pix");
-    const bool labelled =
-        labelled_by_hand || (request.part_of().empty() && language::contains(labels, request.source()));
-    if (!labelled && !request.whole_scene()) require_findable(request, known, say);
-    if (!language::contains(labels, request.anchor())) require_anchor(request, known);
+    require_findable_words(request, known, drawn, labelled_by_hand, labels);
     if (request.is_rearranged()) return;
+    const auto say = language::promptable_vocabulary(known, drawn);
     const auto target = language::unknown_word(say, request.target());
     if (!target.empty())
         throw Error(ErrorCode::InvalidArgument,
                     fmt::format("the model does not know the word \"{}\" and cannot make it", target),
                     fmt::format("use {}", words_to_make(target, known, drawn)));
+}
+
+void require_findable_words(const CheckedRequest& request, const std::vector<std::string>& known,
+                            const std::vector<std::string>& drawn, bool labelled_by_hand,
+                            const std::vector<std::string>& labels) {
+    const bool labelled =
+        labelled_by_hand || (request.part_of().empty() && language::contains(labels, request.source()));
+    if (!labelled && !request.whole_scene())
+        require_findable(request, known, language::promptable_vocabulary(known, drawn));
+    if (!language::contains(labels, request.anchor())) require_anchor(request, known);
 }
 
 }  // namespace gse::edit

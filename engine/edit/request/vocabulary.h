@@ -16,4 +16,10 @@ void require_known_words(const CheckedRequest& request, const std::vector<std::s
                          const std::vector<std::string>& drawn, bool labelled_by_hand,
                          const std::vector<std::string>& labels = {});
 
+/// Part of require_known_words() that is about what is looked for. It is all there is to check where the
+/// views are drawn by a model of an open vocabulary.
+void require_findable_words(const CheckedRequest& request, const std::vector<std::string>& known,
+                            const std::vector<std::string>& drawn, bool labelled_by_hand,
+                            const std::vector<std::string>& labels = {});
+
 }  // namespace gse::edit

@@ -146,6 +146,8 @@ std::map<std::string, double> DatasetUpdate::redraw(int iteration, const Gaussia
     state->dropped.assign(state->views.size(), anew_);
     if (anew_)  // only views that show the new thing are fitted to
         for (const auto i : rounds_.found().usable) state->dropped[i] = false;
+    for (std::size_t i = 0; i < rounds_.rejected().size(); ++i)
+        if (rounds_.rejected()[i] != 0) state->dropped[i] = true;
     state_ = std::move(state);
     redrawn_ += state_->views.size();
     weigh();

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/base/check.h"
+#include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/base/random.h"
 #include "engine/edit/interfaces/broken_values.h"
@@ -39,6 +40,19 @@ EditedViews drawn_by(MultiViewEditor& guidance, const std::vector<EditView>& vie
                      broken);
     }
     return drawn;
+}
+
+/// Agreement of the views of which something of use came.
+ViewAgreement agreement_of_usable(const std::vector<EditView>& views, const EditedViews& drawn) {
+    if (drawn.rejected.empty()) return view_agreement(views, drawn.images);
+    std::vector<EditView> usable;
+    std::vector<Image> pictures;
+    for (std::size_t v = 0; v < views.size(); ++v) {
+        if (drawn.rejected[v] != 0) continue;
+        usable.push_back(views[v]);
+        pictures.push_back(drawn.images[v]);
+    }
+    return view_agreement(usable, pictures);
 }
 
 }  // namespace
@@ -155,6 +169,7 @@ EditViewsRequest ViewRounds::input(std::uint64_t stream) const {
 void ViewRounds::name_colour(const std::vector<EditView>& views, const JobControl& job) {
     const auto& told = request_.sentence().prompt();
     if (shapes_ == nullptr || views.empty() || language::is_described(told, shapes_->word())) return;
+    if (guidance_.agrees_on_colour()) return;
     const auto colour = plan_.drawn_colour.empty() ? colour_of_key_view(views, job) : plan_.drawn_colour;
     if (colour.empty()) return;
     sentence_ = language::described_as(told, shapes_->word(), colour);
@@ -178,7 +193,7 @@ std::string ViewRounds::colour_of_key_view(const std::vector<EditView>& views, c
 EditedViews ViewRounds::draw(const std::vector<EditView>& views, const JobControl& job) {
     const auto asked = input(40000 + static_cast<std::uint64_t>(round_));
     auto drawn = drawn_by(guidance_, views, asked, job);
-    auto agreement = view_agreement(views, drawn.images);
+    auto agreement = agreement_of_usable(views, drawn);
     if (drawn.unfinished) agreement.unchanged = 0;
     if (shapes_ == nullptr && raised_ == 0 && asked.strength < 1 && hardly_edited(agreement)) {
         raised_ = StrengthRaise;
@@ -188,7 +203,7 @@ EditedViews ViewRounds::draw(const std::vector<EditView>& views, const JobContro
             "{:.2f}",
             100 * agreement.unchanged, std::min(1.0, asked.strength + raised_));
         drawn = drawn_by(guidance_, views, input(40000 + static_cast<std::uint64_t>(round_)), job);
-        agreement = view_agreement(views, drawn.images);
+        agreement = agreement_of_usable(views, drawn);
     }
     judge(agreement, drawn);
     return drawn;
@@ -207,6 +222,7 @@ std::map<std::string, double> ViewRounds::redraw(int iteration, const std::vecto
     round_ = iteration / request_.fit_steps;
     if (round_ == 0) name_colour(views, job);
     auto drawn = draw(views, job);
+    rejected_ = drawn.rejected;
     if (shapes_ != nullptr) {
         found_ = shapes_->cut_out(views, drawn, round_, job);
         drawn.scalars.merge(found_.scalars);
@@ -226,6 +242,8 @@ void ViewRounds::redo(std::size_t view, const EditView& begun, int attempt, cons
             most_views +
         view;
     auto drawn = drawn_by(guidance_, {begun}, input(stream), job);
+    if (!drawn.rejected.empty() && drawn.rejected.front() != 0)
+        throw Error(ErrorCode::Model, "nothing of use was drawn");
     if (shapes_ != nullptr)
         shapes_->take_out(begun, drawn, 0, Random::stream(request_.seed, stream + 1).next());
     replace(view, std::move(drawn.images.front()), original, begun.mask);

@@ -67,6 +67,8 @@ public:
     std::size_t extra_pictures() const { return extra_pictures_; }
     /// Suspicious facts about the pictures of the last round.
     const std::vector<std::string>& warnings() const { return warnings_; }
+    /// Per view of views(): 1 = the last round drew nothing of use there. Empty = all can be used.
+    const std::vector<std::uint8_t>& rejected() const { return rejected_; }
     /// Findings of the last round about the new shape.
     const CutOut& found() const { return found_; }
     /// Another mask: what was redrawn counts inside it.
@@ -91,6 +93,7 @@ private:
     std::string sentence_;
     CutOut found_;
     std::vector<std::string> warnings_;
+    std::vector<std::uint8_t> rejected_;
     std::vector<std::size_t> views_;
     std::vector<Image> targets_, edited_;  // of the plan's views; empty for those that are not redrawn
     double raised_ = 0;

@@ -47,6 +47,12 @@ nlohmann::ordered_json recipe_to_json(const EditRecipe& recipe) {
     const auto attention = fields_to_json(recipe.attention);
     if (attention != fields_to_json(neural::AttentionParameters{})) json["attention"] = attention;
     if (recipe.use_dreambooth) json["dreambooth"] = fields_to_json(recipe.dreambooth);
+    if (recipe.server.used()) {
+        json["server"] = fields_to_json(recipe.server);
+        json["server"]["url"] = remote::without_secrets(recipe.server.url);
+        for (const char* file : {"workflow", "ca"})
+            json["server"][file] = text_of_path(json["server"][file].get<std::string>());
+    }
     return json;
 }
 
@@ -75,9 +81,11 @@ EditRecipe recipe_from_json(const nlohmann::ordered_json& json, const std::files
     read("guidance", recipe.guidance);
     read("attention", recipe.attention);
     recipe.use_dreambooth = read("dreambooth", recipe.dreambooth);
+    read("server", recipe.server);
     for (auto& lora : recipe.job.lora) lora = lora_beside(path_of_text(lora), folder);
-    for (auto* name : {&recipe.job.scene, &recipe.job.cameras, &recipe.job.model, &recipe.job.taesd,
-                       &recipe.job.segmenter, &recipe.job.text_segmenter}) {
+    for (auto* name :
+         {&recipe.job.scene, &recipe.job.cameras, &recipe.job.model, &recipe.job.taesd, &recipe.job.segmenter,
+          &recipe.job.text_segmenter, &recipe.server.workflow, &recipe.server.ca}) {
         *name = path_of_text(*name);
         if (name->empty() || *name == "none" || std::filesystem::path(*name).is_absolute()) continue;
         *name = std::filesystem::weakly_canonical(folder / *name).string();

@@ -14,6 +14,7 @@
 #include "engine/neural/api/attention_parameters.h"
 #include "engine/neural/api/dreambooth_parameters.h"
 #include "engine/neural/api/sds_parameters.h"
+#include "engine/remote/api/server_settings.h"
 
 namespace gse::pipeline {
 
@@ -112,6 +113,7 @@ struct RunSettings {
     neural::AttentionParameters attention;
     bool use_dreambooth = false;  // the model learns the scene first (METHOD.md, DreamBooth)
     neural::DreamBoothParameters dreambooth;
+    remote::ServerSettings server;  // that draws the views; its url is empty where the model here does
     // Not written: "request.image_size" and so on.
     std::set<std::string> given;  // what the file that was read names
     std::map<std::string, std::string>
@@ -134,8 +136,8 @@ struct CheckedRecipe : RunSettings {
 CheckedRecipe check(EditRecipe recipe, const edit::News& news = {});
 
 /// JSON {"version", "job", "request", "guidance"}, with "attention" if it is not as usual and "dreambooth" if
-/// it is used. Reading throws Error for unknown or wrong entries. A relative scene path is taken relative to
-/// the recipe's folder.
+/// it is used, and "server" with an address without secrets where one draws. Reading throws Error for unknown
+/// or wrong entries. A relative scene path is taken relative to the recipe's folder.
 nlohmann::ordered_json recipe_to_json(const EditRecipe& recipe);
 /// Reads a recipe.json, or the recipe in a picture (.png) of an edit. Throws Error (NotFound, Malformed,
 /// InvalidArgument).

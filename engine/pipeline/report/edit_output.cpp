@@ -262,6 +262,7 @@ nlohmann::ordered_json make_report(EditJob& job) {
     if (!job.targets().empty()) report["targets"] = targets_to_json(job.targets(), job.views());
     report["model"] = job.model().name();
     report["model_kind"] = neural::kind_name(job.model().kind());
+    if (const auto* server = job.server()) report["server"] = server->to_json();
     report["settings_from"] = settings_from(job.recipe().plain());
     report["seconds"] = job.times().to_json();
     report["networks"] = job.times().networks_json();

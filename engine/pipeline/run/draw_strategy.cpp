@@ -27,6 +27,7 @@ const char* DrawStrategy::name() const {
 
 std::optional<edit::GroundUnder> plain_ground_under(const SceneEdit& scene_edit) {
     const auto& [context, scene, located, plan, recipe, observer, control] = scene_edit;
+    if (context.server() != nullptr) return std::nullopt;  // such models know any ground
     if (!recipe.guidance.plain_ground || recipe.request.whole_scene()) return std::nullopt;
     const auto& request = recipe.request;
     if (edit::replaces_accessory(request.sentence(), plan.mode)) {
@@ -46,6 +47,7 @@ std::optional<edit::GroundUnder> plain_ground_under(const SceneEdit& scene_edit)
 /// ground at first. A ground cannot be shown without the scene: its default colour comes last.
 std::vector<DrawStrategy> draw_strategies(const SceneEdit& scene_edit,
                                           const std::optional<edit::GroundUnder>& ground) {
+    if (scene_edit.context.server() != nullptr) return {{false, Ground::Scene}};
     const auto& model = scene_edit.context.model();
     const auto& recipe = scene_edit.recipe;
     const auto mode = scene_edit.plan.mode;

@@ -157,8 +157,9 @@ EditJob::EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCach
     times_.begin("load_scene");
     recipe_.job.scene = std::filesystem::absolute(recipe_.job.scene).lexically_normal().string();
     recipe_.job.lora = absolute_loras(recipe_.job);
-    for (auto* weights : {&recipe_.job.segmenter, &recipe_.job.text_segmenter})
-        if (!weights->empty()) *weights = std::filesystem::absolute(*weights).lexically_normal().string();
+    for (auto* file :
+         {&recipe_.job.segmenter, &recipe_.job.text_segmenter, &recipe_.server.workflow, &recipe_.server.ca})
+        if (!file->empty()) *file = std::filesystem::absolute(*file).lexically_normal().string();
     auto [scene, cameras, notes, up] =
         load_scene_with_cameras(recipe_.job.scene, recipe_.job.cameras, {.activated = recipe_.job.activated});
     if (recipe_.job.up == "auto" && !up.empty()) notes.push_back(up);
@@ -171,6 +172,8 @@ EditJob::EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCach
     times_.begin("load_model");
     auto model = open_recipe_model(recipe_.job, cache);
     auto segmenters = open_segmenters(recipe_.job, cache);
+    std::shared_ptr<ViewServer> server;  // not asked where nothing is drawn
+    if (!recipe_.request.is_rearranged()) server = open_view_server(recipe_.server, cache, control_);
     times_.end();
     if (!recipe_.job.cut_out.empty()) {
         times_.begin("cut_out");
@@ -181,7 +184,7 @@ EditJob::EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCach
         hints_.label = labelled_by_pointing(scene, recipe_, control_);
         times_.end();
     }
-    begin(std::move(scene), std::move(model), std::move(segmenters), given);
+    begin(std::move(scene), std::move(model), std::move(segmenters), std::move(server), given);
 }
 
 EditJob::EditJob(EditRecipe recipe, EditJobInput input, JobControl control)
@@ -194,6 +197,11 @@ EditJob::EditJob(EditRecipe recipe, EditJobInput input, JobControl control)
         model = std::move(input.tuned->model);
         tuning_ = std::move(input.tuned->report);
     }
+    if (recipe_.server.used() && !input.server) {
+        log::warning("the recipe names an image server ({}), which is not asked: the model here draws",
+                     remote::without_secrets(recipe_.server.url));
+        recipe_.server = {};
+    }
     check_recipe();
     check_words(model.get(), input.scene.labels);
     GSE_CHECK(input.view_words.empty() || input.view_words.size() == input.cameras.size());
@@ -201,7 +209,8 @@ EditJob::EditJob(EditRecipe recipe, EditJobInput input, JobControl control)
     for (std::size_t i = 0; i < input.view_words.size(); ++i)
         given.words[input.cameras[i].name] = input.view_words[i];
     given.cameras = std::move(input.cameras);
-    begin(std::move(input.scene), std::move(model), std::move(input.segmenters), given);
+    begin(std::move(input.scene), std::move(model), std::move(input.segmenters), std::move(input.server),
+          given);
 }
 
 void EditJob::check_recipe() const {
@@ -209,12 +218,20 @@ void EditJob::check_recipe() const {
     check_fields(recipe_.guidance);
     check_fields(recipe_.attention);
     check_fields(recipe_.dreambooth);
+    check_fields(recipe_.server);
     check_length();
     parse_colour(recipe_.request.background);
     parse_up(recipe_.job.up, {});
     parse_front(recipe_.job.front);
     parse_front(recipe_.job.looked_from, "--looked-from");
     raster::require_rasterizer(recipe_.job.rasterizer);
+    if (!recipe_.server.used()) return;
+    if (!edit::method_of(recipe_.request).draws_views())
+        throw Error(ErrorCode::InvalidArgument, "a server draws views, and this method follows a gradient",
+                    "leave --method or --server out");
+    if (recipe_.use_dreambooth)
+        throw Error(ErrorCode::InvalidArgument, "a server's model cannot be tuned from here",
+                    "leave --dreambooth or --server out");
 }
 
 /// Checks the words, after it has taken the label that one of them is the name of. A word that the model can
@@ -231,12 +248,14 @@ void EditJob::check_words(const neural::TextToImage* model, const LabelSet& labe
         else if (label_named(labels, source) != nullptr)
             log::info("\"{}\" is looked for by its word; --use-label takes the label of that name", source);
     }
-    edit::require_known_words(recipe_.request, known, drawn,
-                              recipe_.job.brings_label() || !hints_.label.empty(), label_names(labels));
+    const bool labelled = recipe_.job.brings_label() || !hints_.label.empty();
+    const auto require = recipe_.server.used() ? edit::require_findable_words : edit::require_known_words;
+    require(recipe_.request, known, drawn, labelled, label_names(labels));
 }
 
 /// The text encoder has so many places; what stands behind them has no effect.
 void EditJob::check_length() const {
+    if (recipe_.server.used()) return;
     const auto& sentence = recipe_.request.sentence().sentence();
     const auto& words = sentence.words();
     const auto read = words_read(model_path(recipe_.job), words);
@@ -282,15 +301,17 @@ std::vector<std::string> told_words(const edit::CheckedRequest& request, bool la
 }  // namespace
 
 void EditJob::begin(Scene scene, std::shared_ptr<neural::TextToImage> model, Segmenters segmenters,
-                    const GivenCameras& given) {
+                    std::shared_ptr<ViewServer> server, const GivenCameras& given) {
     context_ =
         std::make_unique<RunContext>(std::move(scene), std::move(model), recipe_.job, std::move(segmenters));
+    context_->draw_with(std::move(server));
     const auto known = context_->model().known_words();
-    warn_unknown_words(told_words(recipe_.request, !hints_.label.empty() || !hints_.found.empty()),
-                       edit::method_of(recipe_.request).draws_views()
-                           ? language::promptable_vocabulary(
-                                 known, edit::with_dyes(context_->model().generated_vocabulary(), known))
-                           : known);
+    if (context_->server() == nullptr)
+        warn_unknown_words(told_words(recipe_.request, !hints_.label.empty() || !hints_.found.empty()),
+                           edit::method_of(recipe_.request).draws_views()
+                               ? language::promptable_vocabulary(
+                                     known, edit::with_dyes(context_->model().generated_vocabulary(), known))
+                               : known);
     views_ = std::make_shared<const Views>(choose_views(context_->scene(), recipe_, given));
     if (views_->automatic && !given.cameras.empty())
         log::info("{} stored views are too few to search from: an orbit around the scene is used",

@@ -33,6 +33,8 @@ struct EditJobInput {
     std::vector<std::string> said = {};  // words that the scene is known to show: no news
     Segmenters segmenters = {};
     std::vector<std::uint8_t> found = {};  // [N] the source, see Hints::found
+    // Draws the views in place of the model. Without it, a server that the recipe names is not asked.
+    std::shared_ptr<ViewServer> server = {};
 };
 
 /// A run from stage to stage (views.h, search.h, loop.h): keeps what each came to and how long it took.
@@ -140,6 +142,9 @@ public:
     /// Azimuth on it, radians, from which the front is seen where one is known; 0 otherwise.
     double film_front() const;
     neural::TextToImage& model() { return context_->model(); }
+    /// Server that draws the views; null = the model does.
+    const ViewServer* server() const { return context_->server(); }
+    const std::shared_ptr<ViewServer>& shared_server() const { return context_->shared_server(); }
     /// The model, for a job on what this one came to.
     std::shared_ptr<neural::TextToImage> shared_model() const { return context_->shared_model(); }
     Painter& painter() { return context_->painter(); }
@@ -152,7 +157,7 @@ private:
     void check_words(const neural::TextToImage* model, const LabelSet& labels);
     void check_length() const;
     void begin(Scene scene, std::shared_ptr<neural::TextToImage> model, Segmenters segmenters,
-               const GivenCameras& given);
+               std::shared_ptr<ViewServer> server, const GivenCameras& given);
     void take(Located located);
     OrbitParameters moved_orbit() const;
     void relocate(const CheckedRecipe& recipe);

@@ -89,6 +89,7 @@ Edited finished(const SceneEdit& scene_edit, const edit::LoopSettings& settings,
     hash.text(scene_edit.located.key);
     hash.fields(settings);
     hash.fields(scene_edit.recipe.guidance);
+    if (const auto* server = scene_edit.context.server()) hash.text(server->key());
     edited.key = hash.key().hex();
     return edited;
 }
@@ -96,7 +97,7 @@ Edited finished(const SceneEdit& scene_edit, const edit::LoopSettings& settings,
 namespace {
 
 /// Draws the first views by one strategy after the other and fits the scene to those that are chosen.
-Edited fit_to_views(const SceneEdit& scene_edit) {
+Edited fit_to_drawn_views(const SceneEdit& scene_edit) {
     const auto ground = plain_ground_under(scene_edit);
     StrategyChooser chooser(draw_strategies(scene_edit, ground));
     for (;;) {
@@ -123,6 +124,14 @@ Edited fit_to_views(const SceneEdit& scene_edit) {
         edited.verdict = quality;
         return edited;
     }
+}
+
+/// A server draws at its own size, and the scene is fitted at that.
+Edited fit_to_views(const SceneEdit& scene_edit) {
+    const auto& [context, scene, located, plan, recipe, observer, control] = scene_edit;
+    if (context.server() == nullptr) return fit_to_drawn_views(scene_edit);
+    const auto larger = plan_at_side(plan, context.server()->side());
+    return fit_to_drawn_views({context, scene, located, larger, recipe, observer, control});
 }
 
 /// Follows the model's gradient.

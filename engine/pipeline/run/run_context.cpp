@@ -12,8 +12,10 @@
 #include "engine/base/log.h"
 #include "engine/edit/interfaces/stage_timer.h"
 #include "engine/edit/search/grabcut_segmenter.h"
+#include "engine/language/vocabulary.h"
 #include "engine/pipeline/models/neural_loader.h"
 #include "engine/pipeline/scene/scene_loading.h"
+#include "engine/remote/views/view_frame.h"
 
 namespace gse::pipeline {
 namespace {
@@ -37,6 +39,38 @@ public:
 private:
     std::unique_ptr<edit::MultiViewEditor> views_;
     PlaceCost& cost_;
+};
+
+/// Shows a server the unedited scene at the server's size.
+class UneditedAtServer final : public edit::MultiViewEditor {
+public:
+    UneditedAtServer(std::unique_ptr<edit::MultiViewEditor> editor, int side, Painter& painter,
+                     const GaussianSet& set, const raster::Settings& settings)
+        : editor_(std::move(editor)), side_(side), painter_(painter), set_(set), settings_(settings) {}
+
+    edit::EditedViews edit(const std::vector<edit::EditView>& views, const edit::EditViewsRequest& request,
+                           const JobControl& job) override {
+        auto larger = views;
+        for (auto& view : larger) {
+            view.view.camera = view.view.camera.resized(side_, side_);
+            view.rendered = painter_.paint(set_.spans(), view.view.camera, settings_).colour;
+            for (auto& value : view.rendered.data) value = std::clamp(value, 0.0f, 1.0f);
+            view.original = view.clean_plate.picture = view.rendered;
+            view.mask = remote::at_side(view.mask, side_);
+        }
+        auto drawn = editor_->edit(larger, request, job);
+        for (auto* pictures : {&drawn.images, &drawn.outlines})
+            for (std::size_t v = 0; v < pictures->size(); ++v)
+                (*pictures)[v] = remote::at_side((*pictures)[v], views[v].rendered.width);
+        return drawn;
+    }
+
+private:
+    std::unique_ptr<edit::MultiViewEditor> editor_;
+    const int side_;
+    Painter& painter_;
+    const GaussianSet& set_;
+    const raster::Settings settings_;
 };
 
 }  // namespace
@@ -77,7 +111,13 @@ void RunContext::ask_anew(const neural::AttentionParameters& attention) {
     place_cost_ = {};
 }
 
-std::unique_ptr<edit::MultiViewEditor> RunContext::place_drawing(const language::EditSentence& sentence) {
+std::unique_ptr<edit::MultiViewEditor> RunContext::place_drawing(const CheckedRecipe& recipe) {
+    const auto& sentence = recipe.request.sentence();
+    const auto known = language::promptable_vocabulary(model_->known_words(), model_->generated_vocabulary());
+    if (server_ && !language::vocabulary_contains(known, sentence.target()))
+        return std::make_unique<UneditedAtServer>(
+            server_->editor(recipe.request, edit::EditMode::Add, recipe.guidance.negative_prompt),
+            server_->side(), painter_, drawn_, render_settings(scene_, recipe.request));
     if (!model_->supports_scene_conditioning()) return nullptr;
     auto views = model_->views(sentence.prompt(), neural::SdsParameters{});
     return views ? std::make_unique<MeteredViews>(std::move(views), place_cost_) : nullptr;

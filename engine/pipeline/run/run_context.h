@@ -15,6 +15,7 @@
 #include "engine/neural/api/api.h"
 #include "engine/neural/api/network_use.h"
 #include "engine/pipeline/models/segmenters.h"
+#include "engine/pipeline/models/view_server.h"
 #include "engine/pipeline/run/views.h"
 #include "engine/pipeline/scene/scene_tools.h"
 
@@ -51,6 +52,11 @@ public:
     const std::shared_ptr<neural::TextToImage>& shared_model() const { return model_; }
     Painter& painter() { return painter_; }
 
+    /// Server that draws the views of the edit; null = the model does.
+    ViewServer* server() const { return server_.get(); }
+    const std::shared_ptr<ViewServer>& shared_server() const { return server_; }
+    void draw_with(std::shared_ptr<ViewServer> server) { server_ = std::move(server); }
+
     /// From here on another model of the same kind answers; what the one before answered is forgotten.
     void take_model(std::shared_ptr<neural::TextToImage> model);
     /// Forgets what networks answered and asks with these settings from here on.
@@ -74,8 +80,8 @@ public:
     edit::SecondLookTools second_look() { return {painter_.rasterizer(), recognition_.get(), &threads_}; }
     /// Editor that draws the place of an addition, if the model can
     /// (TextToImage::supports_scene_conditioning()), else null. Its cost is counted. It is not the artist's
-    /// guidance, which belongs to the loop.
-    std::unique_ptr<edit::MultiViewEditor> place_drawing(const language::EditSentence& sentence);
+    /// guidance, which belongs to the loop. A server draws what the model has no word for.
+    std::unique_ptr<edit::MultiViewEditor> place_drawing(const CheckedRecipe& recipe);
     const PlaceCost& place_cost() const { return place_cost_; }
     edit::VocabularyRanker& recognition() { return *recognition_; }
     edit::Segmenter& segmenter() { return *segmenters_.clicks; }
@@ -96,6 +102,7 @@ private:
     std::optional<edit::StudioBackground> ground_;  // of any sentence
     bool looked_for_ground_ = false;
     std::shared_ptr<neural::TextToImage> model_;
+    std::shared_ptr<ViewServer> server_;
     Painter painter_;
     ThreadPool threads_;
     std::unique_ptr<edit::CachedAttention> attention_;

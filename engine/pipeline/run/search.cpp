@@ -244,12 +244,15 @@ private:
         std::vector<std::string> targets{request.target()};
         if (open) targets = language::possible_targets(sentence.sentence(), request.source(), hints_.said);
         if (open && !sentence.replacement().empty()) targets = {sentence.replacement()};
-        // The encoder is not told words that are only drawn: they are new where the scene shows all else that
-        // the sentence says.
+        // The encoder is not told words that are only drawn: they are new where the scene shows all else. A
+        // word that only a server is told is new where there is one.
         const auto known = context_.model().known_words(),
                    said = language::promptable_vocabulary(
                        known, edit::with_dyes(context_.model().generated_vocabulary(), known));
-        std::erase_if(targets, [&](const auto& word) { return !language::vocabulary_contains(said, word); });
+        const auto unheard = [&](const auto& word) { return !language::vocabulary_contains(said, word); };
+        const bool news =
+            context_.server() != nullptr && std::any_of(targets.begin(), targets.end(), unheard);
+        std::erase_if(targets, [&](const auto& word) { return unheard(word) != news; });
         const auto reading = edit::read_scene(recognition, request, targets, pictures, known);
         if (open)
             log::info("new in the sentence: \"{}\" (what it says without fits the scene to {:.2f})",

@@ -55,7 +55,7 @@ edit::LocateResult search_from(RunContext& context, const Views& views, const Ch
     input.pedestal = pedestal;
     input.ground = label == nullptr ? ground_shown(context, recipe, views) : std::nullopt;
     auto tools = context.tools(views, input.ground, control);
-    const auto drawing = context.place_drawing(recipe.request.sentence());
+    const auto drawing = context.place_drawing(recipe);
     tools.drawing = drawing.get();
     tools.plain_ground = recipe.guidance.plain_ground;
     return edit::locate(input, tools);

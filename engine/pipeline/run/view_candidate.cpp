@@ -121,8 +121,9 @@ ViewCandidate::ViewCandidate(const SceneEdit& scene_edit, const DrawStrategy& st
     : scene_edit_(scene_edit), request_(scene_edit.recipe.request) {
     const auto& [context, scene, located, plan, recipe, observer, control] = scene_edit;
     const auto& model = context.model();
-    request_ = told_to_model(model, request_);
-    if (model.kind() != neural::BundleKind::InstructPix2Pix) {
+    const auto* server = context.server();  // it is told any word
+    if (server == nullptr) request_ = told_to_model(model, request_);
+    if (server == nullptr && model.kind() != neural::BundleKind::InstructPix2Pix) {
         request_ = in_usual_colour(model, std::move(request_), plan.mode, context.traits());
         remap_ =
             edit::dye_of(request_.sentence(), plan.mode,
@@ -137,9 +138,10 @@ ViewCandidate::ViewCandidate(const SceneEdit& scene_edit, const DrawStrategy& st
     auto tools = tools_of(scene_edit, request_.sentence(), *attention_, context.segmenter());
     if (pattern_) tools.snapshot = pattern_->over(tools.snapshot);
     tools.views = editors_.back().get();
-    tools.known = model.known_words();
+    if (server == nullptr) tools.known = model.known_words();
     tools.redraw_key = model.name() + tuning_key(recipe.plain()) + fields_to_json(settings_).dump() +
-                       strategy.name() + (remap_ ? language::joined(remap_->words) : "");
+                       strategy.name() + (remap_ ? language::joined(remap_->words) : "") +
+                       (server != nullptr ? server->key() : "");
     tools.targets = [this](const edit::ViewTargets& sheet) { show(sheet); };
     tools.target_orders = observer.target_orders;
     optimiser_ = std::make_unique<edit::Optimiser>(scene, plan, request_, tools);
@@ -157,6 +159,11 @@ void ViewCandidate::add_editors(const DrawStrategy& strategy, const std::optiona
     const auto& recipe = scene_edit_.recipe;
     const auto& plan = scene_edit_.plan;
     const auto& model = scene_edit_.context.model();
+    if (auto* server = scene_edit_.context.server()) {
+        editors_.push_back(server->editor(request_, plan.mode, recipe.guidance.negative_prompt));
+        if (drawn != nullptr) add<CachedViews>(*editors_.back(), *drawn);
+        return;
+    }
     if (strategy.ground == DrawStrategy::Ground::DefaultColour) {
         add<edit::DefaultGroundColour>(
             *edit::default_ground_colour(recipe.request.sentence(), plan.mode, scene_edit_.context.traits()));

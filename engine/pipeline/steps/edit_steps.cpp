@@ -112,8 +112,10 @@ EditSteps steps_of_sentence(const EditRecipe& recipe, const plan::SceneWords& sc
     if (const auto refused = edit::refusal_of(result.plan, recipe.request.source)) throw *refused;
     const auto model = model_path(recipe.job);
     result.model = model_ability(model);
-    result.steps =
-        known_to_model(edit::planned_steps(result.plan, scene, result.model), recipe.request, model, labels);
+    const bool any_word = recipe.server.used();  // is drawn; only known ones are found
+    result.model.open_vocabulary = result.model.open_vocabulary || any_word;
+    result.steps = known_to_model(edit::planned_steps(result.plan, scene, result.model), recipe.request,
+                                  model, labels, any_word);
     const bool any = std::any_of(result.steps.begin(), result.steps.end(),
                                  [](const auto& step) { return step.words.has_value(); });
     if (!partly || !any) require_all(result);
@@ -125,15 +127,15 @@ EditSteps steps_of_sentence(const EditRecipe& recipe, const plan::SceneWords& sc
 std::vector<edit::PlannedStep> known_to_model(std::vector<edit::PlannedStep> steps,
                                               const edit::EditRequest& request,
                                               const std::filesystem::path& folder,
-                                              const std::vector<std::string>& labels) {
+                                              const std::vector<std::string>& labels, bool draws_any_word) {
     const auto known = model_words(folder), drawn = generated_vocabulary(folder);
     if (known.empty()) return steps;
     for (auto& step : steps) try {
             if (!step.words) continue;
             const auto valid = edit::check(edit::request_of(request, *step.words));
             const bool draws = edit::method_of(valid).draws_views();
-            edit::require_known_words(valid, known, draws ? drawn : std::vector<std::string>{}, false,
-                                      labels);
+            const auto require = draws_any_word ? edit::require_findable_words : edit::require_known_words;
+            require(valid, known, draws ? drawn : std::vector<std::string>{}, false, labels);
         } catch (const Error& error) {
             step.words.reset();
             step.problem = {error.message(), error.hint()};
@@ -164,6 +166,7 @@ EditJobInput next_input(EditJob& job, std::vector<std::string> said, const std::
     input.scene.gaussians = result.set;
     if (!job.automatic_views()) input.cameras = job.views();
     input.model = job.shared_model();
+    input.server = job.shared_server();
     input.said = std::move(said);
     input.segmenters = open_segmenters(job.recipe().job, nullptr);
     const auto& request = job.recipe().request;

@@ -1,0 +1,116 @@
+// gseditpro server: what an image server is, and a picture that it draws.
+#include <cmath>
+#include <memory>
+
+#include "app/cli/cli.h"
+#include "app/cli/server_options.h"
+#include "app/engine_names.h"
+#include "engine/base/error.h"
+#include "engine/base/print.h"
+#include "engine/base/printable.h"
+#include "engine/io/image/image_file.h"
+#include "engine/pipeline/models/view_server.h"
+#include "engine/remote/api/server_kind.h"
+#include "engine/remote/views/remote_view_editor.h"
+
+namespace gse::app {
+namespace {
+
+struct ServerOptions {
+    remote::ServerSettings settings;
+    std::filesystem::path draw;
+    std::string prompt = "a red ball";
+    bool json = false;
+};
+
+/// A grey ball on a plain ground, and the ball's mask.
+remote::RedrawOrder test_order(int side) {
+    remote::RedrawOrder order;
+    order.picture = Image(side, side, 3);
+    order.mask = Image(side, side, 1);
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x) {
+            const double u = 2.0 * x / side - 1, v = 2.0 * y / side - 1, r = std::hypot(u, v) / 0.5;
+            const bool ball = r < 1;
+            const double light = ball ? 0.2 + 0.5 * std::sqrt(1 - r * r) : v > 0.3 ? 0.35 + 0.2 * v : 0.75;
+            for (int c = 0; c < 3; ++c) order.picture.at(x, y, c) = static_cast<float>(light);
+            order.mask.at(x, y, 0) = ball ? 1.0f : 0.0f;
+        }
+    return order;
+}
+
+/// Has the test picture drawn into a file; returns what is to be said of it.
+std::string draw_test(const ServerOptions& options, remote::ImageServer& server, const ViewServer& views,
+                      const JobControl& job) {
+    auto order = test_order(views.side());
+    const auto& family = views.family();
+    order.prompt = options.prompt;
+    order.steps = family.steps;
+    order.guidance_scale = family.guidance_scale;
+    order.distilled_guidance = family.distilled_guidance;
+    order.strength = family.strength;
+    order.sampler = family.sampler;
+    Mask mask(views.side(), views.side());
+    for (std::size_t i = 0; i < mask.data.size(); ++i) mask.data[i] = order.mask.data[i] > 0 ? 1 : 0;
+    if (!views.facts().takes_mask) order.mask = {};
+    auto drawn = server.redraw(order, job).picture;
+    write_png(options.draw, drawn);
+    remote::ViewFrame frame{{}, order.picture, order.picture, mask, mask};
+    const auto checked = remote::check_answer(frame, std::move(drawn));
+    return checked.note.empty() ? "the picture is as asked" : checked.note;
+}
+
+std::string known(const std::string& text) { return text.empty() ? "not told" : printable(text); }
+
+void print_facts(const ViewServer& views) {
+    const auto& facts = views.facts();
+    print("server      {} {}\nprotocol    {}\nmodel       {}\n", known(facts.product),
+          printable(facts.version), remote::server_kind_name(facts.kind), known(facts.model));
+    print("family      {}: {}, {} steps, guidance {}, strength {}, {} x {} pixels\nagreement   {}\n",
+          views.family().name,
+          views.family().instructed() ? "told what to do" : "told what the picture shows",
+          views.family().steps, views.family().guidance_scale, views.family().strength, views.side(),
+          views.side(), remote::agreement_name(views.agreement()));
+    print("masks       {}\nreferences  {}\nrepeats     {}\n", facts.takes_mask ? "yes" : "no",
+          facts.references, facts.repeats ? "yes" : "no");
+    for (const auto& model : facts.models) print("offers      {}\n", printable(model));
+    for (const auto& note : facts.notes) print("note        {}\n", printable(note));
+}
+
+void run_server_command(ServerOptions& options, const CommandContext& context) {
+    const auto job = context.job();
+    std::shared_ptr<remote::ImageServer> server = connect_server(options.settings, job);
+    const ViewServer views(server, options.settings, nullptr, job);
+    std::string said;
+    if (!options.draw.empty()) said = draw_test(options, *server, views, job);
+    if (options.json) {
+        auto json = views.to_json();
+        json["models"] = views.facts().models;
+        json["notes"] = views.facts().notes;
+        json["takes_mask"] = views.facts().takes_mask;
+        json["references"] = views.facts().references;
+        json["repeats"] = views.facts().repeats;
+        if (!said.empty()) json["drawn"] = said;
+        return print_json(json);
+    }
+    print_facts(views);
+    if (!said.empty()) print("drawn       {}: {}\n", options.draw.string(), said);
+}
+
+}  // namespace
+
+void add_server_command(CLI::App& app, CommandContext& context) {
+    auto options = std::make_shared<ServerOptions>();
+    auto* command = app.add_subcommand("server", "Ask an image server what it is and what it can do");
+    add_server_options(*command, options->settings);
+    auto* address = command->get_option("--server");
+    command->remove_option(address);
+    command->add_option("url", options->settings.url, "Address of the server")->required();
+    command->add_option("--draw", options->draw,
+                        "Have a test picture drawn, a ball on the ground, and write it to this PNG");
+    command->add_option("--prompt", options->prompt, "Sentence for the test picture")->capture_default_str();
+    command->add_flag("--json", options->json, "Print JSON");
+    command->callback([options, &context] { run_server_command(*options, context); });
+}
+
+}  // namespace gse::app

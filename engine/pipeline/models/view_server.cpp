@@ -1,0 +1,132 @@
+// Families, orders and reports of a run's server.
+#include "engine/pipeline/models/view_server.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "engine/base/content_hash.h"
+#include "engine/base/file.h"
+#include "engine/base/log.h"
+#include "engine/base/printable.h"
+#include "engine/pipeline/models/remote_loader.h"
+#include "engine/pipeline/models/server_instruction.h"
+#include "engine/remote/api/server_kind.h"
+#include "engine/remote/api/server_url.h"
+#include "engine/remote/views/remote_view_editor.h"
+#include "engine/remote/views/view_frame.h"
+
+namespace gse::pipeline {
+namespace {
+
+/// The family that the settings name, or that of the model, with the numbers of the settings.
+remote::ModelFamily family_for(const remote::ServerSettings& settings, const remote::ServerFacts& facts) {
+    // What speaks OpenAI's protocol and has no name that tells edits pictures by instructions.
+    const auto otherwise = facts.kind == remote::ServerKind::OpenAi ? "editor" : "sd15";
+    const auto& model = settings.model.empty() ? facts.model : settings.model;
+    auto family = settings.family == "auto" ? remote::family_of(model, otherwise)
+                                            : remote::family_named(settings.family);
+    if (settings.steps > 0) family.steps = settings.steps;
+    if (settings.guidance > 0) family.guidance_scale = settings.guidance;
+    if (settings.strength > 0) family.strength = settings.strength;
+    return family;
+}
+
+/// Inputs of the pictures that no order holds.
+std::string identity_of(const remote::ServerSettings& settings) {
+    ContentHash hash;
+    hash.text(settings.model);
+    if (!settings.workflow.empty()) hash.text(read_file(settings.workflow));
+    return hash.key().hex();
+}
+
+}  // namespace
+
+ViewServer::ViewServer(std::shared_ptr<remote::ImageServer> server, const remote::ServerSettings& settings,
+                       std::shared_ptr<AnswerCache> cache, const JobControl& job)
+    : server_(std::move(server)), cache_(std::move(cache)),
+      source_(std::make_unique<remote::PictureSource>(*server_, server_->probe(job), identity_of(settings),
+                                                      cache_.get())),
+      drawing_(std::make_unique<remote::RemoteDrawing>()) {
+    drawing_->family = family_for(settings, facts());
+    drawing_->agreement =
+        remote::suited_agreement(remote::agreement_of(settings.agreement), drawing_->family, facts());
+    drawing_->side = remote::sent_side(settings.side, drawing_->family.side);
+    log::info("the views are drawn by {} ({}): family {}, agreement {}, {} x {} pixels", facts().product,
+              facts().model.empty() ? "model not told" : printable(facts().model), drawing_->family.name,
+              remote::agreement_name(drawing_->agreement), drawing_->side, drawing_->side);
+    if (!facts().repeats) log::warning("this server cannot repeat a picture: another run differs");
+}
+
+ViewServer::~ViewServer() = default;
+
+const remote::ServerFacts& ViewServer::facts() const { return source_->facts(); }
+const remote::ModelFamily& ViewServer::family() const { return drawing_->family; }
+remote::Agreement ViewServer::agreement() const { return drawing_->agreement; }
+int ViewServer::side() const { return drawing_->side; }
+const remote::ServerUse& ViewServer::use() const { return source_->use(); }
+
+std::unique_ptr<edit::MultiViewEditor> ViewServer::editor(const edit::CheckedRequest& request,
+                                                          edit::EditMode mode,
+                                                          const std::string& negative_prompt) {
+    auto drawing = *drawing_;
+    drawing.text = {request.sentence().prompt(), server_instruction(request, mode), negative_prompt};
+    return std::make_unique<remote::RemoteViewEditor>(*source_, std::move(drawing));
+}
+
+std::string ViewServer::key() const {
+    const auto& family = drawing_->family;
+    return fmt::format("{} {} {} {} {} {} {} {} {}", remote::server_kind_name(facts().kind), facts().product,
+                       facts().model, family.name, family.steps, family.guidance_scale, family.strength,
+                       remote::agreement_name(drawing_->agreement), drawing_->side);
+}
+
+nlohmann::ordered_json ViewServer::to_json() const {
+    const auto& family = drawing_->family;
+    nlohmann::ordered_json json{{"kind", remote::server_kind_name(facts().kind)},
+                                {"product", facts().product},
+                                {"version", facts().version},
+                                {"model", source_->model().empty() ? facts().model : source_->model()},
+                                {"family", family.name},
+                                {"agreement", remote::agreement_name(drawing_->agreement)},
+                                {"side", drawing_->side},
+                                {"steps", family.steps},
+                                {"guidance", family.guidance_scale},
+                                {"strength", family.strength}};
+    const auto& use = source_->use();
+    json["requests"] = use.requests;
+    json["cached_requests"] = use.cached;
+    json["megapixels"] = use.megapixels;
+    json["seconds"] = use.seconds;
+    return json;
+}
+
+std::shared_ptr<remote::ImageServer> connect_server(const remote::ServerSettings& settings,
+                                                    const JobControl& job) {
+    remote::ServerAddress address;
+    address.url = remote_api().keep_credentials(settings.url);
+    if (settings.kind != "auto") address.kind = remote::server_kind_of(settings.kind);
+    address.model = settings.model;
+    address.workflow = settings.workflow;
+    address.ca_file = settings.ca;
+    address.allow_paid_nodes = settings.paid_nodes;
+    const auto url = remote::parse_server_url(address.url).url;
+    log::info("pictures of the scene, their masks and the sentence go to {}{}, which may keep them",
+              url.nickname(), url.encrypted() ? "" : " (not encrypted)");
+    return remote_api().connect(address, job);
+}
+
+std::shared_ptr<ViewServer> open_view_server(const remote::ServerSettings& settings,
+                                             std::shared_ptr<AnswerCache> cache, const JobControl& job) {
+    if (!settings.used()) return nullptr;
+    auto server = connect_server(settings, job);
+    return std::make_shared<ViewServer>(std::move(server), settings, std::move(cache), job);
+}
+
+edit::EditPlan plan_at_side(edit::EditPlan plan, int side) {
+    for (auto& view : plan.views) view.camera = view.camera.resized(side, side);
+    for (auto& mask : plan.masks) mask = remote::at_side(mask, side);
+    return plan;
+}
+
+}  // namespace gse::pipeline

@@ -1,0 +1,71 @@
+// Server of a run that draws views in place of the model.
+#pragma once
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "engine/base/answer_cache.h"
+#include "engine/edit/interfaces/edit_plan.h"
+#include "engine/edit/interfaces/interfaces.h"
+#include "engine/edit/request/checked_request.h"
+#include "engine/remote/api/image_server.h"
+#include "engine/remote/api/server_settings.h"
+
+namespace gse::remote {
+
+class PictureSource;
+enum class Agreement;
+struct ModelFamily;
+struct RemoteDrawing;
+struct ServerUse;
+
+}  // namespace gse::remote
+
+namespace gse::pipeline {
+
+/// A server, asked once what it is; its model's family and the way to draw follow from the settings and from
+/// that. Editors of one run share what it drew.
+class ViewServer {
+public:
+    /// Asks the server for its facts. `cache` may be null. Throws Error as ImageServer::probe(), and
+    /// (InvalidArgument) for settings that are none or do not fit the server.
+    ViewServer(std::shared_ptr<remote::ImageServer> server, const remote::ServerSettings& settings,
+               std::shared_ptr<AnswerCache> cache, const JobControl& job);
+    ~ViewServer();
+
+    const remote::ServerFacts& facts() const;
+    const remote::ModelFamily& family() const;
+    remote::Agreement agreement() const;
+    /// Side of the pictures that are sent, px.
+    int side() const;
+    const remote::ServerUse& use() const;
+
+    /// Draws the views of a request in that mode. The server stays alive.
+    std::unique_ptr<edit::MultiViewEditor> editor(const edit::CheckedRequest& request, edit::EditMode mode,
+                                                  const std::string& negative_prompt);
+    /// Key of all that the pictures follow from beside the request; no address.
+    std::string key() const;
+    /// Facts and counts for a report; no address.
+    nlohmann::ordered_json to_json() const;
+
+private:
+    std::shared_ptr<remote::ImageServer> server_;
+    std::shared_ptr<AnswerCache> cache_;
+    std::unique_ptr<remote::PictureSource> source_;
+    std::unique_ptr<remote::RemoteDrawing> drawing_;  // without its text
+};
+
+/// The server at the settings' address. Name and password that stand in the address are kept in the user's
+/// file of credentials. Throws Error as remote::RemoteApi::connect().
+std::shared_ptr<remote::ImageServer> connect_server(const remote::ServerSettings& settings,
+                                                    const JobControl& job);
+
+/// The server that the settings name, connected and asked what it is; null where they name none. Throws Error
+/// as remote::RemoteApi::connect() and ViewServer.
+std::shared_ptr<ViewServer> open_view_server(const remote::ServerSettings& settings,
+                                             std::shared_ptr<AnswerCache> cache, const JobControl& job);
+
+/// Plan whose views and masks have another size. Masks are smoothed where they grow.
+edit::EditPlan plan_at_side(edit::EditPlan plan, int side);
+
+}  // namespace gse::pipeline

@@ -1,0 +1,58 @@
+// Settings of a server that draws the views of an edit.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "engine/base/fields.h"
+
+namespace gse::remote {
+
+/// Server, and how it is used. Numbers that are 0 are the model family's own (METHOD.md, Views by a server).
+struct ServerSettings {
+    std::string url;
+    std::string kind = "auto";
+    std::string model;
+    std::string workflow;
+    std::string family = "auto";
+    std::string agreement = "auto";
+    int side = 0;
+    int steps = 0;
+    double guidance = 0;
+    double strength = 0;
+    std::string ca;
+    bool paid_nodes = false;
+
+    template <class Self, class F> static void visit_fields(Self& self, F&& f) {
+        f("url", self.url,
+          "Address of an image server that draws the views in place of the model here; \"none\" takes back "
+          "the one that a recipe names. Pictures of the scene, masks and the sentence go there.");
+        f("kind", self.kind,
+          "Protocol of the server: webui (A1111, Forge, SD.Next, koboldcpp), openai, sdcpp (sd-server), "
+          "comfy, "
+          "or auto: found out.");
+        f("model", self.model, "Model that the server draws with; empty = the one that it has loaded.");
+        f("workflow", self.workflow, "Workflow of ComfyUI in API format; empty = a bundled one that fits.");
+        f("family", self.family,
+          "Family of the model, which decides steps, guidance, strength and the form of the sentence; auto = "
+          "by the model's name.");
+        f("agreement", self.agreement,
+          "Way to make views agree: none, sheet, reference, warp, or auto, as it suits the family. Sheet: "
+          "several views in one picture. Reference: the first is shown beside the others. Warp: the first is "
+          "carried over by depth.");
+        f("side", self.side, "Side of the pictures that are sent, pixels; 0 = the family's.", Range{0, 2048});
+        f("steps", self.steps, "Denoising steps at the server; 0 = the family's.", Range{0, 200});
+        f("guidance", self.guidance, "Guidance scale at the server; 0 = the family's.", Range{0, 50});
+        f("strength", self.strength, "Strength of redrawing at the server; 0 = the family's.", Range{0, 1});
+        f("ca", self.ca, "File of certificates to trust beside the system's.");
+        f("paid_nodes", self.paid_nodes,
+          "Let a workflow use nodes that send the pictures on and cost money.");
+    }
+
+    bool used() const { return !url.empty(); }
+};
+
+/// Address without user name, password, query and fragment.
+std::string without_secrets(std::string_view url);
+
+}  // namespace gse::remote

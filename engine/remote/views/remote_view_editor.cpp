@@ -1,0 +1,74 @@
+// Rounds, outlines, figures.
+#include "engine/remote/views/remote_view_editor.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "engine/base/error.h"
+#include "engine/base/log.h"
+#include "engine/edit/request/scales.h"
+#include "engine/remote/views/change_map.h"
+
+namespace gse::remote {
+namespace {
+
+constexpr double ChangeBlurPx = 2;  // of a picture of ReferenceSide
+
+}  // namespace
+
+/// A round whose views are of two models is drawn once more.
+DrawnRound RemoteViewEditor::draw(const std::vector<edit::EditView>& views,
+                                  const edit::EditViewsRequest& request, const JobControl& job) {
+    RemoteDrawing drawing = drawing_;
+    if (!request.sentence.empty()) drawing.text.description = request.sentence;
+    const auto changes = source_.model_changes();
+    auto drawn = RoundDrawing(source_, drawing, views, request, job).draw(key_);
+    if (source_.model_changes() == changes || views.size() < 2) return drawn;
+    log::warning("its views are of two models and are all drawn once more");
+    return RoundDrawing(source_, drawing, views, request, job).draw(key_);
+}
+
+edit::EditedViews RemoteViewEditor::edit(const std::vector<edit::EditView>& views,
+                                         const edit::EditViewsRequest& request, const JobControl& job) {
+    const auto before = source_.use();
+    auto drawn = draw(views, request, job);
+    const auto rejected =
+        static_cast<std::size_t>(std::count(drawn.rejected.begin(), drawn.rejected.end(), 1));
+    if (!views.empty() && rejected == views.size())
+        throw Error(ErrorCode::Model,
+                    fmt::format("none of the {} pictures from the server can be used: {}", views.size(),
+                                drawn.notes.empty() ? "" : drawn.notes.front()),
+                    "look at the server's model and settings; gseditpro server URL --draw shows one picture");
+    if (rejected > 0)
+        log::warning("{} of {} pictures from the server are left out: {}", rejected, views.size(),
+                     drawn.notes.empty() ? "" : drawn.notes.front());
+    edit::EditedViews edited;
+    const auto& use = source_.use();
+    edited.scalars = {{"requests", static_cast<double>(use.requests - before.requests)},
+                      {"cached_requests", static_cast<double>(use.cached - before.cached)},
+                      {"megapixels", use.megapixels - before.megapixels},
+                      {"server_seconds", use.seconds - before.seconds},
+                      {"rejected", static_cast<double>(rejected)},
+                      {"drift", drawn.drift}};
+    if (request.anew) add_outlines(views, drawn, edited);
+    edited.rejected = std::move(drawn.rejected);
+    edited.images = std::move(drawn.pictures);
+    return edited;
+}
+
+void RemoteViewEditor::add_outlines(const std::vector<edit::EditView>& views, const DrawnRound& drawn,
+                                    edit::EditedViews& edited) const {
+    for (std::size_t v = 0; v < views.size(); ++v) {
+        const auto& view = views[v];
+        const auto& without =
+            view.clean_plate.picture.data.empty() ? view.original : view.clean_plate.picture;
+        const double blur = ChangeBlurPx * view.mask.width / edit::ReferenceSide;
+        edited.outlines.push_back(
+            drawn.rejected[v] != 0
+                ? Image(view.mask.width, view.mask.height, 1)
+                : outline_of_change(change_map(without, drawn.pictures[v], blur), view.mask));
+    }
+}
+
+}  // namespace gse::remote

@@ -1,0 +1,302 @@
+// Orders, answers that are checked, and four ways through the views.
+#include "engine/remote/views/round_drawing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "engine/base/error.h"
+#include "engine/base/log.h"
+#include "engine/base/random.h"
+#include "engine/remote/views/colour_match.h"
+#include "engine/remote/views/depth_warp.h"
+#include "engine/remote/views/view_sheet.h"
+
+namespace gse::remote {
+namespace {
+
+constexpr std::uint64_t SeedStream = 71000;  // of a round's seed: seeds of further attempts
+constexpr int Attempts = 2;                  // at one picture
+constexpr double RaisedStrength = 0.1;       // of an attempt at what came back unchanged
+constexpr double ShapeStrength = 0.95;       // of what becomes something else
+constexpr double SeamStrength = 0.35;        // of the pass over what was carried over and what was filled
+constexpr double LeastHole = 0.01;           // of a mask: less is not asked for by itself
+constexpr double FrontWeight = 0.5;          // by which a view from behind counts less as the key
+constexpr int Hundredths = 100;              // steps of the progress of one view
+
+std::uint32_t server_seed(std::uint64_t seed) { return static_cast<std::uint32_t>(seed & 0x7fffffff); }
+
+/// Servers that edit by pictures beside the one to redraw have to be sent that one, too.
+bool picture_is_reference(const ServerFacts& facts, const ModelFamily& family) {
+    const bool by_references = facts.kind == ServerKind::SdCpp || facts.kind == ServerKind::Webui;
+    return family.instructed() && by_references && facts.references > 0;
+}
+
+bool is_square(const Image& picture) {
+    return std::abs(picture.width - picture.height) <= SameAspect * picture.width;
+}
+
+Mask difference(const Mask& mask, const Mask& without) {
+    Mask result = mask;
+    for (std::size_t i = 0; i < result.data.size(); ++i)
+        if (without.data[i] != 0) result.data[i] = 0;
+    return result;
+}
+
+}  // namespace
+
+RoundDrawing::RoundDrawing(PictureSource& source, const RemoteDrawing& drawing,
+                           const std::vector<edit::EditView>& views, const edit::EditViewsRequest& request,
+                           const JobControl& job)
+    : source_(source), drawing_(drawing), views_(views), request_(request), job_(job),
+      squares_(views.size()) {
+    const int crop = crop_side(views);
+    for (const auto& view : views)
+        frames_.push_back(
+            frame_of(view, crop_around(view.mask, crop), drawing.side, drawing.family.latent_cell));
+}
+
+DrawnRound RoundDrawing::draw(KeyPicture& key) {
+    switch (drawing_.agreement) {
+        case Agreement::Sheet: views_.size() > 1 ? draw_sheets() : draw_each(); break;
+        case Agreement::Reference: draw_with_reference(key); break;
+        // What becomes something else is not where the depths are.
+        case Agreement::Warp: request_.anew ? draw_each() : draw_by_warp(); break;
+        case Agreement::Auto:
+        case Agreement::None: draw_each(); break;
+    }
+    for (std::size_t v = 0; v < views_.size(); ++v) {
+        const bool drawn = !squares_[v].data.empty();
+        round_.pictures.push_back(drawn ? pasted(views_[v], frames_[v], squares_[v]) : views_[v].rendered);
+        round_.rejected.push_back(drawn || views_[v].mask.count() == 0 ? 0 : 1);
+    }
+    if (!views_.empty()) round_.drift /= static_cast<double>(views_.size());
+    return std::move(round_);
+}
+
+void RoundDrawing::draw_each() {
+    for (std::size_t v = 0; v < views_.size(); ++v) draw_alone(v);
+}
+
+void RoundDrawing::draw_alone(std::size_t view) { take(view, ask(frames_[view], order_for(view))); }
+
+/// Four views a sheet. From the second sheet on, its first cell is the edited first view, which is not to
+/// change.
+void RoundDrawing::draw_sheets() {
+    const std::size_t key = key_view();
+    auto rest = outwards_from(key);
+    rest.erase(rest.begin());
+    std::vector<std::size_t> cells{key};
+    bool first = true;
+    for (std::size_t next = 0; next < rest.size();) {
+        while (cells.size() < SheetCells && next < rest.size()) cells.push_back(rest[next++]);
+        draw_sheet(cells, first ? nullptr : &squares_[key]);
+        first = first && squares_[key].data.empty();
+        cells = {key};
+    }
+}
+
+void RoundDrawing::draw_sheet(const std::vector<std::size_t>& cells, const Image* key) {
+    const int cell = cell_side(drawing_.side);
+    std::vector<ViewFrame> frames;
+    std::vector<Image> pictures;
+    std::vector<Mask> masks;
+    for (const auto v : cells) {
+        frames.push_back(frame_of(views_[v], frames_[v].section, cell, drawing_.family.latent_cell));
+        pictures.push_back(frames.back().picture);
+        masks.push_back(frames.back().sent_mask);
+    }
+    const std::size_t first = key != nullptr && !key->data.empty() ? 1 : 0;
+    if (first == 1) pictures.front() = at_side(*key, cell), masks.front() = Mask(cell, cell);
+    std::vector<CheckedPicture> best(cells.size());
+    for (int attempt = 0; attempt < Attempts; ++attempt) {
+        auto asked = order(prompt_for_sheet(drawing_.family, drawing_.text));
+        asked.picture = sheet_of(pictures, drawing_.side);
+        asked.mask = as_image(sheet_mask(masks, drawing_.side));
+        if (attempt > 0) asked.seed = server_seed(Random::stream(request_.seed, SeedStream).next());
+        const Image came = ask_server(std::move(asked));
+        const Image answer = at_side(came, drawing_.side);
+        bool flawed = false;
+        for (std::size_t i = first; i < cells.size(); ++i) {
+            auto checked = check_answer(frames[i], is_square(came) ? cut_cell(answer, i) : came);
+            if (best[i].picture.data.empty() || best[i].flaw != Flaw::None) best[i] = std::move(checked);
+            flawed = flawed || best[i].flaw != Flaw::None;
+        }
+        if (!flawed) break;
+    }
+    for (std::size_t i = first; i < cells.size(); ++i) {
+        if (best[i].flaw == Flaw::None) {
+            best[i].picture = match_colours(best[i].picture, frames[i].picture, frames[i].sent_mask);
+            best[i].picture = at_side(best[i].picture, drawing_.side);
+        }
+        take(cells[i], std::move(best[i]));
+    }
+}
+
+void RoundDrawing::draw_with_reference(KeyPicture& key) {
+    std::vector<std::size_t> rest(views_.size());
+    std::iota(rest.begin(), rest.end(), std::size_t{0});
+    const bool again = views_.size() == 1 && !key.picture.data.empty();
+    if (!again) {
+        rest = outwards_from(key_view());
+        draw_alone(rest.front());
+        key.picture = squares_[rest.front()];
+        rest.erase(rest.begin());
+    }
+    for (const auto v : rest) key.picture.data.empty() ? draw_alone(v) : draw_like(v, key.picture);
+}
+
+/// Some models copy the reference in place of following it: such a view is drawn by itself.
+void RoundDrawing::draw_like(std::size_t view, const Image& key) {
+    auto asked = order_for(view);
+    asked.prompt = prompt_with_reference(drawing_.family, drawing_.text, views_[view].view_words);
+    asked.references.push_back(key);
+    auto checked = ask(frames_[view], std::move(asked));
+    const bool copied =
+        checked.picture.width == key.width && !checked.picture.data.empty() &&
+        edge_correlation(checked.picture, key) > edge_correlation(checked.picture, frames_[view].picture);
+    if (!copied) return take(view, std::move(checked));
+    log::info("the server copied the reference into a view, which is drawn without it");
+    draw_alone(view);
+}
+
+void RoundDrawing::draw_by_warp() {
+    std::vector<std::size_t> drawn;
+    for (const auto v : outwards_from(key_view())) {
+        drawn.empty() ? draw_alone(v) : draw_warped(v, drawn);
+        if (!squares_[v].data.empty()) drawn.push_back(v);
+    }
+}
+
+/// Carries over what is drawn already, has the rest filled in, and then all of it drawn once more at a low
+/// strength, so that seams close.
+void RoundDrawing::draw_warped(std::size_t view, const std::vector<std::size_t>& drawn) {
+    std::vector<const edit::EditView*> from;
+    std::vector<Image> pictures;
+    std::vector<const Image*> shown;
+    for (const auto v : drawn) {
+        from.push_back(&views_[v]);
+        pictures.push_back(pasted(views_[v], frames_[v], squares_[v]));
+    }
+    for (const auto& picture : pictures) shown.push_back(&picture);
+    const auto warped = warp_by_depth(from, shown, views_[view]);
+    edit::EditView filled = views_[view];
+    filled.rendered = warped.picture;
+    filled.mask = difference(views_[view].mask, warped.known);
+    const auto mask_pixels = static_cast<double>(views_[view].mask.count());
+    if (static_cast<double>(filled.mask.count()) > LeastHole * mask_pixels) {
+        const auto frame =
+            frame_of(filled, frames_[view].section, drawing_.side, drawing_.family.latent_cell);
+        // Parts of the mask may lie beside the object.
+        auto checked = ask(frame, order_for(view), true);
+        if (checked.flaw != Flaw::None) return take(view, std::move(checked));
+        filled.rendered = pasted(filled, frame, checked.picture);
+    }
+    filled.mask = views_[view].mask;
+    auto asked = order_for(view);
+    asked.strength = SeamStrength;
+    take(view, ask(frame_of(filled, frames_[view].section, drawing_.side, drawing_.family.latent_cell),
+                   std::move(asked)));
+}
+
+RedrawOrder RoundDrawing::order(std::string prompt) const {
+    const auto& family = drawing_.family;
+    RedrawOrder order;
+    order.prompt = std::move(prompt);
+    if (family.negative) order.negative_prompt = drawing_.text.negative;
+    order.seed = server_seed(request_.seed);
+    order.steps = family.steps;
+    order.guidance_scale = family.guidance_scale;
+    order.distilled_guidance = family.distilled_guidance;
+    order.strength = request_.round == 0 ? family.strength : family.again_strength;
+    if (request_.anew && request_.round == 0 && !family.instructed())
+        order.strength = std::max(order.strength, ShapeStrength);
+    order.sampler = family.sampler;
+    return order;
+}
+
+RedrawOrder RoundDrawing::order_for(std::size_t view) const {
+    return order(
+        prompt_for_view(drawing_.family, drawing_.text, views_[view].view_words, request_.round > 0));
+}
+
+CheckedPicture RoundDrawing::ask(const ViewFrame& frame, RedrawOrder order, bool may_stay) {
+    if (frame.mask.count() == 0) return {frame.picture};  // nothing may change
+    order.picture = frame.picture;
+    order.mask = as_image(frame.sent_mask);
+    CheckedPicture checked;
+    for (int attempt = 0; attempt < Attempts; ++attempt) {
+        if (attempt > 0) {
+            order.seed = server_seed(Random::stream(request_.seed, SeedStream).next());
+            if (checked.flaw == Flaw::Unedited && drawing_.family.has_strength())
+                order.strength = std::min(1.0, order.strength + RaisedStrength);
+        }
+        checked = check_answer(frame, ask_server(order));
+        if (may_stay && checked.flaw == Flaw::Unedited) checked.flaw = Flaw::None, checked.note.clear();
+        if (checked.flaw != Flaw::None) continue;
+        checked.picture = match_colours(checked.picture, frame.picture, frame.sent_mask);
+        return checked;
+    }
+    return checked;
+}
+
+Image RoundDrawing::ask_server(RedrawOrder order) {
+    if (job_.stop_requested()) throw Error(ErrorCode::Cancelled, "redrawing the views was stopped");
+    const auto& facts = source_.facts();
+    if (!facts.takes_mask) order.mask = {};
+    if (picture_is_reference(facts, drawing_.family))
+        order.references.insert(order.references.begin(), order.picture);
+    if (order.references.size() > facts.references) order.references.resize(facts.references);
+    const int total = static_cast<int>(views_.size()),
+              now = static_cast<int>(std::min(done_, views_.size() - 1));
+    const auto stage = fmt::format("view {} of {} at the server", now + 1, total);
+    const auto report = [&](int hundredths) {
+        job_.report(stage, now * Hundredths + hundredths, total * Hundredths);
+    };
+    report(0);
+    JobControl control{[&](std::string_view, int step, int steps) {
+                           if (steps > 0) report(std::clamp(step * Hundredths / steps, 0, Hundredths));
+                       },
+                       job_.stop};
+    return source_.ask(order, control);
+}
+
+void RoundDrawing::take(std::size_t view, CheckedPicture checked) {
+    ++done_;
+    round_.drift += checked.drift;
+    auto& notes = round_.notes;
+    if (!checked.note.empty()) {
+        log::info("{}: {}", views_[view].view.name, checked.note);
+        if (std::find(notes.begin(), notes.end(), checked.note) == notes.end()) notes.push_back(checked.note);
+    }
+    if (checked.flaw == Flaw::None) squares_[view] = std::move(checked.picture);
+}
+
+/// The view with the most to change; from behind it counts less.
+std::size_t RoundDrawing::key_view() const {
+    std::size_t best = 0;
+    double most = -1;
+    for (std::size_t v = 0; v < views_.size(); ++v) {
+        const double front = views_[v].azimuth ? (1 + std::cos(*views_[v].azimuth)) / 2 : 1;
+        const double weight = static_cast<double>(views_[v].mask.count()) * (1 - FrontWeight * (1 - front));
+        if (weight > most) most = weight, best = v;
+    }
+    return best;
+}
+
+/// All views: this one, then by the angle of their directions to it.
+std::vector<std::size_t> RoundDrawing::outwards_from(std::size_t view) const {
+    std::vector<std::size_t> order(views_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const auto direction = views_[view].view.camera.forward();
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        if ((a == view) != (b == view)) return a == view;
+        return dot(views_[a].view.camera.forward(), direction) >
+               dot(views_[b].view.camera.forward(), direction);
+    });
+    return order;
+}
+
+}  // namespace gse::remote

@@ -1,0 +1,82 @@
+// One round of views drawn by a server, in one of the ways that make them agree (METHOD.md, Views by a
+// server).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/edit/interfaces/interfaces.h"
+#include "engine/remote/views/acceptance.h"
+#include "engine/remote/views/agreement.h"
+#include "engine/remote/views/family.h"
+#include "engine/remote/views/picture_source.h"
+#include "engine/remote/views/remote_prompt.h"
+
+namespace gse::remote {
+
+/// Settings of what is drawn.
+struct RemoteDrawing {
+    EditText text;
+    ModelFamily family;
+    Agreement agreement = Agreement::None;  // not Auto
+    int side = 512;                         // px of the pictures that are sent: a multiple of 64
+};
+
+/// Picture of the view that the others are drawn like.
+struct KeyPicture {
+    Image picture;  // [S,S,3]; empty = none yet
+};
+
+/// Outcome of a round.
+struct DrawnRound {
+    std::vector<Image> pictures;         // per view [H,W,3]: redrawn inside the mask, else as rendered
+    std::vector<std::uint8_t> rejected;  // per view: 1 = nothing of use came
+    std::vector<std::string> notes;      // sentences about what came, each once
+    double drift = 0;                    // mean over the views, share of the picture's side
+};
+
+/// Draws the views of one round. Refers to all it is given.
+class RoundDrawing {
+public:
+    RoundDrawing(PictureSource& source, const RemoteDrawing& drawing,
+                 const std::vector<edit::EditView>& views, const edit::EditViewsRequest& request,
+                 const JobControl& job);
+
+    /// Draws all views. `key`: of an earlier call, for views that are drawn once more; a new one is left in
+    /// it. Throws as ImageServer::redraw().
+    DrawnRound draw(KeyPicture& key);
+
+private:
+    void draw_each();
+    void draw_sheets();
+    void draw_with_reference(KeyPicture& key);
+    void draw_by_warp();
+
+    void draw_alone(std::size_t view);
+    void draw_like(std::size_t view, const Image& key);
+    void draw_sheet(const std::vector<std::size_t>& cells, const Image* key);
+    void draw_warped(std::size_t view, const std::vector<std::size_t>& drawn);
+
+    RedrawOrder order(std::string prompt) const;
+    RedrawOrder order_for(std::size_t view) const;
+    /// Asks for one frame, and once more with another seed where the answer is of no use. `may_stay`: what is
+    /// drawn may look as the scene did.
+    CheckedPicture ask(const ViewFrame& frame, RedrawOrder order, bool may_stay = false);
+    Image ask_server(RedrawOrder order);
+    void take(std::size_t view, CheckedPicture checked);
+    std::size_t key_view() const;
+    std::vector<std::size_t> outwards_from(std::size_t view) const;
+
+    PictureSource& source_;
+    const RemoteDrawing& drawing_;
+    const std::vector<edit::EditView>& views_;
+    const edit::EditViewsRequest& request_;
+    const JobControl& job_;
+    std::vector<ViewFrame> frames_;
+    std::vector<Image> squares_;  // per view: as it was drawn, [S,S,3]; empty where nothing of use came
+    DrawnRound round_;
+    std::size_t done_ = 0;  // views, for the progress
+};
+
+}  // namespace gse::remote
