@@ -27,8 +27,9 @@ public:
     const std::vector<std::string>& made() const { return made_; }
     /// Words of the scene as far as nobody has looked at pictures of it.
     language::plan::SceneWords scene() const { return edit::assumed_scene(request_, made_); }
-    /// Takes the words that the model finds; none = it takes any.
-    void set_known_words(const std::vector<std::string>& known);
+    /// Takes the words that the model finds; none = it takes any. `draws_any`: a server
+    /// draws, which is told any word.
+    void set_known_words(const std::vector<std::string>& known, bool draws_any);
 
     /// The request in the words of the step that it is about. Of several, that is the first until one runs.
     edit::EditRequest asked() const;
