@@ -122,7 +122,7 @@ void draw_choices(Context& context) {
     auto choice = server.choice;
     bool changed = false;
     if (server.models.size() > 1) {
-        row_label(context, "Model", "The model that the server draws with.");
+        row_label(context, "Set model", "The model that the server draws with.");
         std::string shown = choice.model.empty() ? "as it is loaded" : choice.model;
         auto names = texts_of(server.models);
         names.insert(names.begin(), "as it is loaded");
@@ -131,7 +131,7 @@ void draw_choices(Context& context) {
             changed = true;
         }
     }
-    row_label(context, "Family",
+    row_label(context, "Set family",
               "Family of the model: it decides steps, guidance, strength, size and the form of the sentence. "
               "auto = by the model's name.");
     changed |= choose(context, "models.server.family", texts_of(server.families), choice.family);

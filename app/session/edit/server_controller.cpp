@@ -34,14 +34,14 @@ bool is_drawn(const edit::EditRequest& request) {
     } catch (const Error&) { return true; }  // no job runs with it
 }
 
-/// Views that are sent in a round: more where something new is drawn.
+/// Views that are sent in a round.
 int pictures_of(const edit::EditRequest& request) {
+    auto mode = edit::EditMode::Modify;
     try {
-        const auto [mode, reason] = edit::decide_mode(edit::check(request), std::nullopt);
-        if (mode != edit::EditMode::Modify) return request.shape_views;
+        mode = edit::decide_mode(edit::check(request), std::nullopt).first;
     } catch (const Error&) {  // the edit says what is wrong with it
     }
-    return request.edited_views;
+    return edit::round_plan(request, mode).views;
 }
 
 /// Words about who can read what goes there.
@@ -73,7 +73,7 @@ std::string ServerController::told(const edit::EditRequest& request) const {
         "{} pictures of your scene in each round{}, their masks and the sentence \"{}\" go to "
         "{} ({}{}). {}",
         pictures_of(request), size, request.prompt, url.nickname(), kind_.empty() ? "an image server" : kind_,
-        url.encrypted() ? "" : ", not encrypted", said_of_way(url));
+        url.encrypted() || remote::is_loopback(url.host) ? "" : ", not encrypted", said_of_way(url));
 }
 
 bool ServerController::may_send(const AskedSentence& sentence, std::function<void()> then) {

@@ -12,7 +12,7 @@ namespace {
 
 std::string abilities_of(const remote::ServerFacts& facts) {
     std::string text = facts.takes_mask ? "takes masks" : "takes no masks";
-    if (facts.references > 0) text += fmt::format(", shows the model {} pictures beside", facts.references);
+    if (facts.references > 0) text += fmt::format(", takes {} more pictures", facts.references);
     text += facts.repeats ? ", repeats a picture by its seed" : ", cannot repeat a picture";
     if (facts.reports_progress) text += ", tells its progress";
     if (facts.cancels) text += ", stops when told";

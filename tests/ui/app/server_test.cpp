@@ -32,6 +32,8 @@ std::string all_facts(const ui::ServerView& server) {
 
 std::string question(const Session& session) { return session.app.model().question.text; }
 
+std::uint64_t questions(const Session& session) { return session.app.model().question.number; }
+
 /// Everything in the folder, as one text.
 std::string all_files(const fs::path& folder) {
     std::string text;
@@ -41,12 +43,13 @@ std::string all_files(const fs::path& folder) {
 }
 
 /// A sentence with a word that only a server draws, drawn small and quickly.
-void ask_for_porcelain(Session& session) {
+void ask_for_iridescence(Session& session) {
     auto request = session.app.model().request;
     request.source = "bear";
-    request.prompt = "a porcelain bear";
-    request.target = "porcelain";
+    request.prompt = "a golden iridescent bear";
+    request.target = "golden iridescent";
     request.quality = "draft";
+    request.method = "auto";
     request.views = 12;
     session.app.run(command::SetRequest{request});
 }
@@ -115,13 +118,14 @@ DOCTEST_TEST_CASE("nothing goes to a server before the artist has agreed, and a 
     remote::StandIn server("sdserver");
     Session session;
     session.open_bear();
-    ask_for_porcelain(session);
+    ask_for_iridescence(session);
     choose(session, server.url());
     session.app.run(command::UseServer{true});
     session.app.run(command::Edit{});
     DOCTEST_CHECK_FALSE(session.app.model().job.running);
-    DOCTEST_CHECK(question(session).find("a porcelain bear") != std::string::npos);
-    DOCTEST_CHECK(question(session).find("not encrypted") != std::string::npos);
+    DOCTEST_CHECK(question(session).starts_with("4 pictures"));
+    DOCTEST_CHECK(question(session).find("a golden iridescent bear") != std::string::npos);
+    DOCTEST_CHECK(question(session).find("not encrypted") == std::string::npos);
     DOCTEST_CHECK(question(session).find("this machine") != std::string::npos);
     session.app.run(command::Answer{1});
     DOCTEST_REQUIRE(session.settled());
@@ -130,6 +134,7 @@ DOCTEST_TEST_CASE("nothing goes to a server before the artist has agreed, and a 
     DOCTEST_CHECK_FALSE(session.app.model().server.on);
     session.app.run(command::UseServer{true});
     session.app.run(command::Edit{});
+    DOCTEST_CHECK(question(session).find("not encrypted") != std::string::npos);
     DOCTEST_CHECK(question(session).find("public address") != std::string::npos);
 }
 
@@ -140,27 +145,28 @@ DOCTEST_TEST_CASE(
     remote::StandIn server("sdserver");
     Session session;
     session.open_bear();
-    ask_for_porcelain(session);
+    ask_for_iridescence(session);
     choose(session, server.url());
     session.app.run(command::UseServer{true});
     session.app.run(command::Edit{});
     session.app.run(command::Answer{0});
     bool told = false;
     DOCTEST_REQUIRE(session.until([&] {
-        told |= session.app.model().job.stage.find("view 3 of 8") != std::string::npos;
+        told |= session.app.model().job.stage.find("view 3 of 4") != std::string::npos;
         return !session.app.model().job.running;
     }));
     DOCTEST_CHECK(told);
     DOCTEST_CHECK(session.app.model().job.error == "");
     DOCTEST_REQUIRE(session.app.model().result_waiting);
-    DOCTEST_CHECK(server.asked("/img_gen").size() >= 8);
+    DOCTEST_CHECK(server.asked("/img_gen").size() == 4);
     session.app.run(command::DiscardResult{});
     server.set({{"draw_s", "5"}});
     auto request = session.app.model().request;
     request.seed += 1;
     session.app.run(command::SetRequest{request});
+    const auto asked = questions(session);
     session.app.run(command::Edit{});
-    DOCTEST_CHECK(question(session).empty());
+    DOCTEST_CHECK(questions(session) == asked);
     DOCTEST_REQUIRE(session.until(
         [&] { return session.app.model().job.stage.find("at the server") != std::string::npos; }));
     session.app.run(command::Cancel{});
