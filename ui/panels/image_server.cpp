@@ -136,7 +136,7 @@ void draw_choices(Context& context) {
               "auto = by the model's name.");
     changed |= choose(context, "models.server.family", texts_of(server.families), choice.family);
     row_label(
-        context, "Agreement",
+        context, "Set agreement",
         "Way to make the views agree. Sheet: several views in one picture. Reference: the first is shown "
         "beside the others. Warp: the first is carried over by depth. auto = as it suits the family.");
     changed |=

@@ -41,7 +41,7 @@ class Server(WindowTest):
         window.click("start.sample")
         window.wait(lambda s: s["splats"] > 0 and not s["busy"], "the sample did not open")
         window.write("prompt.source", "bear")
-        window.write("prompt.sentence", "a golden iridescent bear")
+        window.write("prompt.sentence", "a golden bear")
         return window, server
 
     def test_a_server_is_tested_switched_on_agreed_to_and_draws(self):
