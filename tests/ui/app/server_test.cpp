@@ -4,7 +4,9 @@
 #include <doctest/doctest.h>
 
 #include "engine/base/file.h"
+#include "engine/io/image/image_file.h"
 #include "engine/pipeline/models/remote_loader.h"
+#include "engine/pipeline/report/picture_text.h"
 #include "tests/stress/remote/stand_in.h"
 #include "tests/ui/app/session.h"
 
@@ -173,6 +175,25 @@ DOCTEST_TEST_CASE(
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK(session.app.model().job.outcome == "stopped");
     DOCTEST_CHECK_FALSE(session.app.model().result_waiting);
+}
+
+DOCTEST_TEST_CASE("a recipe that names a server is told of, and changes neither address nor switch") {
+    const Place place;
+    const auto picture = place.folder / "before_after.png";
+    pipeline::EditRecipe recipe;
+    recipe.request.source = "bear";
+    recipe.request.prompt = "a golden bear";
+    recipe.server.url = "http://mira:verysecret@203.0.113.9:7860";
+    write_png(picture, Image(8, 8, 3), pipeline::picture_text(recipe, pipeline::recipe_to_json(recipe)));
+    DOCTEST_CHECK(read_file(picture).find("verysecret") == std::string::npos);
+    Session session;
+    session.app.run(command::Open{picture});
+    DOCTEST_REQUIRE(session.until([&] { return session.app.model().request.prompt == "a golden bear"; }, 60));
+    DOCTEST_CHECK_FALSE(session.app.model().server.on);
+    DOCTEST_CHECK(session.app.model().server.choice.url.empty());
+    std::string said;
+    for (const auto& toast : session.app.model().toasts) said += toast.text;
+    DOCTEST_CHECK(said.find("203.0.113.9:7860") != std::string::npos);
 }
 
 }  // namespace server_session_test
