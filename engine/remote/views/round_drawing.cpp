@@ -252,7 +252,7 @@ Image RoundDrawing::ask_server(RedrawOrder order) {
               now = static_cast<int>(std::min(done_, views_.size() - 1));
     const auto stage = fmt::format("view {} of {} at the server", now + 1, total);
     job_.report(stage, now, total);
-    // What a server tells of its own steps is not shown: few tell it.
+    // Steps inside a view are not shown: few servers tell them.
     const JobControl control{[](std::string_view, int, int) {}, job_.stop};
     return source_.ask(order, control);
 }
