@@ -6,6 +6,7 @@
 
 #include "engine/base/answer_cache.h"
 #include "engine/edit/interfaces/edit_plan.h"
+#include "engine/edit/interfaces/interfaces.h"
 #include "engine/edit/request/checked_request.h"
 #include "engine/remote/api/image_server.h"
 #include "engine/remote/api/server_settings.h"
