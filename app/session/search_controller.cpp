@@ -97,7 +97,8 @@ void SearchController::refresh_reading() {
 void SearchController::follow_document() {
     last_.set_undone(!workspace_.document.includes(last_.step()));
     const auto& state = workspace_.document.state();
-    sentence_.set_said(language::words_said(applied_sentences(state.stack)), things_added(state));
+    sentence_.set_said(language::words_said(applied_sentences(state.stack)), things_added(state),
+                       things_labelled(state));
 }
 
 EditRecipe SearchController::recipe() const {
@@ -363,10 +364,11 @@ void SearchController::set_scope(bool by_label) {
         choice_ = ScopeChoice{by_label, label->name, language::normalised_prompt(sentence_.asked().source)};
 }
 
+/// A label that is named for another thing of the sentence says nothing of its source.
 void SearchController::choose_label_by_hand() {
-    if (const NamedLabel* label = workspace_.active_label();
-        label != nullptr && (made_by_hand(*label) || count_labelled(*label) == 0))
-        set_scope(true);
+    const NamedLabel* label = workspace_.active_label();
+    if (label == nullptr || sentence_.speaks_of(language::normalised_prompt(label->name))) return;
+    if (made_by_hand(*label) || count_labelled(*label) == 0) set_scope(true);
 }
 
 void SearchController::choose_for_source() {

@@ -2,7 +2,7 @@
 """Image server for tests: speaks all four protocols, draws a pure function of what it is sent, and fails on
 request.
 
-    stand_in_server.py [--flavour sdserver] [--host 127.0.0.1]
+    stand_in_server.py [--flavour sdserver] [--host 127.0.0.1] [--port 0] [--certificate FILE]
 
 The first line of output names the port. GET /gse/set?NAME=VALUE sets knobs (see World), /gse/reset?NAME=VALUE
 forgets everything first, /gse/log tells what was asked. Faults count requests of the kind `at`: draw, poll,
@@ -13,6 +13,8 @@ import base64
 import hashlib
 import json
 import re
+import socket
+import ssl
 import sys
 import threading
 import time
@@ -483,8 +485,14 @@ def main():
     parser.add_argument("--flavour", default="sdserver")
     parser.add_argument("--host", default="127.0.0.1")
     parser.add_argument("--port", type=int, default=0)
+    parser.add_argument("--certificate", help="file of a certificate with its key: speaks TLS")
     options = parser.parse_args()
+    Server.address_family = socket.AF_INET6 if ":" in options.host else socket.AF_INET
     server = Server((options.host, options.port), Handler)
+    if options.certificate:
+        context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+        context.load_cert_chain(options.certificate)
+        server.socket = context.wrap_socket(server.socket, server_side=True)
     server.world = World(options.flavour)
     print(f"port {server.server_address[1]}", flush=True)
     server.serve_forever(poll_interval=.05)

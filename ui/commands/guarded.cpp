@@ -505,7 +505,7 @@ void label_by_hand(Context& context, const std::string& name) {
     // A click or a box is the quickest way to a thing; the other tools correct it.
     context.state.viewport.tool = Tool::CutOut;
     context.state.viewport.stroke = false;
-    show_panel(context.state, PanelId::Labels);
+    show_panel(context.state, PanelId::Prompt);  // the sentence goes on when the thing is labelled
 }
 
 void set_tool(Context& context, Tool tool) {

@@ -70,6 +70,8 @@ void update_sentence(Context& context) {
     prompt.guessed_target = std::move(facts.guessed_target);
     prompt.told = std::move(facts.told);
     prompt.steps = std::move(facts.steps);
+    prompt.refused = facts.refused;
+    prompt.missing = std::move(facts.missing);
     std::erase_if(prompt.left_out, [&](const auto& out) {
         return std::none_of(prompt.steps.begin(), prompt.steps.end(),
                             [&](const auto& step) { return step.notation == out; });

@@ -44,8 +44,10 @@ void draw_job(Context& context) {
     property(context, "Stage", job.paused ? job.stage + " (paused)" : job.stage);
     property(context, "Step", steps);
     property(context, "Time", duration_text(job.seconds));
-    property(context, "Left",
-             job.eta_seconds >= 0 ? "about " + duration_text(job.eta_seconds) : "not known yet");
+    property(context, "Left of this stage",
+             job.eta_seconds >= 1   ? "about " + duration_text(job.eta_seconds)
+             : job.eta_seconds >= 0 ? "nearly done"
+                                    : "not known yet");
 }
 
 /// The gate: the model's own drawing of a few views.

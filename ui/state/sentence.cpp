@@ -33,6 +33,11 @@ bool unread(const std::string& sentence, const std::string& phrase, const Senten
            language::position_of(sentence, phrase) + language::words_of(phrase).size() > ground.words_read;
 }
 
+/// Tells whether nothing says where the source is: no word that the model finds, and no label.
+bool source_is_missing(const std::string& source, const SentenceGround& ground) {
+    return !ground.labelled_by_hand && !language::unknown_word(ground.known, source).empty();
+}
+
 std::string unknown_source(const std::string& source, const SentenceGround& ground) {
     if (language::vocabulary_contains(language::promptable_vocabulary(ground.known, ground.drawn), source))
         return fmt::format("The model can draw \"{}\" but not find it: click on it in the view", source);
@@ -90,8 +95,14 @@ StepFacts step_facts(const edit::EditRequest& request, const edit::PlannedStep& 
             fmt::format("{}: {}", first_letter_up(planned.problem.reason), planned.problem.remedy);
         return facts;
     }
+    const auto source = language::normalised_prompt(request.source);
+    const bool about_source = planned.words->source == source;
     const bool labelled =
-        ground.labelled_by_hand && planned.words->source == language::normalised_prompt(request.source);
+        (ground.labelled_by_hand && about_source) || language::contains(ground.made, planned.words->source);
+    if (about_source && source_is_missing(source, ground)) {
+        facts.problem = fmt::format("Waits until \"{}\" is labelled", source);
+        return facts;
+    }
     try {
         const auto valid = edit::check(edit::request_of(request, *planned.words), {ground.said, {}});
         facts.problem = words_problem(valid, ground, labelled);
@@ -116,9 +127,17 @@ std::string problem_of(const edit::EditRequest& request, const SentenceGround& g
         return "Describe the scene after the edit in one sentence";
     if (request.source.empty() && request.target.empty())
         return "Type what in the scene the edit is about, or click the word of the sentence that is new";
-    if (facts.follows_plan) return problem_of_steps(facts);
-    if (const auto problem = edit::single_edit_problem(request, {ground.said, ground.read_target}))
+    if (facts.follows_plan) {
+        const auto problem = problem_of_steps(facts);
+        const auto source = language::normalised_prompt(request.source);
+        return !problem.empty() && source_is_missing(source, ground) ? unknown_source(source, ground)
+                                                                     : problem;
+    }
+    if (const auto problem = edit::single_edit_problem(request, {ground.said, ground.read_target})) {
+        facts.refused = true;
+        facts.missing = edit::missing_thing(request, edit::assumed_scene(request, ground.made));
         return fmt::format("{}: {}", first_letter_up(problem->message()), problem->hint());
+    }
     std::optional<edit::CheckedRequest> valid;
     try {
         valid = edit::check(request, {ground.said, ground.read_target});

@@ -17,7 +17,7 @@ struct SentenceGround {
     std::size_t words_read = 0;           // of the sentence, by the text encoder; 0 = not known, all of them
     // The word that a search of this sentence saw to be new; empty = none has looked.
     std::string read_target = {};
-    std::vector<std::string> made = {};   // things that applied edits have put into the scene
+    std::vector<std::string> made = {};   // things of the scene that are labelled: by edits, or by hand
     std::vector<std::string> drawn = {};  // words that the model draws besides and does not look for
     bool draws_any_word = false;          // a server draws: only what is looked for has to be known
 };
@@ -45,6 +45,8 @@ struct SentenceFacts {
     edit::EditWords told;
     std::vector<StepFacts> steps;  // of the plan; empty = the sentence is told as it is typed, or refused
     bool follows_plan = false;     // the steps run in their own words
+    bool refused = false;          // by what the sentence means, whatever the model
+    std::string missing;           // noun that it is refused for: nothing in the scene is called so
     std::string cut_at;            // first word that the text encoder does not read; empty = it reads all
 };
 

@@ -77,6 +77,8 @@ struct PromptState {
     std::string guessed_target;
     edit::EditWords told;  // SentenceFacts::told
     std::vector<StepFacts> steps;
+    bool refused = false;               // SentenceFacts::refused
+    std::string missing;                // SentenceFacts::missing
     std::vector<std::string> left_out;  // steps that are not made, by their notation
     std::string cut_at;                 // first word that the text encoder does not read
     bool seed_locked = true;            // open: every edit gets another seed

@@ -14,6 +14,9 @@ std::string outcome_text(const JobStatus& job) {
 std::string job_line(const ViewModel& model) {
     const auto& job = model.job;
     const bool waits = model.result_waiting;
+    if (waits && model.verdict.changes.size() > 1 && job.outcome == "done" && job.title.starts_with("Edit"))
+        return fmt::format("{}. Apply or discard it",
+                           result_line(model));  // the job was the last change alone
     if (!job.title.empty() && !job.outcome.empty())
         return fmt::format("{}: {}{}", job.title, outcome_text(job), waits ? ". Apply or discard it" : "");
     if (!waits) return "Ready";

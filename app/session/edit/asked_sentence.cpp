@@ -19,10 +19,12 @@ void AskedSentence::set(const edit::EditRequest& request) {
     plan();
 }
 
-void AskedSentence::set_said(std::vector<std::string> said, std::vector<std::string> made) {
-    if (said == said_ && made == made_) return;
+void AskedSentence::set_said(std::vector<std::string> said, std::vector<std::string> made,
+                             std::vector<std::string> named) {
+    if (said == said_ && made == made_ && named == named_) return;
     said_ = std::move(said);
     made_ = std::move(made);
+    named_ = std::move(named);
     plan();
 }
 
@@ -47,7 +49,18 @@ edit::StepProgress AskedSentence::steps_in(const language::plan::SceneWords& sce
     return {std::move(steps), scene, model_};
 }
 
+bool AskedSentence::speaks_of(const std::string& thing) const {
+    if (thing.empty() || thing == language::normalised_prompt(request_.source)) return false;
+    return language::contains(there_, thing) || edit::missing_thing(request_, scene()) == thing;
+}
+
 void AskedSentence::plan() {
+    there_ = made_;
+    for (std::size_t tries = 0; tries < named_.size(); ++tries) {
+        const auto missing = edit::missing_thing(request_, scene());
+        if (missing.empty() || !language::contains(named_, missing)) break;
+        there_.push_back(missing);
+    }
     steps_ = edit::changes_of(request_, scene(), {said_, model_, {}});
     follows_plan_ = edit::follows_plan(request_, steps_, {said_, {}});
 }

@@ -22,13 +22,18 @@ public:
     edit::EditSettings& settings() { return request_; }
     void forget_target() { request_.target.clear(); }
     /// Takes what applied edits have said: their words are no news any more, and what they `made` is there.
-    void set_said(std::vector<std::string> said, std::vector<std::string> made);
+    /// Things that labels are `named` for are there where the sentence needs them.
+    void set_said(std::vector<std::string> said, std::vector<std::string> made,
+                  std::vector<std::string> named);
     const std::vector<std::string>& said() const { return said_; }
-    const std::vector<std::string>& made() const { return made_; }
+    /// Things of the scene beside the source.
+    const std::vector<std::string>& made() const { return there_; }
+    /// Tells whether the sentence speaks of such a thing beside its source.
+    bool speaks_of(const std::string& thing) const;
     /// Words of the scene as far as nobody has looked at pictures of it.
-    language::plan::SceneWords scene() const { return edit::assumed_scene(request_, made_); }
-    /// Takes the words that the model finds; none = it takes any. `draws_any`: a server
-    /// draws, which is told any word.
+    language::plan::SceneWords scene() const { return edit::assumed_scene(request_, there_); }
+    /// Takes the words that the model finds; none = it takes any. `draws_any`: a server draws, which is told
+    /// any word.
     void set_known_words(const std::vector<std::string>& known, bool draws_any);
 
     /// The request in the words of the step that it is about. Of several, that is the first until one runs.
@@ -48,7 +53,8 @@ private:
     void plan();
 
     edit::EditRequest request_;
-    std::vector<std::string> said_, made_;
+    std::vector<std::string> said_, made_, named_;
+    std::vector<std::string> there_;  // what was made, and named things that the sentence speaks of
     language::plan::ModelAbility model_;
     std::vector<edit::PlannedStep> steps_;
     bool follows_plan_ = false;

@@ -147,6 +147,13 @@ std::vector<std::string> things_added(const DocumentState& state) {
     return things;
 }
 
+std::vector<std::string> things_labelled(const DocumentState& state) {
+    std::vector<std::string> things;
+    for (const NamedLabel& label : state.labels)
+        if (made_by_hand(label)) things.push_back(language::normalised_prompt(label.name));
+    return things;
+}
+
 namespace {
 
 /// The artist's word about a label for this source; nothing = none was said.

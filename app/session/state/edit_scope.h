@@ -72,6 +72,9 @@ std::vector<std::string> things_made(const std::vector<EditNode>& stack);
 /// named for.
 std::vector<std::string> things_added(const DocumentState& state);
 
+/// Things that labels made by hand are named for.
+std::vector<std::string> things_labelled(const DocumentState& state);
+
 /// Search settings of the active label: thresholds and excluded views. A negative attention threshold = not
 /// by a search.
 struct FoundWith {

@@ -16,14 +16,24 @@ namespace gse::edit {
 /// The upper part of a labelled thing.
 struct HeadRegion {
     std::vector<std::uint8_t> bits;  // [N]
-    // Its height, as a share of the whole thing's: the topmost part that is as high as it is wide.
+    // Its height, as a share of the whole thing's: the topmost part that is as high as it is wide, whose
+    // lower half is hardly wider than its upper one.
     double head = 1;
 };
 
-/// Head of the rows that `bits` [N] label, as high as so many `heads`. All rows if no part is as high as
-/// wide, or none can be seen.
+/// Head of the rows that `bits` [N] label, as high as so many `heads`. Its width is the mean horizontal
+/// extent, or the narrowest one of an elongated part. Rows farther to the side than 0.75 of that are left
+/// out. All rows if no part is as high as wide, or none can be seen.
 HeadRegion bust_of(const GaussianSet& set, std::span<const std::uint8_t> bits, const Vec3& up,
                    const Vec3& front, double heads = 1);
+
+/// Tells whether no head rises above the rows that `bits` [N] label. None is found then, and the topmost
+/// tenth is long, like the back of an animal whose head is lower.
+bool is_head_unclear(const GaussianSet& set, std::span<const std::uint8_t> bits, const Vec3& up,
+                     const Vec3& front, const ModelTraits& traits);
+
+/// Tells whether the request adds something that is worn at the head.
+bool is_worn_at_head(const CheckedRequest& request);
 
 /// Part of an object that wears something new.
 struct AttachmentTarget {

@@ -294,6 +294,9 @@ std::optional<Error> single_edit_problem(const EditRequest& request, const News&
         return refused;
     }
     const auto steps = news_among(plan.steps, news);
+    if (steps.empty() && plan.steps.size() > 1)
+        return Error(ErrorCode::InvalidArgument, "all that the sentence asks for is made already",
+                     "say what is to be different, or undo an edit first");
     if (steps.empty()) return std::nullopt;  // the same edit once more
     for (const auto& step : steps) {
         plan::StepProblem problem;
@@ -305,6 +308,14 @@ std::optional<Error> single_edit_problem(const EditRequest& request, const News&
                                        [&](const auto& step) { return !may_be_shown(step, sentence); });
     if (certain > 1 && !is_around_source(request, sentence)) return several(steps);
     return std::nullopt;
+}
+
+std::string missing_thing(const EditRequest& request, const plan::SceneWords& scene) {
+    if (!is_planned(request)) return {};
+    const auto plan = plan_of(request, scene);
+    const bool missing = plan.is_refusal() && !is_told_as_typed(request, plan) &&
+                         plan.steps.front().text == plan::reason::NotInScene;
+    return missing ? plan.steps.front().text2 : std::string();
 }
 
 std::optional<Error> refusal_of(const plan::Plan& plan, const std::string& source) {

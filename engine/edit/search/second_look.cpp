@@ -5,7 +5,10 @@
 #include <cmath>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "engine/base/log.h"
+#include "engine/edit/placement/head.h"
 #include "engine/edit/placement/upright_bounds.h"
 #include "engine/edit/search/front_reading.h"
 #include "engine/edit/search/picture_words.h"
@@ -19,7 +22,17 @@ namespace {
 constexpr int Around = 12;         // pictures
 constexpr int PictureSide = 96;    // pixels; encoders of small models take fewer
 constexpr double Elevation = 0.3;  // radians: the middle of a model's training pictures
+// Share of a picture's side. An object that covers its rim so far is cut off there.
+constexpr double CutRim = 1.0 / 7;
 constexpr double Nearer = 0.8;  // of the distance of training pictures: the thing fills more of the picture
+
+/// Tells whether a fair share of the picture's edge is masked.
+bool fills_rim(const Mask& mask) {
+    int rim = 0;
+    for (int i = 0; i < mask.width; ++i) rim += (mask.at(i, 0) != 0) + (mask.at(i, mask.height - 1) != 0);
+    for (int i = 0; i < mask.height; ++i) rim += (mask.at(0, i) != 0) + (mask.at(mask.width - 1, i) != 0);
+    return rim >= CutRim * std::max(mask.width, mask.height);
+}
 
 bool reaches_rim(const Mask& mask) {
     const auto row = [&](int y) {
@@ -58,6 +71,15 @@ std::vector<Image> pictures_around(const Finding& finding, raster::Rasterizer& r
 }
 
 }  // namespace
+
+bool is_cut_off(const LocateResult& result, double share) {
+    double seen = 0, cut = 0;
+    for (const auto& view : result.views) {
+        if (view.failed) continue;
+        seen += 1, cut += fills_rim(view.mask) ? 1 : 0;
+    }
+    return seen > 0 && cut >= share * seen;
+}
 
 SecondLook look_along_border(const Finding& finding, ThreadPool* threads) {
     SecondLook look;
@@ -116,6 +138,20 @@ void take_second_look(LocateResult& result, const SecondLook& look, double least
     result.problem = verdict.problem;
     result.message = std::move(verdict.message);
     result.remedy = std::move(verdict.remedy);
+}
+
+void require_head(LocateResult& result, const Finding& finding, const CheckedRequest& request,
+                  const SecondLookTools& tools) {
+    if (result.mode != EditMode::Add || !is_worn_at_head(request)) return;
+    if (tools.recognition == nullptr || !tools.recognition->available()) return;
+    if (!is_head_unclear(finding.gaussians, *result.source_label.bits, finding.orbit.up, finding.front,
+                         finding.traits) ||
+        encoder_knows(finding, *tools.recognition))
+        return;
+    result.problem = SearchProblem::NoPlace;
+    result.message = fmt::format("it is not clear where the head of \"{}\" is, which \"{}\" goes to",
+                                 request.source(), request.target());
+    result.remedy = "put a box around its head: Cut out in the window, --cut-out on the command line";
 }
 
 }  // namespace gse::edit

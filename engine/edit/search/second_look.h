@@ -37,6 +37,9 @@ struct SecondLookTools {
     ThreadPool* threads = nullptr;
 };
 
+/// Tells whether what was looked for goes on beyond the pictures in that share of the views.
+bool is_cut_off(const LocateResult& result, double share);
+
 /// How far the edges of the pictures cut the finding off; grounds go on beyond them and are not cut.
 SecondLook look_along_border(const Finding& finding, ThreadPool* threads);
 
@@ -50,5 +53,10 @@ SecondLook second_look(const Finding& finding, const SecondLookTools& tools);
 
 /// The result with the verdict after a second look (reconsider()).
 void take_second_look(LocateResult& result, const SecondLook& look, double least);
+
+/// Refuses to put something on a head that neither the shape of the wearer nor the encoder shows: the problem
+/// is NoPlace then.
+void require_head(LocateResult& result, const Finding& finding, const CheckedRequest& request,
+                  const SecondLookTools& tools);
 
 }  // namespace gse::edit

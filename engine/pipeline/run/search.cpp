@@ -41,8 +41,6 @@ constexpr double StepBack = 1.2;  // of the distance, where what was drawn does 
 constexpr double CutShares[] = {
     0.6, 1};  // of the views, from which that is so, a step each: a wing may reach out of some views; every
               // step draws the thing once more, and the second is worth it only where no view shows all of it
-// Share of a picture's side. An object that covers its rim so far is cut off there.
-constexpr double CutRim = 1.0 / 7;
 constexpr double WholeShare = 0.5;    // of the views that may cut off what is seen whole
 constexpr double SameFraming = 0.05;  // of the distance: a nearer framing shows the same
 // SameFraming for a worn addition: every look costs as much as an edit does.
@@ -59,23 +57,6 @@ constexpr std::size_t FrontViews = 12;                // in which the front of a
 double room_around(language::Relation relation) {
     constexpr double BesideIt = 1.75;
     return language::place_name(relation).empty() ? 1 : BesideIt;  // what is worn fits into the head room
-}
-
-bool is_cut(const Mask& mask) {
-    int rim = 0;
-    for (int i = 0; i < mask.width; ++i) rim += (mask.at(i, 0) != 0) + (mask.at(i, mask.height - 1) != 0);
-    for (int i = 0; i < mask.height; ++i) rim += (mask.at(0, i) != 0) + (mask.at(mask.width - 1, i) != 0);
-    return rim >= CutRim * std::max(mask.width, mask.height);
-}
-
-/// Tells whether what was looked for goes on beyond the pictures in that share of the views.
-bool is_cut_off(const edit::LocateResult& result, double share) {
-    double seen = 0, cut = 0;
-    for (const auto& view : result.views) {
-        if (view.failed) continue;
-        seen += 1, cut += is_cut(view.mask) ? 1 : 0;
-    }
-    return seen > 0 && cut >= share * seen;
 }
 
 const Label& thing_of(const edit::LocateResult& result) {
@@ -142,6 +123,9 @@ Located finished(RunContext& context, Located located) {
     if (shows_finding(located))
         edit::take_second_look(result, edit::second_look(finding_of(context, located), context.second_look()),
                                located.recipe.request.least_confidence);
+    if (located.found())
+        edit::require_head(result, finding_of(context, located), located.recipe.request,
+                           context.second_look());
     if (!located.found())
         for (auto* label : {&result.label, &result.source_label})
             *label = make_label(label->name, std::vector<float>(label->bits->size(), 0.0f), 0.5f);
@@ -350,8 +334,8 @@ private:
                 continue;  // try nearer
             log::debug("orbit at {:.2f} of the fitted distance: confidence {:.3f}", distance,
                        found.confidence.value);
-            const bool whole =
-                ground() && found.problem == edit::SearchProblem::None && !is_cut_off(found, WholeShare);
+            const bool whole = ground() && found.problem == edit::SearchProblem::None &&
+                               !edit::is_cut_off(found, WholeShare);
             const double sure =
                 found.confidence.value +
                 (whole ? 1 : 0);  // of what stands in nothing a part looks much like the whole
@@ -470,7 +454,7 @@ private:
 
     /// Looks from the views as they are, and once more from nearer where what was found is small.
     Located moved_in(const Views& from, const std::vector<std::uint8_t>& by_hand) {
-        const Views views = by_hand.empty() ? framed_as_worn(faced(from)) : faced(from);
+        const Views views = faced(from);
         Located located{views, recipe_, by_hand, look(recipe_, views, by_hand), target_read_, {}};
         const auto& result = located.result;
         const auto& label = thing_of(result);
@@ -486,7 +470,7 @@ private:
         const bool worn = result.mode == edit::EditMode::Add ||
                           edit::replaces_accessory(recipe_.request.sentence(), result.mode);
         for (const double share : CutShares) {
-            if (!worn || !as_figure || !is_cut_off(result, share)) break;
+            if (!worn || !as_figure || !edit::is_cut_off(result, share)) break;
             log::info("\"{}\" does not fit into the pictures; it is looked for from farther off",
                       result.word);
             located.views = faced(views_on(nearer(located.views.orbit, StepBack), recipe_));
@@ -495,20 +479,25 @@ private:
         return located;
     }
 
-    /// To draw something new into the views takes longest, and from where follows from the thing that wears
-    /// it alone.
-    Views framed_as_worn(const Views& from) {
+    /// Place of a new thing on its wearer, which is found as a search for it alone finds it. The new word
+    /// would draw attention off the head. Nothing for other edits, or where no wearer is found.
+    std::optional<Located> on_wearer() {
         const auto mode = edit::decide_mode(recipe_.request, std::nullopt).first;
-        if (!moves() || mode != edit::EditMode::Add || !framed_as_figure(mode)) return from;
-        CheckedRecipe wearer = recipe_;
-        wearer.request.mode = edit::EditMode::Modify;
-        const auto found = look(wearer, from, {});
-        if (found.problem != edit::SearchProblem::None) return from;
-        const auto focused = focused_on(found.label, mode, from.orbit, from.front);
-        return worth_moving(from.orbit, focused, mode, true) ? faced(views_on(focused, recipe_)) : from;
+        if (mode != edit::EditMode::Add || !framed_as_figure(mode)) return std::nullopt;
+        Search for_wearer = *this;
+        for_wearer.recipe_.request = recipe_.request.search_for(recipe_.request.source());
+        const Located wearer = for_wearer.shown_whole(for_wearer.from_all_distances());
+        pedestal_ = for_wearer.pedestal_;
+        if (!wearer.found()) return std::nullopt;
+        const auto& label = wearer.result.label;
+        const auto focused = focused_on(label, mode, wearer.views.orbit, wearer.views.front);
+        Located worn = moved_in(views_on(focused, recipe_), *label.bits);
+        worn.result.confidence = wearer.result.confidence;
+        return worn;
     }
 
     Located from_all_distances() {
+        if (auto worn = on_wearer()) return std::move(*worn);
         Located located = from_glance(distances_);
         std::vector<double> others;
         for (const double distance : ScanDistances)

@@ -43,6 +43,9 @@ struct RedrawOrder {
     std::string sampler = {};       // empty = the server's choice
 };
 
+/// Hint of every error that says that a picture is too large for a server: a smaller one may do.
+constexpr const char* TooLargeHint = "draw at a smaller size, or free memory at the server";
+
 /// A picture as the server drew it: neither registered nor blended.
 struct RedrawnPicture {
     Image picture;           // [H,W,3] in [0,1], of whatever size came

@@ -38,7 +38,7 @@ struct EasyTransfer {
 namespace {
 
 constexpr int BusyPollMs = 100, IdlePollMs = 60'000;
-constexpr std::chrono::seconds LongestEnd{1}, LongestJoin{2};
+constexpr Milliseconds LongestEnd{1'000}, LongestJoin{2'000}, ShortestJoin{50};
 constexpr long LongestConnections = 4;
 
 std::size_t on_header(char* data, std::size_t size, std::size_t count, void* transfer) {
@@ -225,6 +225,7 @@ public:
         };
         auto transfer =
             std::make_shared<HttpTransfer>(std::move(request), std::move(follow_up), background, wake);
+        if (background) ++background_;
         {
             const std::scoped_lock lock(mutex_);
             arrived_.push_back(transfer);
@@ -239,7 +240,8 @@ public:
         closing_ = true;
         wake();
         std::unique_lock lock(mutex_);
-        const bool ended = ended_.wait_for(lock, LongestJoin, [&] { return has_ended_; });
+        const auto most = background_ > 0 ? LongestJoin : ShortestJoin;
+        const bool ended = ended_.wait_for(lock, most, [&] { return has_ended_; });
         lock.unlock();
         if (ended) thread_.join();
         else thread_.detach();
@@ -284,6 +286,7 @@ private:
             auto made = easy_transfer(transfer, ca_file_);
             if (!made || curl_multi_add_handle(multi_, made->easy.get()) != CURLM_OK) {
                 transfer->finish({HttpFailure::BadRequest, "the request cannot be sent"});
+                if (transfer->background) --background_;
                 continue;
             }
             running_.push_back(std::move(made));
@@ -332,12 +335,14 @@ private:
             if (auto next = transfer.follow_up(result))
                 add(std::move(next->request), std::move(next->then), true);
         transfer.finish(std::move(result));
+        if (transfer.background) --background_;
     }
 
     const std::filesystem::path ca_file_;
     CURLM* multi_ = nullptr;
     std::vector<std::unique_ptr<EasyTransfer>> running_;  // of the driving thread
     std::atomic<bool> closing_ = false;
+    std::atomic<int> background_ = 0;  // exchanges that nobody waits for
     std::thread thread_;
     std::mutex mutex_;
     std::condition_variable ended_;

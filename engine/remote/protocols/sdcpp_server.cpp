@@ -71,6 +71,7 @@ ServerFacts SdCppServer::probe(const JobControl& job) {
     facts.kind = ServerKind::SdCpp;
     facts.product = "sd-server";
     facts.model = shown(text_of(model, "name").empty() ? text_of(model, "stem") : text_of(model, "name"));
+    check_only_model(link_->url(), wanted_model_, facts.model);
     facts.loras = texts_of(value_of(json, "loras"), "name");
     facts.references = value_of(features, "ref_images") == false ? 0 : MostReferences;
     facts.takes_mask = value_of(features, "mask_image") != false;
@@ -132,6 +133,7 @@ RedrawnPicture SdCppServer::redraw(const RedrawOrder& order, const JobControl& j
     const auto body = sdcpp_body(order);
     nlohmann::json done;
     for (int attempt = 0; attempt < 2 && done.is_null(); ++attempt) {
+        if (attempt > 0) probe(job);  // it was started again, perhaps with another model
         const auto id = submit(body, job);
         try {
             done = wait_for_job(id, picture_answer_bytes(order, 0), job);

@@ -18,7 +18,9 @@ int steps_to_ask_of_levels(int real, double strength);
 
 class SdCppServer final : public ImageServer {
 public:
-    explicit SdCppServer(std::unique_ptr<ServerLink> link) : link_(std::move(link)) {}
+    /// `model` is the one that it must have; empty = any.
+    SdCppServer(std::unique_ptr<ServerLink> link, std::string model)
+        : link_(std::move(link)), wanted_model_(std::move(model)) {}
     ServerFacts probe(const JobControl& job) override;
     RedrawnPicture redraw(const RedrawOrder& order, const JobControl& job) override;
 
@@ -28,6 +30,7 @@ private:
     nlohmann::json wait_for_job(const std::string& id, std::size_t most_bytes, const JobControl& job);
 
     std::unique_ptr<ServerLink> link_;
+    const std::string wanted_model_;
     ServerFacts facts_;
 };
 

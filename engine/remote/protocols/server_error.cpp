@@ -8,13 +8,13 @@
 
 #include "engine/base/json.h"
 #include "engine/base/printable.h"
+#include "engine/remote/api/image_server.h"
 
 namespace gse::remote {
 namespace {
 
 constexpr std::size_t MostWordBytes = 300;
 constexpr int DeepestWords = 4;
-constexpr const char* SmallerHint = "draw at a smaller size, or free memory at the server";
 
 std::string lower_case(std::string_view text) {
     std::string lower(text);
@@ -140,12 +140,12 @@ Error status_error(const HttpAnswer& answer, const ServerUrl& url, bool with_sec
         return {ErrorCode::Foreign, fmt::format("{} does not know this request (404){}", name, words),
                 "is this its address? A1111 and Forge must be started with --api"};
     if (status == 413)
-        return {ErrorCode::Foreign, fmt::format("{} finds the picture too large", name), SmallerHint};
+        return {ErrorCode::Foreign, fmt::format("{} finds the picture too large", name), TooLargeHint};
     if (status == 429 || status == 503)
         return {ErrorCode::Foreign, fmt::format("{} stays busy ({}){}", name, status, words),
                 "try again later"};
     if (status >= 500 && ran_out_of_memory(answer))
-        return {ErrorCode::Foreign, fmt::format("{} ran out of memory", name), SmallerHint};
+        return {ErrorCode::Foreign, fmt::format("{} ran out of memory", name), TooLargeHint};
     if (status >= 500)
         return {ErrorCode::Foreign, fmt::format("{} failed ({}){}", name, status, words),
                 "the server's own messages say more"};
@@ -182,6 +182,9 @@ Error network_error(const HttpResult& result, const ServerUrl& url) {
             return {ErrorCode::Foreign,
                     fmt::format("{} compresses its answer though nobody asked for it", name),
                     "switch compression off at the server or proxy"};
+        case HttpFailure::BadRequest:
+            return {ErrorCode::InvalidArgument, fmt::format("nothing can be sent to {}", name),
+                    "look at the address, and at the password for characters that no header holds"};
         default:
             return {ErrorCode::Foreign, fmt::format("{} does not speak HTTP ({})", name, detail),
                     "look at the address and its port"};
@@ -193,10 +196,18 @@ Error answer_error(const ServerUrl& url, const std::string& what) {
             "is this its address, and its protocol?"};
 }
 
+void check_only_model(const ServerUrl& url, const std::string& wanted, const std::string& only) {
+    if (wanted.empty() || wanted == only) return;
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("{} draws with {} alone, not with {}", url.nickname(),
+                            only.empty() ? "one model" : only, shown(wanted)),
+                "start it with that model, or name none");
+}
+
 Error work_error(const ServerUrl& url, std::string_view words) {
     const auto lower = lower_case(words);
     if (lower.find("out of memory") != std::string::npos)
-        return {ErrorCode::Foreign, fmt::format("{} ran out of memory", url.nickname()), SmallerHint};
+        return {ErrorCode::Foreign, fmt::format("{} ran out of memory", url.nickname()), TooLargeHint};
     return {ErrorCode::Foreign, fmt::format("{} failed to draw{}", url.nickname(), said(shown(words))),
             "the server's own messages say more"};
 }

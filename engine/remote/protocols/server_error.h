@@ -28,6 +28,9 @@ Error network_error(const HttpResult& result, const ServerUrl& url);
 /// Error of an answer that is not what its protocol says.
 Error answer_error(const ServerUrl& url, const std::string& what);
 
+/// Throws Error (InvalidArgument) where another model is wanted than the only one that a server has.
+void check_only_model(const ServerUrl& url, const std::string& wanted, const std::string& only);
+
 /// Error of work that the server says has failed, in its words.
 Error work_error(const ServerUrl& url, std::string_view words);
 

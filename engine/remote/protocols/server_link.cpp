@@ -30,7 +30,7 @@ HttpRequest RequestMaker::get(const std::string& place) const {
     HttpRequest request;
     request.url = url_.at(place);
     request.direct = is_private(url_.host);
-    request.headers = {{"Accept", "application/json"}};
+    request.headers = {{"Accept", "application/json, */*;q=0.5"}, {"User-Agent", "gseditpro"}};
     if (credential_) request.headers.emplace_back("Authorization", credential_->header());
     return with_limits(std::move(request), {});
 }

@@ -75,6 +75,8 @@ void WebuiServer::read_models(ServerFacts& facts, const JobControl& job) {
 
 void WebuiServer::switch_model(ServerFacts& facts, const JobControl& job) {
     if (wanted_model_.empty() || wanted_model_ == facts.model) return;
+    if (product_ == WebuiProduct::SdServer || product_ == WebuiProduct::KoboldCpp)
+        check_only_model(link_->url(), wanted_model_, facts.model);
     const auto known = std::find_if(facts.models.begin(), facts.models.end(), [&](const auto& title) {
         return title == wanted_model_ || title.starts_with(wanted_model_ + " ") ||
                title.starts_with(wanted_model_ + ".");

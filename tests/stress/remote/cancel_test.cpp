@@ -1,6 +1,10 @@
 // Stops in every phase of an exchange: the caller returns, and only a job of its own is ended at the server.
 #include <doctest/doctest.h>
 
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
 #include <thread>
@@ -71,6 +75,68 @@ DOCTEST_TEST_CASE("a stop returns at once while connecting, sending, waiting, re
         DOCTEST_CAPTURE(phase.at);
         DOCTEST_CHECK(middle(times) < 100);
     }
+}
+
+/// Port of this machine that takes no more connections: those who try wait.
+class FullPort {
+public:
+    FullPort() {
+        sockaddr_in place{};
+        place.sin_family = AF_INET;
+        place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        socklen_t size = sizeof place;
+        sockets_.push_back(socket(AF_INET, SOCK_STREAM, 0));
+        bind(sockets_[0], reinterpret_cast<sockaddr*>(&place), size);
+        getsockname(sockets_[0], reinterpret_cast<sockaddr*>(&place), &size);
+        listen(sockets_[0], 0);
+        port = ntohs(place.sin_port);
+        for (int i = 0; i < 8; ++i) {
+            sockets_.push_back(socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK, 0));
+            connect_to(sockets_.back(), place);
+        }
+    }
+    ~FullPort() {
+        for (const int descriptor : sockets_) close(descriptor);
+    }
+    FullPort(const FullPort&) = delete;
+    FullPort& operator=(const FullPort&) = delete;
+
+    int port = 0;
+
+private:
+    static void connect_to(int descriptor, const sockaddr_in& place) {
+        static_cast<void>(::connect(descriptor, reinterpret_cast<const sockaddr*>(&place), sizeof place));
+    }
+
+    std::vector<int> sockets_;
+};
+
+DOCTEST_TEST_CASE("a connection that does not come about is stopped at once, and given up in time") {
+    if (!can_stand_in()) return;
+    const FullPort full;
+    ServerAddress address;
+    address.url = "http://127.0.0.1:" + std::to_string(full.port);
+    address.times = patient_times();
+    address.times.connect = Milliseconds(200);
+    DOCTEST_CHECK(caught([&] { connect(address, {}); }).says("nobody answers at 127.0.0.1:"));
+    address.times.connect = Milliseconds(20'000);
+    std::vector<double> times;
+    for (int i = 0; i < 20; ++i) {
+        std::stop_source stop;
+        Clock::time_point stopped;
+        std::thread stopper([&] {
+            std::this_thread::sleep_for(Milliseconds(20));
+            stopped = Clock::now();
+            stop.request_stop();
+        });
+        JobControl job;
+        job.stop = stop.get_token();
+        DOCTEST_CHECK(caught([&] { connect(address, job); }).is(ErrorCode::Cancelled));
+        const auto returned = Clock::now();
+        stopper.join();
+        times.push_back(std::chrono::duration<double, std::milli>(returned - stopped).count());
+    }
+    DOCTEST_CHECK(middle(times) < 100);
 }
 
 DOCTEST_TEST_CASE("a job in the queue is cancelled at the server, also where its number had not come yet") {

@@ -133,6 +133,16 @@ DOCTEST_TEST_CASE("a secret is not sent unencrypted to a public address") {
     }
 }
 
+DOCTEST_TEST_CASE("a secret with characters that no header holds is not sent") {
+    if (!can_stand_in()) return;
+    auto& stand_in = shared_stand_in("sdserver");
+    const Variable token("GSEDITPRO_SERVER_TOKEN", "abc\r\nEvil");
+    const auto error = caught([&] { connect(stand_in.address(), {}); });
+    DOCTEST_CHECK(error.is(ErrorCode::InvalidArgument));
+    DOCTEST_CHECK(error.message.find("Evil") == std::string::npos);
+    DOCTEST_CHECK(stand_in.log().empty());
+}
+
 DOCTEST_TEST_CASE("bearer tokens are sent as such") {
     if (!can_stand_in()) return;
     const Variable token("GSEDITPRO_SERVER_TOKEN", "sk-123");
@@ -151,7 +161,54 @@ DOCTEST_TEST_CASE("a proxy of the environment sees nothing of this machine's ser
     DOCTEST_CHECK(trap.log().empty());
 }
 
-DOCTEST_TEST_CASE("servers are found below a path and over IPv6") {
+/// Certificate with its key in one file; empty where openssl makes none.
+std::filesystem::path certificate(const std::filesystem::path& folder, const std::string& name,
+                                  bool expired) {
+    const auto file = folder / "certificate.pem";
+    auto command = "cd " + folder.string() +
+                   " && openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes -subj /CN=x"
+                   " -days 2 -addext subjectAltName=" +
+                   name + " -keyout key.pem -out made.pem";
+    if (expired) command += " && openssl x509 -in made.pem -signkey key.pem -days -1 -out made.pem";
+    command = "(" + command + " && cat made.pem key.pem > certificate.pem) 2>/dev/null";
+    return std::system(command.c_str()) == 0 ? file : std::filesystem::path();
+}
+
+DOCTEST_TEST_CASE("a certificate is trusted only where it is named, right and not expired") {
+    if (!can_stand_in()) return;
+    struct Certificate {
+        const char* name;
+        bool expired, named, trusted;
+    };
+    for (const auto& tried :
+         {Certificate{"IP:127.0.0.1", false, true, true}, Certificate{"IP:127.0.0.1", false, false, false},
+          Certificate{"IP:127.0.0.2", false, true, false}, Certificate{"IP:127.0.0.1", true, true, false}}) {
+        const test::ScratchFolder folder;
+        const auto file = certificate(folder.path(), tried.name, tried.expired);
+        if (file.empty()) return test::skip("openssl makes no certificate here");
+        StandIn stand_in("sdserver", "127.0.0.1", file);
+        auto address = stand_in.address();
+        if (tried.named) address.ca_file = file;
+        const auto error = caught([&] { connect(address, {})->redraw(small_order(), {}); });
+        DOCTEST_CAPTURE(tried.name);
+        DOCTEST_CAPTURE(tried.expired);
+        DOCTEST_CAPTURE(error.message);
+        DOCTEST_CHECK((error.code == -1) == tried.trusted);
+        if (!tried.trusted) DOCTEST_CHECK(error.says("no safe connection"));
+    }
+}
+
+DOCTEST_TEST_CASE("servers are found over IPv6") {
+    if (!can_stand_in()) return;
+    std::unique_ptr<StandIn> stand_in;
+    try {
+        stand_in = std::make_unique<StandIn>("sdserver", "::1");
+    } catch (const std::runtime_error&) { return test::skip("this machine has no IPv6"); }
+    connect(stand_in->address(), {})->redraw(small_order(), {});
+    DOCTEST_CHECK(stand_in->log().at(0)["host"] == "[::1]:" + std::to_string(stand_in->port()));
+}
+
+DOCTEST_TEST_CASE("servers are found below a path") {
     if (!can_stand_in()) return;
     auto& stand_in = shared_stand_in("sdnext");
     stand_in.set({{"prefix", "/studio/sd"}});

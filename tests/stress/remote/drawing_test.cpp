@@ -237,6 +237,9 @@ DOCTEST_TEST_CASE("a model is switched to only where it is asked for") {
         address.model = "unheard-of";
         DOCTEST_CHECK(caught([&] { connect(address, {}); }).is(ErrorCode::InvalidArgument));
     }
+    auto address = shared_stand_in("sdserver").address();
+    address.model = "other";
+    DOCTEST_CHECK(caught([&] { connect(address, {}); }).says("draws with stand-in alone"));
 }
 
 DOCTEST_TEST_CASE("progress of a drawing is told where the server tells it") {

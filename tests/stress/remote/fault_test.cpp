@@ -1,6 +1,8 @@
 // Faults of servers: each ends in one sentence, and a picture that is right in spite of its form is taken.
 #include <doctest/doctest.h>
 
+#include <thread>
+
 #include "engine/remote/protocols/connect.h"
 #include "tests/stress/remote/stand_in.h"
 
@@ -215,6 +217,18 @@ DOCTEST_TEST_CASE("servers that hang or drip are given up") {
     }
 }
 
+DOCTEST_TEST_CASE("a drawing may take longer than the longest silence between two bytes") {
+    if (!can_stand_in()) return;
+    auto times = patient_times();
+    times.silence = Milliseconds(300);
+    for (const auto& [flavour, kind, at] :
+         {Place{"forge", ServerKind::Webui, ""}, Place{"vllm", ServerKind::OpenAi, ""}}) {
+        Tried tried(flavour, kind, times);
+        DOCTEST_CAPTURE(flavour);
+        DOCTEST_CHECK(tried.with("", "draw", {{"draw_s", "1.5"}}).code == -1);
+    }
+}
+
 DOCTEST_TEST_CASE("a server that is busy is asked again, and draws once") {
     if (!can_stand_in()) return;
     for (const auto& [flavour, kind, at] :
@@ -288,6 +302,35 @@ DOCTEST_TEST_CASE("ends of a ComfyUI job other than a picture are told in the se
     DOCTEST_CHECK(tried.stand_in.asked("/prompt").size() == 2);
     DOCTEST_CHECK(tried.with("job_lost", "poll").says("forgets its jobs"));
     DOCTEST_CHECK(tried.with("validation", "upload").is(Invalid));
+}
+
+DOCTEST_TEST_CASE("a server that is started again in the middle draws after all") {
+    if (!can_stand_in()) return;
+    for (const auto& [flavour, kind, at] :
+         {Place{"sdserver", ServerKind::SdCpp, "/job-1"}, Place{"comfy", ServerKind::Comfy, "/queue"}}) {
+        StandIn stand_in(flavour);
+        auto address = stand_in.address();
+        address.times.away = Milliseconds(20'000);
+        address.times.first_retry = address.times.longest_retry = Milliseconds(1'000);
+        const auto server = connect(address, {});
+        stand_in.set({{"draw_s", "30"}});
+        int width = 0;
+        std::thread drawing([&] { width = server->redraw(small_order(), {}).picture.width; });
+        while (stand_in.asked(at).empty()) std::this_thread::sleep_for(Milliseconds(10));
+        stand_in.restart();
+        drawing.join();
+        DOCTEST_CAPTURE(flavour);
+        DOCTEST_CHECK(width == 64);
+    }
+}
+
+DOCTEST_TEST_CASE("the model that drew a picture is told, also when it changes in between") {
+    if (!can_stand_in()) return;
+    Tried tried("forge", ServerKind::Webui);
+    tried.stand_in.reset({{"model", "first"}});
+    DOCTEST_CHECK(tried.server->redraw(small_order(), {}).model == "first");
+    tried.stand_in.set({{"model", "second"}});
+    DOCTEST_CHECK(tried.server->redraw(small_order(), {}).model == "second");
 }
 
 DOCTEST_TEST_CASE("a server that dies in the middle is named, and a queue that stays full is given up") {

@@ -1,8 +1,10 @@
 // Stand-in server as a child process of the test.
 #include "tests/stress/remote/stand_in.h"
 
+#include <netinet/in.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -70,6 +72,17 @@ const std::string& python() {
     return program;
 }
 
+bool has_loopback() {
+    sockaddr_in place{};
+    place.sin_family = AF_INET;
+    place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    const int descriptor = socket(AF_INET, SOCK_STREAM, 0);
+    const bool bound =
+        descriptor >= 0 && bind(descriptor, reinterpret_cast<const sockaddr*>(&place), sizeof place) == 0;
+    if (descriptor >= 0) close(descriptor);
+    return bound;
+}
+
 bool pictures_are_read() {
     try {
         io::media();
@@ -80,10 +93,11 @@ bool pictures_are_read() {
 }  // namespace
 
 bool can_stand_in() {
-    static const bool pictures = pictures_are_read();
+    static const bool pictures = pictures_are_read(), loopback = has_loopback();
     if (python().empty()) test::skip_missing("python3 is not there");
+    else if (!loopback) test::skip("this machine has no loopback");
     else if (!pictures) test::skip_missing("this build reads no pictures");
-    return !python().empty() && pictures;
+    return !python().empty() && loopback && pictures;
 }
 
 StandIn& shared_stand_in(const std::string& flavour) {
@@ -94,14 +108,31 @@ StandIn& shared_stand_in(const std::string& flavour) {
     return *found;
 }
 
-StandIn::StandIn(const std::string& flavour, const std::string& host) : host_(host) {
+StandIn::StandIn(const std::string& flavour, const std::string& host,
+                 const std::filesystem::path& certificate)
+    : flavour_(flavour), host_(host), certificate_(certificate) {
     setenv("PYTHONDONTWRITEBYTECODE", "1", 1);
+    start();
+}
+
+void StandIn::start() {
     const auto script = test::source_folder() / "tests/support/stand_in_server.py";
-    const int output = spawn({python(), script.string(), "--flavour", flavour, "--host", host}, process_);
+    std::vector<std::string> words{python(), script.string(), "--flavour", flavour_,
+                                   "--host", host_,           "--port",    std::to_string(port_)};
+    if (!certificate_.empty()) words.insert(words.end(), {"--certificate", certificate_.string()});
+    const int output = spawn(words, process_);
     const auto line = output >= 0 ? first_line(output) : std::string();
     if (output >= 0) close(output);
-    if (!line.starts_with("port ")) throw std::runtime_error("the stand-in does not start");
+    if (!line.starts_with("port ")) {
+        kill();
+        throw std::runtime_error("the stand-in does not start");
+    }
     port_ = std::stoi(line.substr(5));
+}
+
+void StandIn::restart() {
+    kill();
+    start();
 }
 
 StandIn::~StandIn() { kill(); }
@@ -115,11 +146,12 @@ void StandIn::kill() {
 
 std::string StandIn::url() const {
     const bool ipv6 = host_.find(':') != std::string::npos;
-    return "http://" + (ipv6 ? "[" + host_ + "]" : host_) + ":" + std::to_string(port_);
+    const std::string scheme = certificate_.empty() ? "http://" : "https://";
+    return scheme + (ipv6 ? "[" + host_ + "]" : host_) + ":" + std::to_string(port_);
 }
 
 nlohmann::json StandIn::control(const std::string& place) {
-    HttpClient client;
+    HttpClient client(certificate_);
     HttpRequest request;
     request.url = url() + place;
     request.direct = true;
@@ -162,8 +194,8 @@ ServerTimes patient_times() {
 
 ServerTimes hasty_times() {
     ServerTimes times = patient_times();
-    times.answer = times.drawing = times.silence = Milliseconds(300);
-    times.body = Milliseconds(600);
+    times.answer = times.drawing = times.silence = Milliseconds(250);
+    times.body = Milliseconds(500);
     times.away = Milliseconds(600);
     return times;
 }

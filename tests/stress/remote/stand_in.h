@@ -3,6 +3,7 @@
 
 #include <sys/types.h>
 
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
@@ -19,7 +20,9 @@ using Knobs = std::map<std::string, std::string>;
 /// A server of one flavour. It ends with the object.
 class StandIn {
 public:
-    explicit StandIn(const std::string& flavour, const std::string& host = "127.0.0.1");
+    /// `certificate` is a file with a certificate and its key, for TLS. Throws where it does not start.
+    explicit StandIn(const std::string& flavour, const std::string& host = "127.0.0.1",
+                     const std::filesystem::path& certificate = {});
     ~StandIn();
     StandIn(const StandIn&) = delete;
     StandIn& operator=(const StandIn&) = delete;
@@ -33,6 +36,8 @@ public:
     std::vector<nlohmann::json> asked(const std::string& end);
     /// Ends the program at once, as a crash would.
     void kill();
+    /// Ends it and starts it again at its port: it knows nothing any more.
+    void restart();
 
     std::string url() const;
     int port() const { return port_; }
@@ -40,10 +45,13 @@ public:
 
 private:
     nlohmann::json control(const std::string& place);
+    void start();
 
+    std::string flavour_;
     pid_t process_ = -1;
     int port_ = 0;
     std::string host_;
+    std::filesystem::path certificate_;
 };
 
 /// The one server of a flavour that cases share, as if it had just been started.

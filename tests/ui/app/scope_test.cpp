@@ -239,4 +239,27 @@ DOCTEST_TEST_CASE(
     app.shut_down();
 }
 
+DOCTEST_TEST_CASE("a label for another thing of the sentence says nothing of its source") {
+    const Place place;
+    Session session;
+    session.open_bear();
+    auto& app = session.app;
+    auto request = app.model().request;
+    request.source = "bear";
+    request.prompt = "paint the bear blue and remove the stones";
+    request.target.clear();
+    app.run(command::SetRequest{request});
+    app.update(session.preview);
+    app.run(command::AddLabel{"stone"});
+    app.run(command::Select{stroke_over_bear(20), ui::SetOperation::Add, true});
+    app.update(session.preview);
+    DOCTEST_CHECK(app.model().made_things == std::vector<std::string>{"stone"});
+    DOCTEST_CHECK_FALSE(app.model().scope.by_label);  // the first change is the bear's
+    request.prompt = "a blue bear";
+    app.run(command::SetRequest{request});
+    app.update(session.preview);
+    DOCTEST_CHECK(app.model().made_things.empty());
+    app.shut_down();
+}
+
 }  // namespace scope_test

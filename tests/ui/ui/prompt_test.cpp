@@ -118,7 +118,7 @@ DOCTEST_TEST_CASE("an unknown source is refused before work; a label by hand is 
     DOCTEST_CHECK(harness.asks("prompt.source.by_hand", "add_label sign"));
     DOCTEST_CHECK(harness.shell.state().viewport.tool == ui::Tool::CutOut);
     harness.frame(3);
-    DOCTEST_CHECK(harness.find("panel.Labels") != nullptr);
+    DOCTEST_CHECK(harness.find("panel.Prompt") != nullptr);  // the sentence goes on there
     harness.key(key::Escape);
     DOCTEST_CHECK(harness.shell.state().viewport.tool == ui::Tool::Orbit);
     harness.shell.show(ui::PanelId::Prompt);
@@ -191,7 +191,7 @@ DOCTEST_TEST_CASE("a search that labelled nothing shows its pictures and the way
     harness.frame(3);
     DOCTEST_CHECK(harness.asks("attention.by_hand", "set_active_label 0"));  // there is one of that name
     harness.frame(3);
-    DOCTEST_CHECK(harness.find("panel.Labels") != nullptr);
+    DOCTEST_CHECK(harness.find("panel.Prompt") != nullptr);
 }
 
 DOCTEST_TEST_CASE("an open seed changes with every edit, a locked one does not") {

@@ -100,6 +100,16 @@ DOCTEST_TEST_CASE("one job has one time, wherever it is told") {
     DOCTEST_CHECK(harness.find("job.outcome") != nullptr);
 }
 
+DOCTEST_TEST_CASE("several changes have one time together while they wait") {
+    Harness harness({Wide, High, 1, Situation::ResultWaiting, false});
+    auto& model = harness.application.model();
+    model.job.title = "Edit: a blue bear wearing a red hat (step 2 of 2)";
+    model.job.seconds = 4;
+    model.result_seconds = 7;
+    model.verdict.changes = {"a blue bear", "a blue bear wearing a red hat"};
+    DOCTEST_CHECK(ui::job_line(model) == "Edit done in 7.0 s. Apply or discard it");
+}
+
 DOCTEST_TEST_CASE("a stopped edit is not called done, in any place") {
     Harness harness({Wide, High, 1, Situation::ResultWaiting, false});
     auto& model = harness.application.model();

@@ -107,6 +107,52 @@ DOCTEST_TEST_CASE("what an applied edit has made can be named, whatever the sour
     DOCTEST_CHECK(facts.told.target == "green");
 }
 
+DOCTEST_TEST_CASE("a thing that is not labelled yet is asked for once, and its steps wait") {
+    edit::EditRequest request;
+    request.source = "skull";
+    request.prompt = "make it blue and give it a red hat";
+    const ui::SentenceGround ground{.known = {"a", "bear", "blue", "red", "hat", "wearing"}};
+    const auto facts = ui::facts_of(request, ground);
+    DOCTEST_REQUIRE(facts.steps.size() == 2);
+    for (const auto& step : facts.steps) DOCTEST_CHECK(step.problem == "Waits until \"skull\" is labelled");
+    DOCTEST_CHECK(facts.problem.find("click on it") != std::string::npos);
+    auto labelled = ground;
+    labelled.labelled_by_hand = true;
+    DOCTEST_CHECK(ui::facts_of(request, labelled).problem.empty());
+}
+
+DOCTEST_TEST_CASE(
+    "a thing that nothing in the scene is called is asked for by a click, and then a step like others") {
+    edit::EditRequest request;
+    request.source = "house";
+    request.prompt = "paint the house blue and remove the balloons";
+    const auto refused = ui::facts_of(request, {});
+    DOCTEST_CHECK(refused.refused);
+    DOCTEST_CHECK(refused.missing == "balloon");
+    const auto labelled = ui::facts_of(request, {.known = {"house", "blue"}, .made = {"balloon"}});
+    DOCTEST_CHECK_FALSE(labelled.refused);
+    DOCTEST_REQUIRE(labelled.steps.size() == 2);
+    for (const auto& step : labelled.steps) DOCTEST_CHECK(step.problem.empty());
+
+    Harness harness(Large);
+    ask(harness, request.prompt);
+    harness.application.model().request.source = "house";
+    harness.frame(2);
+    DOCTEST_CHECK_FALSE(harness.rect("prompt.edit").enabled);
+    DOCTEST_CHECK(harness.asks("prompt.missing.by_hand", "add_label balloon"));
+    DOCTEST_CHECK(harness.shell.state().viewport.tool == ui::Tool::CutOut);
+}
+
+DOCTEST_TEST_CASE("several changes that are all made already are refused, one is the same edit once more") {
+    edit::EditRequest request;
+    request.source = "bear";
+    request.prompt = "make it blue and give it a red hat";
+    const ui::SentenceGround shown{.said = {"blue", "red", "hat"}};
+    DOCTEST_CHECK(ui::facts_of(request, shown).problem.find("made already") != std::string::npos);
+    request.prompt = "make it blue";
+    DOCTEST_CHECK(ui::facts_of(request, shown).problem.empty());
+}
+
 DOCTEST_TEST_CASE("a style is a step for a model of any word, and refused by one with few") {
     edit::EditRequest request;
     request.source = "bear";

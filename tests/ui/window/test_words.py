@@ -58,7 +58,7 @@ class Words(WindowTest):
         window.write("prompt.sentence", "a golden skull on the grass")
         time.sleep(0.5)
         window.key("shift+Return")          # the edit asks for the thing first
-        window.wait_widget("panel.Labels")
+        window.wait_widget("prompt.chip.1")     # the sentence stays in sight
         self.assertFalse(window.state()["job"]["running"])
         window.picture("words_05_click")
         window.click("viewport", 0.5, 0.55)     # on the bear
@@ -67,7 +67,6 @@ class Words(WindowTest):
         self.assertLess(state["labelled"], state["splats"] * 0.7)    # without the grass
         window.picture("words_06_clicked")
         window.key("Escape")
-        window.click("tab.Prompt")
         window.wait_widget("prompt.edit", enabled=True)
         window.click("prompt.edit")
         window.wait(lambda s: s["job"]["running"], "the edit did not start", 20)

@@ -128,6 +128,20 @@ void draw_chips(Context& context) {
     }
 }
 
+/// Way to a thing of the sentence that nothing in the scene is called yet.
+void draw_missing(Context& context) {
+    const std::string& missing = context.state.prompt.missing;
+    if (missing.empty()) return;
+    coloured_text(palette::Warning, fmt::format("I do not know where \"{}\" is.", missing));
+    if (button(context,
+               {.name = "prompt.missing.by_hand",
+                .text = fmt::format("Click on \"{}\"", missing),
+                .why_off = context.scene_open() ? "" : "Open a scene first",
+                .tooltip = "Gives you Cut out: click on the thing, or drag a box around it. It becomes "
+                           "a label of that name, and the sentence goes on"}))
+        label_by_hand(context, missing);
+}
+
 /// Remarks about both fields, below them: no field moves under the cursor, and Tab leads from field to field.
 void draw_remarks(Context& context) {
     const auto& prompt = context.state.prompt;
@@ -138,6 +152,7 @@ void draw_remarks(Context& context) {
         coloured_text(palette::Warning,
                       fmt::format("The model reads {} words of a sentence: from \"{}\" on nothing counts.",
                                   context.model.words_read, prompt.cut_at));
+    if (prompt.refused) return draw_missing(context);  // words alone would not help
     const bool unknown =
         std::any_of(prompt.chips.begin(), prompt.chips.end(), [](const Chip& chip) { return !chip.known; });
     if (unknown) coloured_text(palette::Warning, "Words the model does not know have no effect.");
@@ -280,12 +295,14 @@ double planned_seconds(const Context& context) {
     if (prompt.steps.size() < 2 || estimate.step_seconds.size() != prompt.steps.size())
         return estimate.seconds;
     double sum = 0;
+    bool any = false;
     for (std::size_t i = 0; i < prompt.steps.size(); ++i) {
         if (!prompt.steps[i].problem.empty() || is_left_out(context, prompt.steps[i])) continue;
         if (estimate.step_seconds[i] < 0) return -1;
         sum += estimate.step_seconds[i];
+        any = true;
     }
-    return sum;
+    return any ? sum : -1;
 }
 
 std::string estimate_text(const Context& context) {
