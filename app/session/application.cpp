@@ -25,11 +25,12 @@ Application::Application(ApplicationOptions options)
     : workspace_(std::move(options)), view_(workspace_),
       models_(workspace_,
               [this](const auto& before, const auto& after) { search_.move_request(before, after); }),
-      costs_(workspace_, models_), search_(workspace_, view_, models_, costs_),
-      edits_(workspace_, view_, models_, costs_, search_),
+      servers_(workspace_), costs_(workspace_, models_),
+      search_(workspace_, view_, models_, servers_, costs_),
+      edits_(workspace_, view_, models_, servers_, costs_, search_),
       labels_(workspace_, view_, models_, search_, edits_), places_(workspace_, view_),
       exports_(workspace_, view_, search_, edits_),
-      files_(workspace_, {view_, models_, search_, edits_, labels_, exports_}) {
+      files_(workspace_, {view_, models_, servers_, search_, edits_, labels_, exports_}) {
     workspace_.run = [this](const ui::Command& command) { run(command); };
     load_settings();
     models_.start();
@@ -49,6 +50,7 @@ void Application::run(const ui::Command& command) {
                           [this](const ui::PlaceCommand& one) { places_.run(one); },
                           [this](const ui::ViewCommand& one) { view_.run(one); },
                           [this](const ui::ModelCommand& one) { models_.run(one); },
+                          [this](const ui::ServerCommand& one) { servers_.run(one); },
                           [this](const ui::ExportCommand& one) { exports_.run(one); },
                           [this](const ui::NoticeCommand& one) { workspace_.notices.run(one); },
                           [this](const ui::WindowCommand& one) { run_window(one); }},
@@ -115,6 +117,7 @@ void Application::show() {
     files_.show(model_);
     view_.show(model_);
     models_.show(model_);
+    servers_.show(model_);
     costs_.show(model_);
     search_.show(model_);
     edits_.show(model_);
@@ -146,6 +149,7 @@ void Application::save_settings() {
     json["ui_scale"] = chosen_scale_;
     json["keys"] = keymap_;
     models_.settings_to_json(json);
+    servers_.settings_to_json(json);
     costs_.settings_to_json(json);
     if (!workspace_.layout.empty()) json["layout"] = workspace_.layout;
     json["view"] = lasting(fields_to_json(view_.settings()));
@@ -163,6 +167,7 @@ void Application::load_settings() {
                                      : options.desktop_scale;
     keymap_ = text_of(json, "keys");
     models_.settings_from_json(json);
+    servers_.settings_from_json(json);
     costs_.settings_from_json(json);
     try {
         auto view = view_.settings();

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "app/session/cost_book.h"
+#include "app/session/edit/server_controller.h"
 #include "app/session/edit_controller.h"
 #include "app/session/export_controller.h"
 #include "app/session/file_controller.h"
@@ -68,6 +69,7 @@ private:
     Workspace workspace_;
     ViewController view_;
     ModelController models_;
+    ServerController servers_;
     CostBook costs_;
     SearchController search_;
     EditController edits_;

@@ -37,6 +37,7 @@ constexpr std::uint64_t WaitingEdit = std::uint64_t{1} << 63, RunningEdit = std:
 template <> void EditController::on(const command::Edit& one) {
     if (!workspace_.require_scene() || workspace_.jobs->occupied()) return;
     if (workspace_.results) return workspace_.notices.toast("Apply or discard the last edit first.");
+    if (!servers_.may_send(search_.sentence(), [this, one] { on(one); })) return;
     snapshots_.forget();
     view_.forget_tint();
     live_.losses.clear();
@@ -54,6 +55,7 @@ void EditController::read_steps() {
     EditRecipe recipe = search_.recipe();
     const auto typed = search_.request();
     recipe.request = edit::source_alone(typed);
+    recipe.server = {};  // nothing is drawn yet
     try {
         recipe.request = edit::check(std::move(recipe.request)).plain();
     } catch (const Error& error) { return workspace_.notices.report(error); }
@@ -127,6 +129,7 @@ auto edit_work(EditWork work, SearchGround ground, std::shared_ptr<DiskCache> ca
         auto& [run, recipe, open, start, pending, roads] = work;
         const auto before = network_use();
         load_model(*run, recipe.job, cache, control);
+        if (!run->job) connect_to_server(*run, open, cache, control);
         const PeakMemory peak;
         if (run->job) {
             run->job->set_control(control);
@@ -307,6 +310,7 @@ template <> void EditController::on(const command::TakeSnapshot& one) {
 }
 
 template <> void EditController::on(const command::BranchFromSnapshot& one) {
+    if (!servers_.may_send(search_.sentence(), [this, one] { on(one); })) return;
     if (workspace_.jobs->works() && !runs())
         return workspace_.notices.toast("An edit can go on when the job is done.");
     const auto* snapshot = usable_snapshot(one.iteration);
@@ -369,6 +373,8 @@ template <> void EditController::on(const command::DiscardResult&) { discard_res
 template <> void EditController::on(const command::AnotherResult&) {
     auto& results = workspace_.results;
     if (!results || workspace_.jobs->occupied()) return;
+    if (!servers_.may_send(search_.sentence(), [this, again = command::AnotherResult{}] { on(again); }))
+        return;
     search_.sentence().settings().seed = results.next_seed();
     results.set_aside();
     const auto tint = view_.forget_tint();  // as before the first of them

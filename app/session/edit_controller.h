@@ -10,6 +10,7 @@
 
 #include "app/session/cost_book.h"
 #include "app/session/edit/live_edit.h"
+#include "app/session/edit/server_controller.h"
 #include "app/session/edit/snapshots.h"
 #include "app/session/edit/step_chain.h"
 #include "app/session/model_controller.h"
@@ -22,9 +23,10 @@ namespace gse::app {
 
 class EditController {
 public:
-    EditController(Workspace& workspace, ViewController& view, ModelController& models, CostBook& costs,
-                   SearchController& search)
-        : workspace_(workspace), view_(view), models_(models), costs_(costs), search_(search) {}
+    EditController(Workspace& workspace, ViewController& view, ModelController& models,
+                   ServerController& servers, CostBook& costs, SearchController& search)
+        : workspace_(workspace), view_(view), models_(models), servers_(servers), costs_(costs),
+          search_(search) {}
 
     void run(const ui::EditCommand& command);
     /// Takes what the running edit told. Once per frame, and when it ends.
@@ -72,6 +74,7 @@ private:
     Workspace& workspace_;
     ViewController& view_;
     ModelController& models_;
+    ServerController& servers_;
     CostBook& costs_;
     SearchController& search_;
     LiveEdit live_;

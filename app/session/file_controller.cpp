@@ -192,6 +192,7 @@ void FileController::open_recipe(const std::filesystem::path& picture) {
         // As the command line takes --recipe, but for the files that are open already.
         parts_.search.set_request(recipe.request, !here);
         parts_.models.take_recipe(recipe);
+        parts_.servers.mention(recipe.server);
         if (here && json.contains("camera")) parts_.view.look_from(camera_from_json(json["camera"]));
         notices.toast(here ? "The prompt, its settings and the camera come from the picture."
                            : "The prompt and its settings come from the picture; it shows another scene, so "

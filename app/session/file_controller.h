@@ -29,6 +29,7 @@ public:
     struct Parts {
         ViewController& view;
         ModelController& models;
+        ServerController& servers;
         SearchController& search;
         EditController& edits;
         LabelController& labels;

@@ -71,8 +71,8 @@ std::vector<PlannedEdit> work_of_steps(const AskedSentence& sentence, PlannedWor
 }  // namespace
 
 SearchController::SearchController(Workspace& workspace, ViewController& view, ModelController& models,
-                                   CostBook& costs)
-    : workspace_(workspace), view_(view), models_(models), costs_(costs) {}
+                                   ServerController& servers, CostBook& costs)
+    : workspace_(workspace), view_(view), models_(models), servers_(servers), costs_(costs) {}
 
 // The request
 
@@ -106,6 +106,7 @@ EditRecipe SearchController::recipe() const {
     EditRecipe recipe =
         models_.recipe(sentence_.asked(), label != nullptr ? label->looked_from : looked_from_);
     recipe.request = edit::with_target(std::move(recipe.request), {sentence_.said(), read_target()});
+    recipe.server = servers_.server_for(recipe.request);
     return recipe;
 }
 
@@ -189,13 +190,14 @@ SearchGround SearchController::ground(const StepChain& chain) const {
 template <> void SearchController::on(const command::Locate& locate) {
     if (!workspace_.require_scene() || workspace_.jobs->occupied()) return;
     if (workspace_.results) return workspace_.notices.toast("Apply or discard the edit first.");
+    const bool alone = locate.source_alone || request().prompt.empty();
+    if (!alone && !servers_.may_send(sentence_, [this, locate] { on(locate); })) return;
     const auto run = begin_run();
     take_known_parts(run->measured, costs_.profile(request()));
     sentence_.settings().excluded_views.clear();  // of the search before
     EditRecipe wanted = recipe();
     wanted.job.looked_from = looked_from_ = view_.direction();  // whatever a label was made from
-    const bool alone = locate.source_alone || wanted.request.prompt.empty();
-    if (alone) wanted.request = edit::source_alone(std::move(wanted.request));
+    if (alone) wanted.request = edit::source_alone(std::move(wanted.request)), wanted.server = {};
     try {
         wanted.request = edit::check(std::move(wanted.request)).plain();
     } catch (const Error& error) { return workspace_.notices.report(error); }
@@ -203,6 +205,7 @@ template <> void SearchController::on(const command::Locate& locate) {
                  known = costs_.profile(request()), cache = models_.cache()](const JobControl& control) {
         const auto before = network_use();
         load_model(*run, wanted.job, cache, control);
+        connect_to_server(*run, wanted, cache, control);
         const PeakMemory peak;
         run->job = std::make_shared<EditJob>(open, ground.input(*run, {}), control);
         look(*run);
@@ -411,7 +414,7 @@ void SearchController::refresh_scope() {
 void SearchController::refresh() {
     if (last_.take_arriving(*arriving_, workspace_.jobs->works())) ++workspace_.content;
     vote_if_wanted();
-    sentence_.set_known_words(models_.list().known_words());
+    sentence_.set_known_words(models_.list().known_words(), servers_.on());
     if (workspace_.document.empty()) return;
     refresh_scope();
     if (seconds_since(last_estimate_) <= EstimateSeconds) return;

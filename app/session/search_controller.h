@@ -13,6 +13,7 @@
 #include "app/session/cost_book.h"
 #include "app/session/edit/asked_sentence.h"
 #include "app/session/edit/last_search.h"
+#include "app/session/edit/server_controller.h"
 #include "app/session/edit/step_chain.h"
 #include "app/session/model_controller.h"
 #include "app/session/state/cost_profile.h"
@@ -42,13 +43,15 @@ struct SearchGround {
                 tuned,
                 said,
                 run.segmenters,
-                known ? found : std::vector<std::uint8_t>{}};
+                known ? found : std::vector<std::uint8_t>{},
+                run.server};
     }
 };
 
 class SearchController {
 public:
-    SearchController(Workspace& workspace, ViewController& view, ModelController& models, CostBook& costs);
+    SearchController(Workspace& workspace, ViewController& view, ModelController& models,
+                     ServerController& servers, CostBook& costs);
 
     void run(const ui::SearchCommand& command);
     /// Takes views that came in, votes where that is wanted, and follows words and labels. Once per frame.
@@ -125,6 +128,7 @@ private:
     Workspace& workspace_;
     ViewController& view_;
     ModelController& models_;
+    ServerController& servers_;
     CostBook& costs_;
     AskedSentence sentence_;
     std::size_t words_read_ = 0;  // of the sentence, by the text encoder; 0 = all, or not known

@@ -11,6 +11,7 @@ public:
         return remote::connect(address, job);
     }
     std::string keep_credentials(const std::string& url) override { return remote::keep_credentials(url); }
+    void forget_credentials(const std::string& url) override { remote::forget_credentials(url); }
 };
 
 }  // namespace

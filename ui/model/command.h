@@ -307,6 +307,24 @@ struct SetCacheMb {
 };
 struct ClearCache {};
 
+// The image server.
+/// Takes settings of it. A name and a password in the address are kept in the user's file of passwords.
+struct SetServer {
+    ServerChoice choice;
+};
+/// Keeps name and password for the server in the user's file of passwords.
+struct KeepServerPassword {
+    std::string name, password;
+};
+/// Asks it what it is. No picture is sent.
+struct TestServer {};
+/// Has it draw the views of edits, or no longer.
+struct UseServer {
+    bool on = true;
+};
+/// Forgets address, facts and password.
+struct ForgetServer {};
+
 // Exports.
 struct SetExports {
     ExportSettings settings;
@@ -377,6 +395,8 @@ using ViewCommand =
 using ModelCommand =
     std::variant<command::SetModelSettings, command::ChooseModel, command::AddLora, command::SetLoraStrength,
                  command::RemoveLora, command::ChooseSegmenter, command::SetCacheMb, command::ClearCache>;
+using ServerCommand = std::variant<command::SetServer, command::KeepServerPassword, command::TestServer,
+                                   command::UseServer, command::ForgetServer>;
 using ExportCommand = std::variant<command::SetExports, command::ExportPicture, command::ExportTurntable,
                                    command::ExportScene, command::ExportViewpoints, command::AddCameraKey,
                                    command::DeleteCameraKey, command::ExportCameraPath>;
@@ -386,7 +406,7 @@ using WindowCommand = std::variant<command::OpenGuide, command::ToggleFullscreen
 
 /// A command; each alternative is the list of one controller.
 using Command = std::variant<FileCommand, SearchCommand, EditCommand, LabelCommand, PlaceCommand, ViewCommand,
-                             ModelCommand, ExportCommand, NoticeCommand, WindowCommand>;
+                             ModelCommand, ServerCommand, ExportCommand, NoticeCommand, WindowCommand>;
 
 /// Commands of a frame in their order, kept until the frame is drawn. Nothing that panels read changes under
 /// their hands.

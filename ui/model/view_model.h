@@ -451,6 +451,32 @@ struct ModelPart {
     std::uint64_t cache_bytes = 0;            // that they take
 };
 
+/// Settings of an image server that an artist makes in the window. Nothing secret is in them.
+struct ServerChoice {
+    std::string url, model;  // empty = none; the model that is loaded
+    std::string family = "auto", agreement = "auto";
+};
+
+/// Answer of an image server to the question what it is, and its use.
+struct ServerView {
+    struct Fact {
+        std::string name, value;
+        std::string origin = {};  // of a value that could be another: "from the model's name"
+    };
+    ServerChoice choice;
+    bool on = false;       // it draws the views of edits
+    bool testing = false;  // it is being asked
+    std::vector<Fact> facts;
+    std::vector<std::string> notes;             // of the server, or about it
+    std::vector<std::string> models;            // to choose from; empty = not told
+    std::vector<std::string> families{"auto"};  // to choose from
+    std::string problem;  // why it cannot be used, with the remedy; empty = none is known
+};
+
+struct ServerPart {
+    ServerView server;
+};
+
 struct ExportPart {
     ExportSettings exports;
     std::vector<CameraKey> camera_keys;
@@ -481,6 +507,7 @@ struct ViewModel : DocumentPart,
                    LabelPart,
                    PlacePart,
                    ModelPart,
+                   ServerPart,
                    ExportPart,
                    NoticePart,
                    WindowPart {};

@@ -222,6 +222,7 @@ void draw_models_panel(Context& context) {
     heading(context, "Masks");
     draw_segmenter(context, segmenter_texts(SegmenterRole::Clicks));
     draw_segmenter(context, segmenter_texts(SegmenterRole::Words));
+    draw_image_server(context);
     heading(context, "Another model");
     const bool entered = text_input(context, "models.path", context.state.models.model_path,
                                     "path of a folder or .safetensors", ImGuiInputTextFlags_EnterReturnsTrue);

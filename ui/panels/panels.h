@@ -22,6 +22,8 @@ void draw_place(Context& context);
 void follow_placing(Context& context);
 void draw_labels_panel(Context& context);
 void draw_scene_panel(Context& context);
+/// Part of the models: the server that draws the views of edits.
+void draw_image_server(Context& context);
 void draw_models_panel(Context& context);
 void draw_history_panel(Context& context);
 void draw_views_panel(Context& context);

@@ -28,6 +28,7 @@ std::string first_letter_up(std::string text) {
 
 /// Words that stand, in part at least, where the text encoder has stopped reading.
 bool unread(const std::string& sentence, const std::string& phrase, const SentenceGround& ground) {
+    if (ground.draws_any_word) return false;
     return ground.words_read > 0 && language::has_phrase(sentence, phrase) &&
            language::position_of(sentence, phrase) + language::words_of(phrase).size() > ground.words_read;
 }
@@ -66,8 +67,9 @@ std::string words_problem(const edit::CheckedRequest& valid, const SentenceGroun
     const auto& words = valid.sentence();
     const bool draws = edit::method_of(valid).draws_views();
     const auto drawn = draws ? ground.drawn : std::vector<std::string>{};
+    const auto require = ground.draws_any_word ? edit::require_findable_words : edit::require_known_words;
     try {
-        edit::require_known_words(valid, ground.known, drawn, labelled);
+        require(valid, ground.known, drawn, labelled, {});
     } catch (const Error& error) {
         return fmt::format("{}: {}", first_letter_up(error.message()),
                            what_to_say(words.target(), language::promptable_vocabulary(ground.known, drawn),
@@ -187,7 +189,7 @@ SentenceFacts facts_of(const edit::EditRequest& request, const SentenceGround& g
     for (const auto& word : language::words_of(request.prompt)) {
         Chip chip;
         chip.text = word;
-        chip.known = language::vocabulary_contains(say, word);
+        chip.known = ground.draws_any_word || language::vocabulary_contains(say, word);
         if (!chip.known) {
             const auto near = language::nearest_words(word, say, 1);
             if (!near.empty()) chip.suggestion = near.front();
@@ -205,8 +207,9 @@ SentenceFacts facts_of(const edit::EditRequest& request, const SentenceGround& g
             facts.source_suggestions.push_back(with_word(request.source, index, near));
         facts.source_help = language::words_to_use(unknown, ground.known);
     }
-    const auto planned = edit::changes_of(request, edit::assumed_scene(request, ground.made),
-                                          {ground.said, {ground.known.empty(), ground.known}});
+    const auto planned =
+        edit::changes_of(request, edit::assumed_scene(request, ground.made),
+                         {ground.said, {ground.known.empty() || ground.draws_any_word, ground.known}});
     for (const auto& step : planned) facts.steps.push_back(step_facts(request, step, ground));
     facts.follows_plan = edit::follows_plan(request, planned, {ground.said, {}});
     facts.problem = problem_of(request, ground, facts);

@@ -204,6 +204,9 @@ struct HistoryState {
 struct ModelsState {
     std::string model_path, lora_text;
     std::array<std::string, 2> segmenter_paths;  // by SegmenterRole
+    std::string server_url, server_problem;      // as it is typed; why that is no address
+    std::string server_shown;                    // address in use when the text was last taken from it
+    std::string server_user, server_password;
 };
 
 /// Requests to carry out before the next frame is drawn.

@@ -28,9 +28,10 @@ void AskedSentence::set_said(std::vector<std::string> said, std::vector<std::str
     plan();
 }
 
-void AskedSentence::set_known_words(const std::vector<std::string>& known) {
-    if (known == model_.known && known.empty() == model_.open_vocabulary) return;
-    model_ = {known.empty(), known};
+void AskedSentence::set_known_words(const std::vector<std::string>& known, bool draws_any) {
+    const bool open = draws_any || known.empty();
+    if (known == model_.known && open == model_.open_vocabulary) return;
+    model_ = {open, known};
     plan();
 }
 

@@ -32,8 +32,9 @@ public:
     bool speaks_of(const std::string& thing) const;
     /// Words of the scene as far as nobody has looked at pictures of it.
     language::plan::SceneWords scene() const { return edit::assumed_scene(request_, there_); }
-    /// Takes the words that the model finds; none = it takes any.
-    void set_known_words(const std::vector<std::string>& known);
+    /// Takes the words that the model finds; none = it takes any. `draws_any`: a server draws, which is told
+    /// any word.
+    void set_known_words(const std::vector<std::string>& known, bool draws_any);
 
     /// The request in the words of the step that it is about. Of several, that is the first until one runs.
     edit::EditRequest asked() const;

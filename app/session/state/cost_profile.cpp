@@ -42,6 +42,13 @@ void load_model(MeasuredRun& run, const JobParameters& job, const std::shared_pt
     run.segmenters = open_segmenters(job, cache);  // after the model: its failure is not the model's
 }
 
+void connect_to_server(MeasuredRun& run, const EditRecipe& recipe, const std::shared_ptr<DiskCache>& cache,
+                       const JobControl& control) {
+    if (!recipe.server.used()) return;
+    control.report("asking the image server what it is", 0, 0);
+    run.server = open_view_server(recipe.server, cache, control);
+}
+
 void measure_peak(MeasuredRun& run, const PeakMemory& peak) {
     measure_load(run);
     if (run.loaded.after_mb >= 0) measure_memory(run.measured, run.memory, run.loaded.after_mb, peak.mb());

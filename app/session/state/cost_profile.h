@@ -23,6 +23,7 @@ struct MeasuredRun {
     PlannedMemory memory;
     neural::NetworkUse use;
     Segmenters segmenters;
+    std::shared_ptr<ViewServer> server;       // that draws the views; null = the model does
     std::shared_ptr<ArrivingViews> arriving;  // is told of the views while they are looked from
 };
 
@@ -34,6 +35,10 @@ std::shared_ptr<MeasuredRun> begin_run(std::shared_ptr<neural::TextToImage> mode
 /// Model and segmenters of the recipe, where they are not in memory.
 void load_model(MeasuredRun& run, const JobParameters& job, const std::shared_ptr<DiskCache>& cache,
                 const JobControl& control);
+
+/// Connects to the image server that the recipe names and asks what it is. Throws Error.
+void connect_to_server(MeasuredRun& run, const EditRecipe& recipe, const std::shared_ptr<DiskCache>& cache,
+                       const JobControl& control);
 
 /// Locates, and measures what that took.
 void look(MeasuredRun& run);

@@ -110,15 +110,15 @@ std::shared_ptr<remote::ImageServer> connect_server(const remote::ServerSettings
     address.workflow = settings.workflow;
     address.ca_file = settings.ca;
     address.allow_paid_nodes = settings.paid_nodes;
-    const auto url = remote::parse_server_url(address.url).url;
-    log::info("pictures of the scene, their masks and the sentence go to {}{}, which may keep them",
-              url.nickname(), url.encrypted() ? "" : " (not encrypted)");
     return remote_api().connect(address, job);
 }
 
 std::shared_ptr<ViewServer> open_view_server(const remote::ServerSettings& settings,
                                              std::shared_ptr<AnswerCache> cache, const JobControl& job) {
     if (!settings.used()) return nullptr;
+    const auto url = remote::parse_server_url(settings.url).url;
+    log::info("pictures of the scene, their masks and the sentence go to {}{}, which may keep them",
+              url.nickname(), url.encrypted() ? "" : " (not encrypted)");
     auto server = connect_server(settings, job);
     return std::make_shared<ViewServer>(std::move(server), settings, std::move(cache), job);
 }

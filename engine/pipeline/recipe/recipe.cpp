@@ -141,6 +141,7 @@ std::string search_key(const CheckedRecipe& recipe) {
     hash.numbers(job.use_label, job.the_thing, recipe.use_dreambooth, recipe.guidance.plain_ground,
                  job.rasterizer == "cuda");  // other last digits
     if (recipe.use_dreambooth) hash.fields(recipe.dreambooth);
+    if (recipe.server.used()) hash.fields(recipe.server);  // it is told other words, and draws places
     return hash.key().hex();
 }
 

@@ -228,10 +228,10 @@ void EditJob::check_recipe() const {
     if (!recipe_.server.used()) return;
     if (!edit::method_of(recipe_.request).draws_views())
         throw Error(ErrorCode::InvalidArgument, "a server draws views, and this method follows a gradient",
-                    "leave --method or --server out");
+                    "leave the method (--method) or the server (--server) out");
     if (recipe_.use_dreambooth)
         throw Error(ErrorCode::InvalidArgument, "a server's model cannot be tuned from here",
-                    "leave --dreambooth or --server out");
+                    "leave learning the scene (--dreambooth) or the server (--server) out");
 }
 
 /// Checks the words, after it has taken the label that one of them is the name of. A word that the model can

@@ -50,6 +50,8 @@ public:
     /// Keeps user name and password of an address in the user's file of credentials, and gives the address
     /// without them. Throws Error (InvalidArgument, Unwritable).
     virtual std::string keep_credentials(const std::string& url) = 0;
+    /// Forgets what the file of credentials has for an address. Throws Error (InvalidArgument, Unwritable).
+    virtual void forget_credentials(const std::string& url) = 0;
 };
 
 }  // namespace gse::remote

@@ -39,6 +39,15 @@ nlohmann::json kept_credentials(const std::filesystem::path& file) {
     return json;
 }
 
+/// Mode 0600 from the beginning.
+void write_credentials(const std::filesystem::path& path, const nlohmann::json& all) {
+    PendingFile file(path);
+    std::filesystem::permissions(file.temporary(),
+                                 std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+    file.write(json_text(all, 2) + "\n");
+    file.commit();
+}
+
 std::optional<Credential> credential_in_file(const ServerUrl& url) {
     const auto all = kept_credentials(credentials_file());
     const auto entry = all.find(url.origin());
@@ -76,11 +85,13 @@ void keep_credential(const ServerUrl& url, const UrlUser& user) {
     const auto path = credentials_file();
     auto all = kept_credentials(path);
     all[url.origin()] = {{"user", user.name}, {"password", user.password}};
-    PendingFile file(path);
-    std::filesystem::permissions(file.temporary(),
-                                 std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
-    file.write(json_text(all, 2) + "\n");
-    file.commit();
+    write_credentials(path, all);
+}
+
+void forget_credential(const ServerUrl& url) {
+    const auto path = credentials_file();
+    auto all = kept_credentials(path);
+    if (all.erase(url.origin()) > 0) write_credentials(path, all);
 }
 
 void check_secret_may_go(const ServerUrl& url) {

@@ -32,6 +32,9 @@ std::optional<Credential> find_credential(const ServerUrl& url);
 /// Writes the user of an address into the file (mode 0600). Throws Error (Unwritable).
 void keep_credential(const ServerUrl& url, const UrlUser& user);
 
+/// Takes the server's entry out of the file, if there is one. Throws Error (Unwritable).
+void forget_credential(const ServerUrl& url);
+
 /// Throws Error (InvalidArgument) where a secret would go over http to a public address.
 void check_secret_may_go(const ServerUrl& url);
 

@@ -53,4 +53,6 @@ std::string keep_credentials(const std::string& url) {
     return typed.url.at("");
 }
 
+void forget_credentials(const std::string& url) { forget_credential(parse_server_url(url).url); }
+
 }  // namespace gse::remote

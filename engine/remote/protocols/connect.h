@@ -13,4 +13,7 @@ std::unique_ptr<ImageServer> connect(const ServerAddress& address, const JobCont
 /// See RemoteApi::keep_credentials().
 std::string keep_credentials(const std::string& url);
 
+/// As RemoteApi::forget_credentials().
+void forget_credentials(const std::string& url);
+
 }  // namespace gse::remote

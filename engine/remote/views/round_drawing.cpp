@@ -24,7 +24,6 @@ constexpr double ShapeStrength = 0.95;       // of what becomes something else
 constexpr double SeamStrength = 0.35;        // of the pass over what was carried over and what was filled
 constexpr double LeastHole = 0.01;           // of a mask: less is not asked for by itself
 constexpr double FrontWeight = 0.5;          // by which a view from behind counts less as the key
-constexpr int Hundredths = 100;              // steps of the progress of one view
 
 std::uint32_t server_seed(std::uint64_t seed) { return static_cast<std::uint32_t>(seed & 0x7fffffff); }
 
@@ -252,14 +251,9 @@ Image RoundDrawing::ask_server(RedrawOrder order) {
     const int total = static_cast<int>(views_.size()),
               now = static_cast<int>(std::min(done_, views_.size() - 1));
     const auto stage = fmt::format("view {} of {} at the server", now + 1, total);
-    const auto report = [&](int hundredths) {
-        job_.report(stage, now * Hundredths + hundredths, total * Hundredths);
-    };
-    report(0);
-    JobControl control{[&](std::string_view, int step, int steps) {
-                           if (steps > 0) report(std::clamp(step * Hundredths / steps, 0, Hundredths));
-                       },
-                       job_.stop};
+    job_.report(stage, now, total);
+    // Steps inside a view are not shown: few servers tell them.
+    const JobControl control{[](std::string_view, int, int) {}, job_.stop};
     return source_.ask(order, control);
 }
 

@@ -117,6 +117,11 @@ template <class C> std::string fields_of(const C& wanted) {
         [&](const command::ChooseSegmenter& one) {
             return two(one.role == ui::SegmenterRole::Clicks ? "clicks" : "words", one.path);
         },
+        [&](const command::SetServer& one) {
+            return two(one.choice.url, one.choice.model) + two(one.choice.family, one.choice.agreement);
+        },
+        [&](const command::KeepServerPassword& one) { return two(one.name, one.password.size()); },
+        [&](const command::UseServer& one) { return text(one.on ? "on" : "off"); },
         [&](const command::SetCacheMb& one) { return text(one.most); },
         [&](const command::DeleteCameraKey& one) { return text(one.index); },
         [&](const command::ExportCameraPath& one) { return std::string(one.as_film ? " film" : ""); },

@@ -1,0 +1,224 @@
+// Image server that draws the views of edits: its settings and facts, the switch, and the artist's consent.
+#include "app/session/edit/server_controller.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <utility>
+
+#include "app/session/edit/server_facts.h"
+#include "engine/base/error.h"
+#include "engine/base/fields.h"
+#include "engine/base/log.h"
+#include "engine/base/printable.h"
+#include "engine/edit/request/checked_request.h"
+#include "engine/edit/request/decide_mode.h"
+#include "engine/pipeline/models/remote_loader.h"
+#include "engine/pipeline/models/view_server.h"
+#include "engine/remote/api/server_url.h"
+
+namespace gse::app {
+namespace {
+
+namespace command = ui::command;
+
+std::string sentence_of(const Error& error) {
+    const auto text = printable(error.message());
+    return error.hint().empty() ? text : fmt::format("{}: {}", text, error.hint());
+}
+
+/// False for what is only moved, copied or removed.
+bool is_drawn(const edit::EditRequest& request) {
+    try {
+        return !edit::check(request).is_rearranged();
+    } catch (const Error&) { return true; }  // no job runs with it
+}
+
+/// Views that are sent in a round.
+int pictures_of(const edit::EditRequest& request) {
+    auto mode = edit::EditMode::Modify;
+    try {
+        mode = edit::decide_mode(edit::check(request), std::nullopt).first;
+    } catch (const Error&) {  // the edit says what is wrong with it
+    }
+    return edit::round_plan(request, mode).views;
+}
+
+/// Words about who can read what goes there.
+std::string said_of_way(const remote::ServerUrl& url) {
+    if (remote::is_loopback(url.host)) return "That is this machine.";
+    if (url.encrypted() || remote::is_private(url.host)) return "That server may keep them.";
+    return "That server may keep them. It is a public address, and the way there is not encrypted: others on "
+           "the way can read and keep them, too.";
+}
+
+}  // namespace
+
+remote::ServerSettings ServerController::server_for(const edit::EditRequest& request) const {
+    const bool used = on_ && settings_.used() && consents_.contains(consent_key()) && is_drawn(request);
+    return used ? settings_ : remote::ServerSettings{};
+}
+
+/// A public address is asked about again for each document.
+std::string ServerController::consent_key() const {
+    const auto url = remote::parse_server_url(settings_.url).url;
+    return remote::is_private(url.host) ? url.origin()
+                                        : fmt::format("{} {}", url.origin(), workspace_.opened);
+}
+
+std::string ServerController::told(const edit::EditRequest& request) const {
+    const auto url = remote::parse_server_url(settings_.url).url;
+    const auto size = side_ > 0 ? fmt::format(", {0} x {0} pixels", side_) : std::string();
+    return fmt::format(
+        "{} pictures of your scene in each round{}, their masks and the sentence \"{}\" go to "
+        "{} ({}{}). {}",
+        pictures_of(request), size, request.prompt, url.nickname(), kind_.empty() ? "an image server" : kind_,
+        url.encrypted() || remote::is_loopback(url.host) ? "" : ", not encrypted", said_of_way(url));
+}
+
+bool ServerController::may_send(const AskedSentence& sentence, std::function<void()> then) {
+    if (!on_ || !settings_.used() || consents_.contains(consent_key())) return true;
+    if (sentence.steps().size() < 2 && !is_drawn(sentence.asked())) return true;
+    const auto agreed = [this, key = consent_key(), then = std::move(then)] {
+        if (!on_ || key != consent_key()) return;  // another server was chosen meanwhile
+        consents_.insert(key);
+        then();
+    };
+    workspace_.notices.ask("Send pictures to the image server?", told(sentence.request()),
+                           {{{"Send"}, agreed}, {{"Cancel"}, {}}});
+    return false;
+}
+
+void ServerController::mention(const remote::ServerSettings& named) {
+    if (!named.used()) return;
+    const auto url = remote::without_secrets(named.url);
+    workspace_.notices.toast(
+        fmt::format("An image server drew the views of this recipe ({}). It is not asked here unless you "
+                    "switch it on under Models.",
+                    printable(url)));
+}
+
+// Settings
+
+void ServerController::settings_to_json(nlohmann::json& json) const {
+    if (!settings_.used()) return;
+    json["server"] = fields_to_json(settings_);
+    json["server"]["url"] = remote::without_secrets(settings_.url);
+}
+
+void ServerController::settings_from_json(const nlohmann::json& json) {
+    if (!json.contains("server")) return;
+    try {
+        remote::ServerSettings read;
+        fields_from_json(read, nlohmann::ordered_json(json["server"]));
+        read.url = remote::parse_server_url(read.url).url.at("");
+        settings_ = std::move(read);
+    } catch (const std::exception& error) {  // of another version, or edited by hand
+        log::warning("the settings of the image server cannot be used ({})", error.what());
+    }
+}
+
+void ServerController::show(ui::ServerPart& model) const {
+    model.server = view_;
+    model.server.choice = {settings_.url, settings_.model, settings_.family, settings_.agreement};
+    model.server.families = server_families();
+    model.server.on = on_;
+}
+
+// Commands
+
+void ServerController::forget_facts() {
+    view_ = {};
+    kind_.clear();
+    side_ = 0;
+}
+
+/// Throws Error.
+void ServerController::take(const ui::ServerChoice& choice) {
+    auto next = settings_;
+    next.url = choice.url.empty() ? std::string() : remote::parse_server_url(choice.url).url.at("");
+    if (remote::without_secrets(choice.url) != choice.url) remote_api().keep_credentials(choice.url);
+    next.model = choice.model;
+    next.family = choice.family;
+    next.agreement = choice.agreement;
+    if (next.url != settings_.url) {
+        on_ = false;
+        next = {};
+        next.url = choice.url.empty() ? std::string() : remote::parse_server_url(choice.url).url.at("");
+        forget_facts();
+    }
+    settings_ = std::move(next);
+    workspace_.settings_changed = true;
+}
+
+template <> void ServerController::on(const command::SetServer& one) {
+    const auto url = settings_.url;
+    const bool known = !view_.facts.empty();
+    try {
+        take(one.choice);
+    } catch (const Error& error) { return workspace_.notices.report(error); }
+    if (known && url == settings_.url && !workspace_.jobs->works()) ask();  // facts follow the choice
+}
+
+template <> void ServerController::on(const command::KeepServerPassword& one) {
+    if (!settings_.used()) return;
+    try {
+        const auto url = remote::parse_server_url(settings_.url).url;
+        const auto place = url.at("").substr(url.scheme.size() + 3);
+        remote_api().keep_credentials(fmt::format("{}://{}:{}@{}", url.scheme,
+                                                  remote::percent_encoded(one.name),
+                                                  remote::percent_encoded(one.password), place));
+        view_.problem.clear();
+        workspace_.notices.toast(fmt::format("The password for {} is kept.", url.nickname()));
+    } catch (const Error& error) { workspace_.notices.report(error); }
+}
+
+template <> void ServerController::on(const command::TestServer&) { ask(); }
+
+/// Asks the server what it is, on the work thread.
+void ServerController::ask() {
+    if (!settings_.used()) return;
+    if (workspace_.jobs->works())
+        return workspace_.notices.toast("The image server can be asked when the job is done.");
+    forget_facts();
+    view_.testing = true;
+    auto answer = std::make_shared<ServerAnswer>();
+    auto work = [settings = settings_, answer](const JobControl& control) {
+        control.report("asking the image server what it is", 0, 0);
+        const ViewServer views(connect_server(settings, control), settings, nullptr, control);
+        *answer = answer_of(views, settings);
+    };
+    auto done = [this, answer, url = settings_.url](const Error* error) {
+        view_.testing = false;
+        if (url != settings_.url) return;
+        if (error != nullptr) {
+            if (error->code() != ErrorCode::Cancelled) view_.problem = sentence_of(*error);
+            return;
+        }
+        view_.facts = answer->facts;
+        view_.notes = answer->notes;
+        view_.models = answer->models;
+        kind_ = answer->kind;
+        side_ = answer->side;
+    };
+    workspace_.jobs->start_work(JobKind::Other, {"Test the image server", work, done});
+}
+
+template <> void ServerController::on(const command::UseServer& one) { on_ = one.on && settings_.used(); }
+
+template <> void ServerController::on(const command::ForgetServer&) {
+    try {
+        if (settings_.used()) remote_api().forget_credentials(settings_.url);
+    } catch (const Error& error) { workspace_.notices.report(error); }
+    settings_ = {};
+    on_ = false;
+    consents_.clear();
+    forget_facts();
+    workspace_.settings_changed = true;
+}
+
+void ServerController::run(const ui::ServerCommand& command) {
+    std::visit([this](const auto& one) { on(one); }, command);
+}
+
+}  // namespace gse::app

@@ -1,0 +1,54 @@
+// Image server that draws the views of edits: its settings and facts, the switch, and the artist's consent.
+#pragma once
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+#include "app/engine_names.h"
+#include "app/session/edit/asked_sentence.h"
+#include "app/session/state/workspace.h"
+#include "engine/edit/request/request.h"
+#include "engine/remote/api/server_settings.h"
+
+namespace gse::app {
+
+class ServerController {
+public:
+    explicit ServerController(Workspace& workspace) : workspace_(workspace) {}
+
+    void run(const ui::ServerCommand& command);
+    void show(ui::ServerPart& model) const;
+
+    bool on() const { return on_; }
+    /// Server for the recipe of a request. It has no address unless it is on, the artist has agreed, and
+    /// something is to be drawn.
+    remote::ServerSettings server_for(const edit::EditRequest& request) const;
+    /// True where the server may be sent what the sentence needs, or where none is needed. Otherwise asks the
+    /// artist; with the consent, `then` is called later.
+    bool may_send(const AskedSentence& sentence, std::function<void()> then);
+    /// Shows the server that a recipe names. It is neither asked nor switched on.
+    void mention(const remote::ServerSettings& named);
+
+    void settings_to_json(nlohmann::json& json) const;  // of the program
+    void settings_from_json(const nlohmann::json& json);
+
+private:
+    template <class C> void on(const C& command);
+    void take(const ui::ServerChoice& choice);
+    void forget_facts();
+    void ask();
+    std::string consent_key() const;
+    std::string told(const edit::EditRequest& request) const;
+
+    Workspace& workspace_;
+    remote::ServerSettings settings_;  // its url has no secrets
+    bool on_ = false;
+    ui::ServerView view_;             // of the last answer
+    std::string kind_;                // "sd-server"; empty = not asked yet
+    int side_ = 0;                    // of the pictures that are sent, px; 0 = not asked yet
+    std::set<std::string> consents_;  // of this session
+};
+
+}  // namespace gse::app

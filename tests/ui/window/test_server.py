@@ -1,0 +1,90 @@
+"""Image server in the real window: address, test, switch, question, an edit that it draws, and a stop."""
+import json
+import pathlib
+import subprocess
+import sys
+import unittest
+import urllib.request
+
+from window import WindowTest
+
+SUPPORT = pathlib.Path(__file__).resolve().parents[2] / "support"
+
+
+class StandIn:
+    """The stand-in server in a process of its own."""
+
+    def __init__(self):
+        program = [sys.executable, SUPPORT / "stand_in_server.py", "--flavour", "sdserver"]
+        self.process = subprocess.Popen(program, stdout=subprocess.PIPE, text=True)
+        self.port = int(self.process.stdout.readline().split()[1])
+
+    def ask(self, place):
+        with urllib.request.urlopen(f"http://127.0.0.1:{self.port}/gse/{place}", timeout=10) as answer:
+            return json.load(answer)
+
+    def drawings(self):
+        return [entry for entry in self.ask("log") if entry["path"].endswith("/img_gen")]
+
+    def close(self):
+        self.process.kill()
+        self.process.wait()
+        self.process.stdout.close()
+
+
+@unittest.skipUnless((SUPPORT / "stand_in_server.py").exists(), "[skip] the stand-in server is not there")
+class Server(WindowTest):
+    def start(self):
+        server = StandIn()
+        self.addCleanup(server.close)
+        window = self.open(height=1400)
+        window.click("start.sample")
+        window.wait(lambda s: s["splats"] > 0 and not s["busy"], "the sample did not open")
+        window.write("prompt.source", "bear")
+        window.write("prompt.sentence", "a golden bear")
+        return window, server
+
+    def test_a_server_is_tested_switched_on_agreed_to_and_draws(self):
+        window, server = self.start()
+        window.click("tab.Models")
+        window.scroll_to("models.server.url", "panel.Models")
+        window.write("models.server.url", f"127.0.0.1:{server.port}")
+        window.click("models.server.test")
+        window.wait(lambda s: s["server"]["facts"] > 0, "the server was not asked", 30)
+        window.scroll_to("models.server.agreement", "panel.Models")
+        window.picture("server_01_facts")
+        self.assertFalse(window.state()["server"]["on"])
+        self.assertEqual(server.drawings(), [])
+        window.scroll_to("models.server.on", "panel.Models")
+        window.press("models.server.on", lambda s: s["server"]["on"], "it is not on")
+        window.click("tab.Prompt")
+        window.press("prompt.edit", lambda s: s["question"], "nobody asks before pictures go")
+        window.picture("server_02_question")
+        self.assertEqual(server.drawings(), [])
+        window.press("question.0", lambda s: s["job"]["running"], "the edit did not start")
+        window.wait(lambda s: s["job"]["stage"].startswith("view "), "the views are not counted", 300)
+        window.picture("server_03_progress")
+        window.idle(400)
+        window.wait(lambda s: s["result_waiting"], "there is no result", 20)
+        window.picture("server_04_result")
+        self.assertGreaterEqual(len(server.drawings()), 8)
+
+    def test_an_edit_at_the_server_is_stopped(self):
+        window, server = self.start()
+        server.ask("set?draw_s=30")
+        window.click("tab.Models")
+        window.scroll_to("models.server.url", "panel.Models")
+        window.write("models.server.url", f"127.0.0.1:{server.port}")
+        window.press("models.server.on", lambda s: s["server"]["on"], "it is not on")
+        window.click("tab.Prompt")
+        window.press("prompt.edit", lambda s: s["question"], "nobody asks before pictures go")
+        window.press("question.0", lambda s: s["job"]["running"], "the edit did not start")
+        window.wait(lambda s: s["job"]["stage"].startswith("view 1 "), "nothing is drawn", 300)
+        window.cancel_job()
+        window.idle(20)
+        self.assertFalse(window.state()["result_waiting"])
+        self.assertEqual(window.state()["job"]["outcome"], "stopped")
+
+
+if __name__ == "__main__":
+    unittest.main()
