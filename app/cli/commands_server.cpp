@@ -23,9 +23,9 @@ struct ServerOptions {
     bool json = false;
 };
 
-/// A grey ball on a plain ground, and the ball's mask.
-remote::RedrawOrder test_order(int side) {
-    remote::RedrawOrder order;
+/// Order for a grey ball on a plain ground, with the ball's mask.
+remote::RedrawOrder test_order(const remote::ModelFamily& family, int side) {
+    auto order = remote::order_of(family);
     order.picture = Image(side, side, 3);
     order.mask = Image(side, side, 1);
     for (int y = 0; y < side; ++y)
@@ -42,14 +42,8 @@ remote::RedrawOrder test_order(int side) {
 /// Has the test picture drawn into a file; returns what is to be said of it.
 std::string draw_test(const ServerOptions& options, remote::ImageServer& server, const ViewServer& views,
                       const JobControl& job) {
-    auto order = test_order(views.side());
-    const auto& family = views.family();
+    auto order = test_order(views.family(), views.side());
     order.prompt = options.prompt;
-    order.steps = family.steps;
-    order.guidance_scale = family.guidance_scale;
-    order.distilled_guidance = family.distilled_guidance;
-    order.strength = family.strength;
-    order.sampler = family.sampler;
     Mask mask(views.side(), views.side());
     for (std::size_t i = 0; i < mask.data.size(); ++i) mask.data[i] = order.mask.data[i] > 0 ? 1 : 0;
     if (!views.facts().takes_mask) order.mask = {};

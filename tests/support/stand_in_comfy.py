@@ -34,7 +34,7 @@ class Graph:
         self.world, self.graph = world, graph
 
     def value(self, link):
-        """What a link leads to; a plain value is itself."""
+        """Output that a link leads to; a plain value is itself."""
         if not isinstance(link, list):
             return link
         node = self.graph[link[0]]

@@ -21,7 +21,7 @@ namespace {
 
 /// The family that the settings name, or that of the model, with the numbers of the settings.
 remote::ModelFamily family_for(const remote::ServerSettings& settings, const remote::ServerFacts& facts) {
-    // What speaks OpenAI's protocol and has no name that tells edits pictures by instructions.
+    // A model behind OpenAI's protocol edits by instructions, unless its name tells otherwise.
     const auto otherwise = facts.kind == remote::ServerKind::OpenAi ? "editor" : "sd15";
     const auto& model = settings.model.empty() ? facts.model : settings.model;
     auto family = settings.family == "auto" ? remote::family_of(model, otherwise)

@@ -190,6 +190,16 @@ const ModelFamily& family_of(std::string_view model, std::string_view otherwise)
     return family_named(found != Patterns.end() ? found->family : otherwise);
 }
 
+RedrawOrder order_of(const ModelFamily& family) {
+    RedrawOrder order;
+    order.steps = family.steps;
+    order.guidance_scale = family.guidance_scale;
+    order.distilled_guidance = family.distilled_guidance;
+    order.strength = family.strength;
+    order.sampler = family.sampler;
+    return order;
+}
+
 const ModelFamily& family_named(std::string_view name) {
     const auto found = std::find_if(Families.begin(), Families.end(),
                                     [&](const auto& family) { return family.name == name; });

@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "engine/remote/api/image_server.h"
+
 namespace gse::remote {
 
 /// Sentence that a family learned from: what the picture shows, or what is to be done to it.
@@ -22,7 +24,6 @@ struct ModelFamily {
     double strength = 0.75;              // of the first round
     double again_strength = 0.4;         // of later rounds, which begin from the fitted scene
     int side = 512;                      // of the pictures, px
-    int multiple = 64;                   // that sides are of, px
     int latent_cell = 8;                 // px of a picture per cell of the latent
     bool negative = true;                // takes a negative prompt
     std::size_t references = 0;          // pictures beside the one to redraw
@@ -38,6 +39,9 @@ std::span<const ModelFamily> model_families();
 
 /// Family of a model by its name or file name; the one named `otherwise` where the name tells nothing.
 const ModelFamily& family_of(std::string_view model, std::string_view otherwise = "sd15");
+
+/// Order with the settings of a family for a first round; it lacks pictures and prompts.
+RedrawOrder order_of(const ModelFamily& family);
 
 /// Family of that name. Throws Error (InvalidArgument) that lists the names.
 const ModelFamily& family_named(std::string_view name);

@@ -61,7 +61,7 @@ DrawnRound RoundDrawing::draw(KeyPicture& key) {
     switch (drawing_.agreement) {
         case Agreement::Sheet: views_.size() > 1 ? draw_sheets() : draw_each(); break;
         case Agreement::Reference: draw_with_reference(key); break;
-        // What becomes something else is not where the depths are.
+        // Depths are those of the scene before: a new shape is not there.
         case Agreement::Warp: request_.anew ? draw_each() : draw_by_warp(); break;
         case Agreement::Auto:
         case Agreement::None: draw_each(); break;
@@ -202,17 +202,13 @@ void RoundDrawing::draw_warped(std::size_t view, const std::vector<std::size_t>&
 
 RedrawOrder RoundDrawing::order(std::string prompt) const {
     const auto& family = drawing_.family;
-    RedrawOrder order;
+    RedrawOrder order = order_of(family);
     order.prompt = std::move(prompt);
     if (family.negative) order.negative_prompt = drawing_.text.negative;
     order.seed = server_seed(request_.seed);
-    order.steps = family.steps;
-    order.guidance_scale = family.guidance_scale;
-    order.distilled_guidance = family.distilled_guidance;
-    order.strength = request_.round == 0 ? family.strength : family.again_strength;
+    if (request_.round > 0) order.strength = family.again_strength;
     if (request_.anew && request_.round == 0 && !family.instructed())
         order.strength = std::max(order.strength, ShapeStrength);
-    order.sampler = family.sampler;
     return order;
 }
 

@@ -56,6 +56,15 @@ void ask_for_iridescence(Session& session) {
     session.app.run(command::SetRequest{request});
 }
 
+/// The edit asked for with the server switched on; the question about it waits.
+void ask_server(Session& session, const remote::StandIn& server) {
+    session.open_bear();
+    ask_for_iridescence(session);
+    choose(session, server.url());
+    session.app.run(command::UseServer{true});
+    session.app.run(command::Edit{});
+}
+
 }  // namespace
 
 DOCTEST_TEST_CASE("a server tells what it is; nothing is drawn, and its address outlives the program") {
@@ -119,11 +128,7 @@ DOCTEST_TEST_CASE("nothing goes to a server before the artist has agreed, and a 
     const Place place;
     remote::StandIn server("sdserver");
     Session session;
-    session.open_bear();
-    ask_for_iridescence(session);
-    choose(session, server.url());
-    session.app.run(command::UseServer{true});
-    session.app.run(command::Edit{});
+    ask_server(session, server);
     DOCTEST_CHECK_FALSE(session.app.model().job.running);
     DOCTEST_CHECK(question(session).starts_with("4 pictures"));
     DOCTEST_CHECK(question(session).find("a golden iridescent bear") != std::string::npos);
@@ -146,11 +151,7 @@ DOCTEST_TEST_CASE(
     const Place place;
     remote::StandIn server("sdserver");
     Session session;
-    session.open_bear();
-    ask_for_iridescence(session);
-    choose(session, server.url());
-    session.app.run(command::UseServer{true});
-    session.app.run(command::Edit{});
+    ask_server(session, server);
     session.app.run(command::Answer{0});
     bool told = false;
     DOCTEST_REQUIRE(session.until([&] {

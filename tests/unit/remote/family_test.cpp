@@ -50,7 +50,7 @@ DOCTEST_TEST_CASE("family: every family has settings that a server takes") {
         DOCTEST_CHECK(family.steps >= 1);
         DOCTEST_CHECK(family.strength <= 1);
         DOCTEST_CHECK(family.again_strength <= family.strength);
-        DOCTEST_CHECK(family.side % family.multiple == 0);
+        DOCTEST_CHECK(family.side % 64 == 0);
         if (family.instructed()) DOCTEST_CHECK(family.strength == 1);
     }
 }
