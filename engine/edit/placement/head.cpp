@@ -23,6 +23,8 @@ constexpr double MostWidening = 1.26;  // from the upper half to the whole: cone
 constexpr double Elongated = 1.6;      // length over width: a head and what it goes over into, as a neck
 constexpr double MostElongated = 3;    // length over width: two ears, the back of a chair
 constexpr double Back = 0.1;           // of the height, from the top: what an animal's back is seen in
+constexpr double Beside = 0.25;        // of a label's size, around it
+constexpr double LeastBeside = 0.1;    // rows there, as a share of the label's
 constexpr double LongBack = 2;         // length over width
 constexpr double LeastBack = 0.8;      // length over the thing's height
 constexpr double HeadSide = 0.75;  // of its width, from its middle: wings and hands beside it are none of it
@@ -106,6 +108,23 @@ private:
     double top_ = 0, height_ = 0;
 };
 
+/// Tells whether the thing goes on beside the labelled rows, above their foot: they are a part of it.
+bool goes_on_beside(const GaussianSet& set, std::span<const std::uint8_t> bits, const Frame& frame) {
+    std::vector<Vec3> points;
+    for (const auto& row : seen_rows(set, bits, frame)) points.push_back(row.at);
+    if (points.empty()) return false;
+    Box near = trimmed_box(points, BoundsTrim);
+    const Vec3 margin = near.size() * Beside;
+    near.low = near.low + Vec3{-margin.x, margin.y, -margin.z};
+    near.high = near.high + Vec3{margin.x, 0, margin.z};
+    std::vector<std::uint8_t> others(bits.size());
+    for (std::size_t row = 0; row < bits.size(); ++row) others[row] = bits[row] == 0 ? 1 : 0;
+    const auto rest = seen_rows(set, others, frame);
+    const auto beside =
+        std::count_if(rest.begin(), rest.end(), [&](const Row& row) { return near.has(row.at); });
+    return static_cast<double>(beside) > LeastBeside * static_cast<double>(points.size());
+}
+
 }  // namespace
 
 HeadRegion bust_of(const GaussianSet& set, std::span<const std::uint8_t> bits, const Vec3& up,
@@ -135,8 +154,9 @@ HeadRegion bust_of(const GaussianSet& set, std::span<const std::uint8_t> bits, c
 bool is_head_unclear(const GaussianSet& set, std::span<const std::uint8_t> bits, const Vec3& up,
                      const Vec3& front, const ModelTraits& traits) {
     if (bust_of(set, bits, up, front).head < traits.small_head) return false;
-    const TopDown thing(seen_rows(set, bits, make_frame(up, front)));
-    if (thing.empty()) return false;
+    const Frame frame = make_frame(up, front);
+    const TopDown thing(seen_rows(set, bits, frame));
+    if (thing.empty() || goes_on_beside(set, bits, frame)) return false;
     const auto [width, length] = thing.extents(Back, thing.middle(Back), Everywhere);
     return length > LongBack * width && length > LeastBack * thing.height();
 }

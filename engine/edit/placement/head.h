@@ -28,7 +28,8 @@ HeadRegion bust_of(const GaussianSet& set, std::span<const std::uint8_t> bits, c
                    const Vec3& front, double heads = 1);
 
 /// Tells whether no head rises above the rows that `bits` [N] label. None is found then, and the topmost
-/// tenth is long, like the back of an animal whose head is lower.
+/// tenth is long, like the back of an animal whose head is lower. False for a part of a larger thing: it was
+/// pointed at.
 bool is_head_unclear(const GaussianSet& set, std::span<const std::uint8_t> bits, const Vec3& up,
                      const Vec3& front, const ModelTraits& traits);
 

@@ -130,6 +130,10 @@ DOCTEST_TEST_CASE("where the head of a walking animal hangs lower than its back,
     for (const double z : {-0.7, 0.7}) low.box(-0.15, 0.15, 0, 0.5, z - 0.1, z + 0.1, 500, true);
     const edit::ModelTraits traits;
     DOCTEST_CHECK(edit::is_head_unclear(low.set(), low.bits, Up, Front, traits));
+    auto head = low;  // labelled alone: it was pointed at
+    std::fill(head.bits.begin(), head.bits.end(), std::uint8_t{0});
+    std::fill(head.bits.begin() + 3000, head.bits.begin() + 3700, std::uint8_t{1});
+    DOCTEST_CHECK_FALSE(edit::is_head_unclear(head.set(), head.bits, Up, Front, traits));
     const auto upright = person();
     DOCTEST_CHECK_FALSE(edit::is_head_unclear(upright.set(), upright.bits, Up, Front, traits));
 }
