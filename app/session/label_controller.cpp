@@ -9,6 +9,7 @@
 
 #include "app/session/state/located_label.h"
 #include "app/session/state/screen_area.h"
+#include "engine/edit/search/thing_parts.h"
 #include "engine/language/grammar.h"
 #include "engine/pipeline/models/segmenters.h"
 #include "engine/pipeline/run/views.h"
@@ -159,9 +160,13 @@ struct CutOutRows {
 
 CutOutRows clicked(const GaussianSet& set, const CutOutRequest& request, const JobControl& control) {
     const auto& at = request.area.polygon.front();
-    const pipeline::ClickRequest click{
-        request.camera, static_cast<double>(at[0]), static_cast<double>(at[1]), request.settings, request.up,
-        request.ground};
+    const pipeline::ClickRequest click{request.camera,
+                                       static_cast<double>(at[0]),
+                                       static_cast<double>(at[1]),
+                                       request.settings,
+                                       request.up,
+                                       request.ground,
+                                       request.nature};
     auto thing = pipeline::thing_at(set, click, control);
     const bool any = std::find(thing.rows.begin(), thing.rows.end(), std::uint8_t{1}) != thing.rows.end();
     if (!any) return {{}, "There is nothing under the click."};
@@ -181,7 +186,8 @@ template <> void LabelController::on(const command::CutOut& one) {
                           screen_area(one.box),
                           {},
                           state().info.up,
-                          language::names_ground(recipe.request.source)};
+                          language::names_ground(recipe.request.source),
+                          edit::nature_of(recipe.request.source)};
     request.settings.background = parse_colour(view_.settings().background);
     request.settings.antialiased = state().info.antialiased;
     auto found = std::make_shared<CutOutRows>();

@@ -17,13 +17,21 @@ struct LabelField {
     int views_used = 0;
 };
 
+/// Nature of a labelled thing, as far as it says which parts beside it are none of it.
+enum class ThingNature : std::uint8_t {
+    Other,
+    Figure,  // it may stand on a pedestal
+    Vessel,  // a plant may grow out of it
+    Plant    // it may grow out of a vessel
+};
+
 /// Rule by which a field becomes a label, beside the threshold.
 struct LabelRule {
     double least_coverage = 0.5;         // pixels: Gaussians of no more count as unseen
     double smoothness = 1.5;             // of the minimum cut, nats; 0 = no cut
     double island_share = 0;             // of the labelled ones: islands of no more take the label
     Vec3 up{0, -1, 0}, front{0, 0, -1};  // of the world: which way is down, for the ground below a thing
-    bool is_figure = false;              // it may stand on a pedestal, which is no part of it
+    ThingNature nature = ThingNature::Other;
 };
 
 /// A field with its rule: enough to make its label at any threshold.

@@ -6,14 +6,14 @@
 
 #include "engine/base/log.h"
 #include "engine/edit/placement/ground_rows.h"
-#include "engine/edit/placement/pedestal_rows.h"
+#include "engine/edit/search/thing_parts.h"
 #include "engine/localize/graph_cut.h"
 #include "engine/localize/propagate_labels.h"
 
 namespace gse::edit {
 namespace {
 
-constexpr float SupportWeight = 0.5f;  // of the threshold: the most that ground or a pedestal keeps
+constexpr float SupportWeight = 0.5f;  // of the threshold: the most that rows beside the thing keep
 
 /// Weights on the side of the threshold where the bits are; of Gaussians that nobody knows they stay.
 std::vector<float> decided_weights(const LabelField& field, const std::vector<std::uint8_t>& bits,
@@ -48,21 +48,24 @@ DecidedLabel decide_label(std::string name, const GaussianSet& set, const FoundF
                                       .island_share = rule.island_share};
     auto bits = localize::cut_label(set.spans(), cut, field, threads);
     auto weights = decided_weights(field, bits, threshold, rule.least_coverage);
-    const auto leave = [&](const std::vector<std::size_t>& rows, const char* support) {
+    const auto leave = [&](const std::vector<std::size_t>& rows, const char* other) {
         for (const auto row : rows) {
             bits[row] = 0;
             weights[row] = std::min(weights[row], static_cast<float>(SupportWeight * threshold));
         }
         if (!rows.empty())
-            log::debug("{} splats of the {} below \"{}\" are left to it", rows.size(), support, name);
+            log::debug("{} splats of the {} at \"{}\" are left to it", rows.size(), other, name);
     };
     leave(ground_rows(set, bits, rule.up, rule.front), "ground");
-    auto pedestal =
-        rule.is_figure ? pedestal_rows(set, bits, rule.up, rule.front) : std::vector<std::uint8_t>();
-    leave(both(pedestal, bits), "pedestal");
+    auto beside = parts_beside(set, bits, rule.nature, rule.up, rule.front);
+    leave(both(beside.rows, bits), beside.name);
+    for (const auto row : beside.lacking) {
+        bits[row] = 1;
+        weights[row] = localize::decided_probability(weights[row], true, threshold);
+    }
     return {{std::move(name), std::make_shared<const std::vector<float>>(std::move(weights)),
              std::make_shared<const std::vector<std::uint8_t>>(std::move(bits))},
-            std::move(pedestal)};
+            std::move(beside.rows)};
 }
 
 }  // namespace gse::edit

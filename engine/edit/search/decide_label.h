@@ -1,5 +1,5 @@
-// A label at a threshold: votes of the views, opinions of neighbours, minimum cut, ground or a pedestal below
-// the thing.
+// A label at a threshold: votes of the views, opinions of neighbours, minimum cut, ground and other parts
+// beside the thing.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,10 @@
 
 namespace gse::edit {
 
-/// A label, and the rows [N] of the pedestal that its object stands on; empty = none was found.
+/// A label, and the rows [N] beside its thing (thing_parts.h); empty = none were found.
 struct DecidedLabel {
     Label label;
-    std::vector<std::uint8_t> pedestal;
+    std::vector<std::uint8_t> beside;
 };
 
 /// The label of a field's N Gaussians at a threshold in [0,1], as a search with that threshold makes it. Its

@@ -101,7 +101,7 @@ private:
 
     static void take(FoundWord& found, LocateResult& result) {
         result.found = std::move(found.field);
-        result.pedestal = std::move(found.pedestal);
+        result.beside = std::move(found.beside);
         result.confidence = std::move(found.verdict.confidence);
         result.problem = found.verdict.problem;
         result.message = std::move(found.verdict.message);

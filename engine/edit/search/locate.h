@@ -46,9 +46,9 @@ struct LocateInput {
     /// [N] 0 or 1: rows of the thing that the word is a part of. Attention elsewhere does not count, and no
     /// other row is labelled. Null = anywhere.
     const std::vector<std::uint8_t>* within = nullptr;
-    /// [N] 0 or 1, or empty: rows of a pedestal that a search from farther off found under the thing
-    /// (LocateResult::pedestal). They are not labelled. Null = none.
-    const std::vector<std::uint8_t>* pedestal = nullptr;
+    /// [N] 0 or 1, or empty: rows that a search from farther off told from the thing
+    /// (LocateResult::beside). They are not labelled. Null = none.
+    const std::vector<std::uint8_t>* beside = nullptr;
 };
 
 /// Renders of the views, kept from one search to the next over one scene and one set of views; empty = to be
@@ -93,8 +93,8 @@ struct LocateResult {
     GaussianData seeds;  // add mode: new rows
     VoxelRegion room;  // of what comes in the place of something else worn, elsewhere on its wearer (head.h);
                        // empty otherwise
-    /// [N] 0 or 1: rows that the thing stands on, told by their shape; empty = none were found.
-    std::vector<std::uint8_t> pedestal = {};
+    /// [N] 0 or 1: rows of parts beside the thing (thing_parts.h); empty = none were found.
+    std::vector<std::uint8_t> beside = {};
     int failed_views = 0;
     std::size_t broken_attention = 0;  // values of the attention that were not finite, and count as none
     Confidence confidence;

@@ -15,8 +15,8 @@
 #include "engine/edit/masks/word_mask.h"
 #include "engine/edit/request/excluded_views.h"
 #include "engine/edit/search/decide_label.h"
+#include "engine/edit/search/thing_parts.h"
 #include "engine/language/grammar.h"
-#include "engine/language/plan/words/lexicon.h"
 #include "engine/language/vocabulary.h"
 #include "engine/language/words.h"
 #include "engine/localize/clusters.h"
@@ -283,12 +283,12 @@ FoundWord WordSearch::fuse(const SoughtWord& word, const std::vector<ViewEvidenc
             word.alone ? IslandShare : 0,
             input_.up,
             input_.front,
-            language::plan::names_figure(word.name)};
-    if (input_.pedestal != nullptr) leave_out(*input_.pedestal, field);
+            nature_of(word.name)};
+    if (input_.beside != nullptr) leave_out(*input_.beside, field);
     auto decided =
         decide_label(word.name, input_.gaussians, found.field, request().label_threshold, tools_.threads);
     found.label = std::move(decided.label);
-    found.pedestal = std::move(decided.pedestal);
+    found.beside = std::move(decided.beside);
     if (input_.within != nullptr) keep_within(field, found.label);
     if (auto refused = refuse_label(word.name, found.label)) return nothing(word, *std::move(refused));
     found.verdict = judge({word.name, views, field, found.label, recognised(word.name),

@@ -32,7 +32,7 @@ struct FoundWord {
     FoundField field;
     Label label;
     SearchVerdict verdict;
-    std::vector<std::uint8_t> pedestal = {};  // [N] or empty, see LocateResult
+    std::vector<std::uint8_t> beside = {};  // [N] or empty, see LocateResult
 };
 
 /// Calls some(begin, end, worker) for parts of [0, count): one after the other without threads.

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <string_view>
 
 #include "engine/base/error.h"
 #include "engine/base/json.h"
@@ -30,6 +31,8 @@ constexpr std::array<const char*, 14> KnownFields{"format", "version", "program"
                                                   "jobs",   "rows",    "thumbnail",    "columns"};
 
 constexpr const char* DamagedProject = "the file is damaged; open an older copy or an autosave";
+
+constexpr std::string_view NatureNames[] = {"other", "figure", "vessel", "plant"};  // in ThingNature's order
 
 [[noreturn]] void throw_field(const std::string& name, const char* how) {
     throw Error(ErrorCode::Malformed, fmt::format("the field \"{}\" of the project {}", name, how),
@@ -261,8 +264,19 @@ Json to_json(const ProjectDescription::LabelEntry& entry) {
                          {"island_share", entry.rule.island_share},
                          {"up", to_json(entry.rule.up)},
                          {"front", to_json(entry.rule.front)},
-                         {"figure", entry.rule.is_figure}};
+                         {"nature", NatureNames[static_cast<std::size_t>(entry.rule.nature)]}};
     return json;
+}
+
+/// Nature of a labelled thing. Older projects say only that it is a figure; one of a newer version is Other.
+ThingNature read_nature(const Fields& fields) {
+    bool is_figure = false;
+    std::string name;
+    fields.flag("figure", is_figure);
+    fields.text("nature", name);
+    const auto* const found = std::find(std::begin(NatureNames), std::end(NatureNames), name);
+    if (found != std::end(NatureNames)) return static_cast<ThingNature>(found - std::begin(NatureNames));
+    return is_figure ? ThingNature::Figure : ThingNature::Other;
 }
 
 /// Reads the field of a label's search. Older projects do not have it.
@@ -275,7 +289,7 @@ void read_views(const Json& json, const std::string& name, ProjectDescription::L
     fields.number("least_coverage", entry.rule.least_coverage);
     fields.number("smoothness", entry.rule.smoothness);
     fields.number("island_share", entry.rule.island_share);
-    fields.flag("figure", entry.rule.is_figure);
+    entry.rule.nature = read_nature(fields);
     for (const auto& [key, axis] : {std::pair{"up", &entry.rule.up}, std::pair{"front", &entry.rule.front}}) {
         std::array<double, 3> values{axis->x, axis->y, axis->z};
         fields.numbers(key, values);

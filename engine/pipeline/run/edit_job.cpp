@@ -1,6 +1,7 @@
 // Loads, locates, edits.
 #include "engine/pipeline/run/edit_job.h"
 #include "engine/edit/request/edit_method.h"
+#include "engine/edit/search/thing_parts.h"
 
 #include <fmt/format.h>
 
@@ -57,6 +58,7 @@ std::vector<std::uint8_t> labelled_by_box(const Scene& scene, const CheckedRecip
     const auto& job = recipe.job;
     auto request = cut_out_request(job.cut_out, scene, job.up);
     request.ground = language::names_ground(recipe.request.source());
+    request.nature = edit::nature_of(recipe.request.source());
     auto bits = cut_out(drawable(scene.gaussians), request, segmenter, control);
     if (std::find(bits.begin(), bits.end(), std::uint8_t{1}) != bits.end()) return bits;
     throw Error(ErrorCode::InvalidArgument,
@@ -75,6 +77,7 @@ std::vector<std::uint8_t> labelled_by_pointing(const Scene& scene, const Checked
     } else {
         auto request = click_request(job.at, scene, job.up);
         request.ground = language::names_ground(recipe.request.source());
+        request.nature = edit::nature_of(recipe.request.source());
         thing = thing_at(set, request, control);
     }
     const auto rows = std::count(thing.rows.begin(), thing.rows.end(), std::uint8_t{1});

@@ -305,9 +305,9 @@ private:
     edit::LocateResult look(const CheckedRecipe& recipe, const Views& views,
                             const std::vector<std::uint8_t>& label) {
         auto found = search_from(context_, views, recipe, label.empty() ? nullptr : &label, control_, nullptr,
-                                 &pedestal_);
-        add_to(pedestal_, found.pedestal);
-        found.pedestal = pedestal_;
+                                 &beside_);
+        add_to(beside_, found.beside);
+        found.beside = beside_;
         return found;
     }
 
@@ -487,7 +487,7 @@ private:
         Search for_wearer = *this;
         for_wearer.recipe_.request = recipe_.request.search_for(recipe_.request.source());
         const Located wearer = for_wearer.shown_whole(for_wearer.from_all_distances());
-        pedestal_ = for_wearer.pedestal_;
+        beside_ = for_wearer.beside_;
         if (!wearer.found()) return std::nullopt;
         const auto& label = wearer.result.label;
         const auto focused = focused_on(label, mode, wearer.views.orbit, wearer.views.front);
@@ -517,7 +517,7 @@ private:
     const JobControl& control_;
     std::vector<double> distances_;  // shares of the fitted orbit's radius that are tried
     bool target_read_ = false;
-    std::vector<std::uint8_t> pedestal_;  // [N] or empty: under the thing, as searches so far found it
+    std::vector<std::uint8_t> beside_;  // [N] or empty: parts beside the thing, as searches found them
     std::optional<std::vector<std::uint8_t>> wearer_;  // [N] of what is worn, once it was looked for
 };
 
@@ -564,9 +564,8 @@ Located locate_again(RunContext& context, const Located& located, const CheckedR
         return finished(context, locate_part(context, std::move(again), control));
     }
     const auto* label = again.by_label() ? &again.label : nullptr;
-    again.result =
-        search_from(context, again.views, recipe, label, control, nullptr, &located.result.pedestal);
-    add_to(again.result.pedestal, located.result.pedestal);
+    again.result = search_from(context, again.views, recipe, label, control, nullptr, &located.result.beside);
+    add_to(again.result.beside, located.result.beside);
     if (edit::moves_worn_place(recipe.request.sentence(), again.result.mode))
         again.result.room = located.result.room;
     return finished(context, std::move(again));

@@ -49,10 +49,10 @@ void add_to(std::vector<std::uint8_t>& rows, const std::vector<std::uint8_t>& mo
 edit::LocateResult search_from(RunContext& context, const Views& views, const CheckedRecipe& recipe,
                                const std::vector<std::uint8_t>* label, const JobControl& control,
                                const std::vector<std::uint8_t>* within,
-                               const std::vector<std::uint8_t>* pedestal) {
+                               const std::vector<std::uint8_t>* beside) {
     auto input = question(context, recipe, views, label);
     input.within = within;
-    input.pedestal = pedestal;
+    input.beside = beside;
     input.ground = label == nullptr ? ground_shown(context, recipe, views) : std::nullopt;
     auto tools = context.tools(views, input.ground, control);
     const auto drawing = context.place_drawing(recipe);

@@ -19,11 +19,11 @@ std::optional<edit::StudioBackground> ground_shown(RunContext& context, const Ch
 /// Adds rows [N] to others; an empty list holds none.
 void add_to(std::vector<std::uint8_t>& rows, const std::vector<std::uint8_t>& more);
 
-/// One search. `label`: made by hand, or null. `within`, `pedestal`: as in LocateInput.
+/// One search. `label`: made by hand, or null. `within`, `beside`: as in LocateInput.
 edit::LocateResult search_from(RunContext& context, const Views& views, const CheckedRecipe& recipe,
                                const std::vector<std::uint8_t>* label, const JobControl& control,
                                const std::vector<std::uint8_t>* within = nullptr,
-                               const std::vector<std::uint8_t>* pedestal = nullptr);
+                               const std::vector<std::uint8_t>* beside = nullptr);
 
 /// The part that the recipe looks for, within the thing `located.within`. Its word is looked for from the
 /// views of the thing; where the model has none, the thing's shape tells the part.

@@ -1,5 +1,6 @@
 // Picture, box, mask, votes.
 #include "engine/pipeline/select/cut_out.h"
+#include "engine/edit/search/thing_parts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -304,8 +305,9 @@ std::vector<std::uint8_t> cut_out(const GaussianSet& set, const CutOutRequest& r
     const Mask wide = localize::dilate(seen.mask, Beside * std::max(seen.mask.width, seen.mask.height));
     options.mask = &wide;
     seen.cone = rows_in_area(set, section->camera, section->area, options);
-    const auto bits = follow_around(set, seen, settings, *segmenter, painter, control);
-    return request.ground ? edit::lowest_layer(set, bits, request.up) : bits;
+    auto bits = follow_around(set, seen, settings, *segmenter, painter, control);
+    if (request.ground) return edit::lowest_layer(set, bits, request.up);
+    return edit::without_parts_beside(set, std::move(bits), request.nature, request.up);
 }
 
 }  // namespace gse::pipeline

@@ -9,6 +9,7 @@
 #include "engine/base/progress.h"
 #include "engine/edit/interfaces/interfaces.h"
 #include "engine/raster/rasterizer.h"
+#include "engine/scene/label_field.h"
 #include "engine/scene/label_ops.h"
 #include "engine/scene/scene.h"
 
@@ -17,10 +18,11 @@ namespace gse::pipeline {
 /// Settings of the picture, and the area picked in it.
 struct CutOutRequest {
     Camera camera;
-    ScreenArea area;            // around the thing, in the camera's pixels
-    raster::Settings settings;  // of the pictures, their background too
-    Vec3 up{0, -1, 0};          // of the world: the other sides are looked at around it
-    bool ground = false;        // not what stands on it
+    ScreenArea area;                          // around the thing, in the camera's pixels
+    raster::Settings settings;                // of the pictures, their background too
+    Vec3 up{0, -1, 0};                        // of the world: the other sides are looked at around it
+    bool ground = false;                      // not what stands on it
+    ThingNature nature = ThingNature::Other;  // of the thing that is meant
 };
 
 /// Box of --cut-out: "LEFT,TOP,RIGHT,BOTTOM", shares of the picture that `render` makes of the scene by

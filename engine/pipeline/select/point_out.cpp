@@ -1,5 +1,6 @@
 // Surface under the click, and what grows from it.
 #include "engine/pipeline/select/point_out.h"
+#include "engine/edit/search/thing_parts.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -99,7 +100,10 @@ localize::GrownThing thing_at(const GaussianSet& set, const ClickRequest& reques
     grow.extent = depth * request.camera.height / request.camera.fy;
     grow.ground = request.ground;
     auto thing = localize::grow_thing(set.spans(), grow);
-    return request.ground ? thing : without_ground(set, std::move(thing), request.up);
+    if (request.ground) return thing;
+    thing = without_ground(set, std::move(thing), request.up);
+    thing.rows = edit::without_parts_beside(set, std::move(thing.rows), request.nature, request.up);
+    return thing;
 }
 
 localize::GrownThing largest_thing(const GaussianSet& set, const Vec3& up, const JobControl& control) {

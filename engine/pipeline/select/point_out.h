@@ -6,16 +6,18 @@
 #include "engine/base/progress.h"
 #include "engine/localize/grow_thing.h"
 #include "engine/pipeline/scene/scene_tools.h"
+#include "engine/scene/label_field.h"
 
 namespace gse::pipeline {
 
 /// A click on a picture of the scene.
 struct ClickRequest {
     Camera camera;
-    double x = 0, y = 0;        // in the camera's pixels
-    raster::Settings settings;  // of the picture
-    Vec3 up{0, -1, 0};          // of the world
-    bool ground = false;        // the ground is meant, not what stands on it
+    double x = 0, y = 0;                      // in the camera's pixels
+    raster::Settings settings;                // of the picture
+    Vec3 up{0, -1, 0};                        // of the world
+    bool ground = false;                      // the ground is meant, not what stands on it
+    ThingNature nature = ThingNature::Other;  // of the thing that is meant
 };
 
 /// Click of --at: "X,Y", shares of the picture that `render` makes of the scene by default. Another picture

@@ -30,7 +30,7 @@ inline std::shared_ptr<const FoundField> random_field(std::size_t count, std::ui
         found.field.probability.push_back(static_cast<float>(random.uniform(0, 1)));
         found.field.coverage.push_back(random.uniform(0, 30));
     }
-    found.rule = {0.3, 1.25, 0.05, {0.1, -0.7, 0.3}, {0, 0.2, 0.9}, true};
+    found.rule = {0.3, 1.25, 0.05, {0.1, -0.7, 0.3}, {0, 0.2, 0.9}, ThingNature::Vessel};
     return std::make_shared<const FoundField>(std::move(found));
 }
 
@@ -95,7 +95,7 @@ inline bool same_field(const std::shared_ptr<const FoundField>& a,
     return a->field.probability == b->field.probability && a->field.coverage == b->field.coverage &&
            a->rule.least_coverage == b->rule.least_coverage && a->rule.smoothness == b->rule.smoothness &&
            a->rule.island_share == b->rule.island_share && same_direction(a->rule.up, b->rule.up) &&
-           same_direction(a->rule.front, b->rule.front) && a->rule.is_figure == b->rule.is_figure;
+           same_direction(a->rule.front, b->rule.front) && a->rule.nature == b->rule.nature;
 }
 
 inline bool same_label(const NamedLabel& a, const NamedLabel& b) {

@@ -238,6 +238,17 @@ DOCTEST_TEST_CASE("unknown fields are kept, absent ones have defaults, newer for
     DOCTEST_CHECK(sparse.state.labels[0].attention_threshold == NamedLabel().attention_threshold);
     DOCTEST_CHECK(sparse.state.labels[0].found == nullptr);
     DOCTEST_CHECK(*sparse.state.labels[0].bits == *project.state.labels[0].bits);
+    const auto nature_of = [&](const char* key, const nlohmann::json& value) {
+        const auto other = with_description(packed, [&](auto& json) {
+            auto& views = json["labels"][0]["views"];
+            views.erase("nature");
+            views[key] = value;
+        });
+        return parse_project(as_bytes(other)).state.labels[0].found->rule.nature;
+    };
+    DOCTEST_CHECK(nature_of("figure", true) == ThingNature::Figure);
+    DOCTEST_CHECK(nature_of("nature", "plant") == ThingNature::Plant);
+    DOCTEST_CHECK(nature_of("nature", "not known yet") == ThingNature::Other);
     const auto future = with_description(packed, [](auto& json) { json["version"] = 2; });
     const auto refused = error_of([&] { parse_project(as_bytes(future)); });
     DOCTEST_REQUIRE(refused);

@@ -54,7 +54,8 @@ constexpr std::string_view ClassNames[] = {
     "time_of_day", "said_by", "where_is", "style_kind", "word_where", "word_colored", "part_made",
     "verb_wear", "word_across", "hand", "elision", "adverb", "praise", "verb_off", "word_whose",
     "plain_verb", "word_about", "furniture_flat", "word_into", "word_years", "word_both", "ordinal",
-    "word_does", "verb_need", "quality", "heap", "facial_hair", "liked", "verb_toss"};
+    "word_does", "verb_need", "quality", "heap", "facial_hair", "liked", "verb_toss",
+    "vessel", "potted_plant"};
 // clang-format on
 static_assert(std::size(ClassNames) == ClassCount);
 
@@ -321,12 +322,26 @@ std::uint32_t kinds_of(std::string_view word) {
     return found == tables().kinds.end() ? 0 : found->second;
 }
 
-bool names_figure(std::string_view noun) {
-    const auto last = noun.substr(noun.find_last_of(' ') + 1);
-    const auto word = word_of(std::string(last));
-    return (kinds_of(word.singular) & (Animal | Person)) != 0 || has(Class::figure, noun) ||
-           has(Class::figure, word.singular);
+namespace {
+
+/// Singular of a noun's last word: "pot" of "plant pots".
+std::string head_of(std::string_view noun) {
+    return word_of(std::string(noun.substr(noun.find_last_of(' ') + 1))).singular;
 }
+
+bool is_of(Class word_class, std::string_view noun) {
+    return has(word_class, noun) || has(word_class, head_of(noun));
+}
+
+}  // namespace
+
+bool names_figure(std::string_view noun) {
+    return (kinds_of(head_of(noun)) & (Animal | Person)) != 0 || is_of(Class::figure, noun);
+}
+
+bool names_vessel(std::string_view noun) { return is_of(Class::vessel, noun); }
+
+bool names_potted_plant(std::string_view noun) { return is_of(Class::potted_plant, noun); }
 
 bool is_word(std::string_view word) {
     if (in_tables(word)) return true;

@@ -45,7 +45,7 @@ enum class Class : std::uint16_t {
     time_of_day, said_by, where_is, style_kind, word_where, word_colored, part_made, verb_wear,
     word_across, hand, elision, adverb, praise, verb_off, word_whose, plain_verb, word_about,
     furniture_flat, word_into, word_years, word_both, ordinal, word_does, verb_need, quality, heap,
-    facial_hair, liked, verb_toss,
+    facial_hair, liked, verb_toss, vessel, potted_plant,
     Count
     // clang-format on
 };
@@ -100,6 +100,12 @@ std::uint32_t kinds_of(std::string_view word);
 /// Tells whether a noun names an animal, a person or a likeness of one (a statue, a robot): what may stand on
 /// a pedestal.
 bool names_figure(std::string_view noun);
+
+/// Tells whether a noun names a vessel that plants grow out of (a vase, a flowerpot).
+bool names_vessel(std::string_view noun);
+
+/// Tells whether a noun names a plant that may stand in a vessel.
+bool names_potted_plant(std::string_view noun);
 
 /// Tells whether it is an English word, in any form.
 bool is_word(std::string_view word);
