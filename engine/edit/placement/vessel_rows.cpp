@@ -34,6 +34,8 @@ constexpr double MostSlender = 4;     // height of a vessel over its diameter: a
 constexpr double LeastRadius = 0.3;   // of the reach of the plant above (a trunk has less)
 constexpr double Reach = 0.8;         // rank of that reach among the rows above
 constexpr double Seam = 1.12;         // of the wall's radius: rows of a vessel beyond it
+constexpr double Filled = 0.3;        // of its height, below the rim: what lies inside may be seen
+constexpr double Inside = 0.8;        // of the wall's radius: rows nearer to the axis lie inside
 constexpr double OtherRadius = 1.6;   // of the median radius: no slice of one vessel has more, or less by it
 constexpr int Widening = 2;           // slices to either side whose wall counts too
 constexpr int FitRounds = 5;
@@ -304,8 +306,8 @@ std::vector<double> wall_radii(const Vessel& vessel) {
 }  // namespace
 }  // namespace vessel
 
-std::vector<std::uint8_t> vessel_rows(const GaussianSet& set, const std::vector<std::uint8_t>& bits,
-                                      const Vec3& up, const Vec3& front) {
+VesselRows vessel_rows(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Vec3& up,
+                       const Vec3& front) {
     GSE_CHECK_EQ(bits.size(), set.size());
     const Frame frame = make_frame(up, front);
     std::vector<Vec3> places, solid, labelled;
@@ -321,14 +323,17 @@ std::vector<std::uint8_t> vessel_rows(const GaussianSet& set, const std::vector<
     const auto found = vessel::find_vessel(column, labelled);
     if (!found) return {};
     const auto radii = vessel::wall_radii(*found);
-    std::vector<std::uint8_t> rows(bits.size(), 0);
+    const double filled_from = found->last + 1 - vessel::Filled * (found->last + 1 - found->first);
+    VesselRows rows{std::vector<std::uint8_t>(bits.size(), 0), std::vector<std::uint8_t>(bits.size(), 0)};
     for (std::size_t row = 0; row < bits.size(); ++row) {
         const Vec3& p = places[row];
         if (!std::isfinite(p.x + p.y + p.z)) continue;
         const int slice = column.slice_at(p.y);
         if (slice < found->first || slice > found->last) continue;
-        const double most = vessel::Seam * radii[static_cast<std::size_t>(slice)];
-        rows[row] = vessel::distance({p.x, p.z}, found->axis) <= most ? 1 : 0;
+        const double radius = radii[static_cast<std::size_t>(slice)];
+        const double from = vessel::distance({p.x, p.z}, found->axis);
+        if (from > vessel::Seam * radius) continue;
+        (slice >= filled_from && from < vessel::Inside * radius ? rows.filling : rows.vessel)[row] = 1;
     }
     return rows;
 }
