@@ -34,6 +34,9 @@ constexpr double MostSlender = 4;     // height of a vessel over its diameter: a
 constexpr double LeastRadius = 0.3;   // of the reach of the plant above (a trunk has less)
 constexpr double Reach = 0.8;         // rank of that reach among the rows above
 constexpr double Seam = 1.12;         // of the wall's radius: rows of a vessel beyond it
+constexpr double Filled = 0.3;        // of its height, below the rim: what lies inside may be seen
+constexpr double ClosedWall = 0.8;    // of the sectors have rows, on average over those slices
+constexpr double Inside = 0.8;        // of the wall's radius: rows nearer to the axis lie inside
 constexpr double OtherRadius = 1.6;   // of the median radius: no slice of one vessel has more, or less by it
 constexpr int Widening = 2;           // slices to either side whose wall counts too
 constexpr int FitRounds = 5;
@@ -140,7 +143,8 @@ struct Ring {
     double share = 0;  // of the sectors with rows: those in the circle
     double wall = 0;   // share, or 0 where the radius is not that of the vessel's wall
     double radius = 0;
-    bool known = false;  // enough sectors have rows
+    double sectors = 0;  // share of all that have rows
+    bool known = false;  // enough of them
 };
 
 Ring ring_of(const Slice& slice, const Point& centre) {
@@ -148,8 +152,9 @@ Ring ring_of(const Slice& slice, const Point& centre) {
     for (const double reach : reaches_of(slice, centre))
         if (reach > 0) reaches.push_back(reach);
     Ring ring;
-    if (static_cast<double>(reaches.size()) < LeastSectors * Sectors) return ring;
-    ring.known = true;
+    ring.sectors = static_cast<double>(reaches.size()) / Sectors;
+    ring.known = ring.sectors >= LeastSectors;
+    if (!ring.known) return ring;
     for (const double radius : reaches) {
         double sum = 0, count = 0;
         for (const double other : reaches)
@@ -276,8 +281,7 @@ std::optional<Vessel> find_vessel(const Column& column, const std::vector<Vec3>&
     return best;
 }
 
-/// Radius of the wall per slice; a slice without a ring has one on a line between its neighbours'. Each is as
-/// wide as in the slices around, so that a rim's rows are not cut.
+/// Radius of the wall per slice; a slice without a ring has one on a line between its neighbours'.
 std::vector<double> wall_radii(const Vessel& vessel) {
     std::vector<double> radii(vessel.rings.size(), 0);
     int last = -1;
@@ -292,20 +296,39 @@ std::vector<double> wall_radii(const Vessel& vessel) {
     }
     for (int i = last + 1; last >= 0 && i <= vessel.last; ++i)
         radii[static_cast<std::size_t>(i)] = radii[static_cast<std::size_t>(last)];
-    auto widest = radii;
-    for (int i = vessel.first; i <= vessel.last; ++i)
-        for (int other = std::max(vessel.first, i - Widening); other <= std::min(vessel.last, i + Widening);
-             ++other)
-            widest[static_cast<std::size_t>(i)] =
-                std::max(widest[static_cast<std::size_t>(i)], radii[static_cast<std::size_t>(other)]);
-    return widest;
+    return radii;
+}
+
+/// The least and the largest radius in a slice and the slices next to it: a wall that leans covers both.
+struct Wall {
+    double least = 0, largest = 0;
+};
+
+std::vector<Wall> walls_of(const Vessel& vessel) {
+    const auto radii = wall_radii(vessel);
+    std::vector<Wall> walls(radii.size());
+    for (int i = vessel.first; i <= vessel.last; ++i) {
+        const auto first = radii.begin() + std::max(vessel.first, i - Widening);
+        const auto last = radii.begin() + std::min(vessel.last, i + Widening) + 1;
+        walls[static_cast<std::size_t>(i)] = {*std::min_element(first, last), *std::max_element(first, last)};
+    }
+    return walls;
+}
+
+/// First slice in which rows inside the wall are the vessel's filling. Beyond the last slice where walls are
+/// open to a side, as in a scan from one side.
+int filled_from(const Vessel& vessel) {
+    const int from = vessel.last + 1 - static_cast<int>(Filled * (vessel.last + 1 - vessel.first));
+    double sectors = 0;
+    for (int i = from; i <= vessel.last; ++i) sectors += vessel.rings[static_cast<std::size_t>(i)].sectors;
+    return sectors >= ClosedWall * (vessel.last + 1 - from) ? from : vessel.last + 1;
 }
 
 }  // namespace
 }  // namespace vessel
 
-std::vector<std::uint8_t> vessel_rows(const GaussianSet& set, const std::vector<std::uint8_t>& bits,
-                                      const Vec3& up, const Vec3& front) {
+VesselRows vessel_rows(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Vec3& up,
+                       const Vec3& front) {
     GSE_CHECK_EQ(bits.size(), set.size());
     const Frame frame = make_frame(up, front);
     std::vector<Vec3> places, solid, labelled;
@@ -320,15 +343,18 @@ std::vector<std::uint8_t> vessel_rows(const GaussianSet& set, const std::vector<
     const vessel::Column column(solid, labelled);
     const auto found = vessel::find_vessel(column, labelled);
     if (!found) return {};
-    const auto radii = vessel::wall_radii(*found);
-    std::vector<std::uint8_t> rows(bits.size(), 0);
+    const auto walls = vessel::walls_of(*found);
+    const int filled_from = vessel::filled_from(*found);
+    VesselRows rows{std::vector<std::uint8_t>(bits.size(), 0), std::vector<std::uint8_t>(bits.size(), 0)};
     for (std::size_t row = 0; row < bits.size(); ++row) {
         const Vec3& p = places[row];
         if (!std::isfinite(p.x + p.y + p.z)) continue;
         const int slice = column.slice_at(p.y);
         if (slice < found->first || slice > found->last) continue;
-        const double most = vessel::Seam * radii[static_cast<std::size_t>(slice)];
-        rows[row] = vessel::distance({p.x, p.z}, found->axis) <= most ? 1 : 0;
+        const auto& wall = walls[static_cast<std::size_t>(slice)];
+        const double from = vessel::distance({p.x, p.z}, found->axis);
+        if (from > vessel::Seam * wall.largest) continue;
+        (slice >= filled_from && from < vessel::Inside * wall.least ? rows.filling : rows.vessel)[row] = 1;
     }
     return rows;
 }

@@ -10,14 +10,20 @@
 namespace gse::edit {
 namespace {
 
-/// All that is labelled outside the vessel is the plant.
-PartsBeside plant_in(const std::vector<std::uint8_t>& vessel, const std::vector<std::uint8_t>& bits) {
-    PartsBeside beside{"plant", vessel, {}};
-    for (std::size_t row = 0; row < vessel.size(); ++row) {
-        beside.rows[row] = bits[row] != 0 && vessel[row] == 0 ? 1 : 0;
-        if (vessel[row] != 0 && bits[row] == 0) beside.lacking.push_back(row);
+/// All that is labelled outside the vessel is the plant or what it grows in.
+PartsBeside plant_in(const VesselRows& rows, const std::vector<std::uint8_t>& bits) {
+    PartsBeside beside{"plant", rows.vessel, {}};
+    for (std::size_t row = 0; row < rows.vessel.size(); ++row) {
+        beside.rows[row] = bits[row] != 0 && rows.vessel[row] == 0 ? 1 : 0;
+        if (rows.vessel[row] != 0 && bits[row] == 0) beside.lacking.push_back(row);
     }
     return beside;
+}
+
+/// A filled vessel is no part of the plant.
+PartsBeside vessel_under(VesselRows rows) {
+    for (std::size_t row = 0; row < rows.vessel.size(); ++row) rows.vessel[row] |= rows.filling[row];
+    return {"vessel", std::move(rows.vessel), {}};
 }
 
 }  // namespace
@@ -32,7 +38,7 @@ PartsBeside parts_beside(const GaussianSet& set, const std::vector<std::uint8_t>
                          const Vec3& up, const Vec3& front) {
     switch (nature) {
         case ThingNature::Figure: return {"pedestal", pedestal_rows(set, bits, up, front), {}};
-        case ThingNature::Plant: return {"vessel", vessel_rows(set, bits, up, front), {}};
+        case ThingNature::Plant: return vessel_under(vessel_rows(set, bits, up, front));
         case ThingNature::Vessel: return plant_in(vessel_rows(set, bits, up, front), bits);
         case ThingNature::Other: break;
     }

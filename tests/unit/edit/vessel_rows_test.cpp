@@ -52,7 +52,9 @@ struct Scene {
         }
         return *this;
     }
-    std::vector<std::uint8_t> found() const { return edit::vessel_rows(rows.set(), rows.bits, Up, Front); }
+    std::vector<std::uint8_t> found() const {
+        return edit::vessel_rows(rows.set(), rows.bits, Up, Front).vessel;
+    }
 };
 
 /// Share of the rows [first, last) that are told as the vessel's.
@@ -118,6 +120,21 @@ DOCTEST_TEST_CASE("nothing is told apart of a square box with a plant in it") {
     DOCTEST_CHECK(scene.plant(0.4, 1.2, 0.5).found().empty());
 }
 
+DOCTEST_TEST_CASE("soil and what hangs into a pot are no part of the pot, and none of the plant") {
+    Scene scene;
+    scene.vessel(0.2, 0.2, 0.4).plant(0.4, 1.2, 0.5);
+    const std::size_t first = scene.rows.bits.size();
+    for (int i = 0; i < 500; ++i)
+        scene.rows.row({0.3 + scene.rows.random.uniform(-0.1, 0.1), -scene.rows.random.uniform(0.32, 0.38),
+                        -0.2 + scene.rows.random.uniform(-0.1, 0.1)},
+                       true);
+    for (const char* noun : {"pot", "plant"}) {
+        const auto label =
+            edit::without_parts_beside(scene.rows.set(), scene.rows.bits, edit::nature_of(noun), Up);
+        DOCTEST_CHECK(share(label, first, label.size()) < 0.02);
+    }
+}
+
 DOCTEST_TEST_CASE("a thing that was pointed at is the vessel, the plant or both, as its noun says") {
     Scene scene;
     scene.vessel(0.2, 0.2, 0.4).plant(0.4, 1.2, 0.5);
@@ -145,7 +162,7 @@ DOCTEST_TEST_CASE("empty labels and rows that are no numbers are told nothing") 
     DOCTEST_CHECK(share(scene.found(), 0, WallRows) > 0.95);
     std::fill(scene.rows.bits.begin(), scene.rows.bits.end(), std::uint8_t{0});
     DOCTEST_CHECK(scene.found().empty());
-    DOCTEST_CHECK(edit::vessel_rows({}, {}, Up, Front).empty());
+    DOCTEST_CHECK(edit::vessel_rows({}, {}, Up, Front).vessel.empty());
 }
 
 }  // namespace vessel_rows_test
