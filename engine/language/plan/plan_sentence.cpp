@@ -58,6 +58,12 @@ bool may_name_thing(const std::vector<Word>& words, std::size_t at) {
     return article && (at == 1 || !is_a(at - 2, Class::relation));  // not "in a row"
 }
 
+bool begins_object(const std::vector<Word>& words, std::size_t at) {
+    const auto rest = std::span(words).subspan(at);
+    return match(Class::article, rest) || match(Class::definite, rest) || match(Class::possessive, rest) ||
+           match(Class::pronoun_it, rest) || match(Class::pronoun_person, rest);
+}
+
 /// The plan when one word, though it is one, is a slip: "a bear wearing a hate". Nothing where no word makes
 /// sense of the sentence.
 std::optional<Plan> with_a_slip(const SentenceWords& sentence, const SceneWords& scene,
@@ -71,13 +77,16 @@ std::optional<Plan> with_a_slip(const SentenceWords& sentence, const SceneWords&
         const bool joins = has(Class::word_for, word.text) || has(Class::word_out, word.text);
         if (word.mark || word.text.size() < 2 || told || joins || is_grammatical(word.text)) continue;
         const Word typed = word;
+        const bool known = std::ranges::binary_search(spellable_words(), std::string_view(typed.text));
+        const bool orders = at == 0 && words.size() > 2 && begins_object(words, 1);
         for (auto& other : slips_of(typed.text, needed, MostSlips)) {
             const bool is_needed = std::find(needed.begin(), needed.end(), other) != needed.end();
             const bool thing = has(Class::worn, other) || has(Class::held, other);
             // "biger", "waring": a form that some word could have, and no word of the list
-            const bool describes =
-                has(Class::colour, other) ||
-                (kinds_of(typed.text) == 0 && (is_grammatical(other) || has(Class::material, other)));
+            const bool describes = has(Class::colour, other) ||
+                                   (kinds_of(typed.text) == 0 && !known &&
+                                    (is_grammatical(other) || has(Class::material, other))) ||
+                                   (orders && has(Class::plain_verb, other));  // "putt a hat on it"
             if (!is_needed && (towards_scene_only || (!thing && !describes))) continue;
             if (!is_needed && !describes && !may_name_thing(words, at)) continue;
             word = word_of(std::move(other));

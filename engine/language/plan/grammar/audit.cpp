@@ -23,7 +23,7 @@ constexpr std::array Excuses = {
     Class::except,    Class::like,         Class::correction, Class::alternative,
     Class::from,      Class::do_not,       Class::unwanted,   Class::contrast,
     Class::than,      Class::word_neither, Class::instead,    Class::negative_prompt,
-    Class::verb_keep, Class::sequence};
+    Class::verb_keep, Class::sequence,     Class::nobody};
 
 template <std::size_t N> bool is_any(Words words, const std::array<Class, N>& kinds) {
     return std::any_of(kinds.begin(), kinds.end(), [&](Class kind) { return match(kind, words).length > 0; });
@@ -124,6 +124,7 @@ bool names_any(const SceneWords& scene, const Word& word) {
 
 /// Tells whether the step asks for what nobody asks: a thing beside the whole scene, a nose for a bear.
 bool is_odd(const Step& step, const SceneWords& scene) {
+    if (has(Class::nobody, step.thing.noun) || has(Class::something, step.thing.noun)) return true;
     if (step.operation == Operation::Replace)
         return step.subject.links.size() == 1 && (kinds_of(step.thing.noun) & Body) != 0;
     if (step.operation == Operation::Alter) {
@@ -141,7 +142,8 @@ bool is_odd(const Step& step, const SceneWords& scene) {
         return true;  // a hat beside itself
     const auto head = step.thing.noun.substr(step.thing.noun.rfind(' ') + 1);
     const auto kinds = kinds_of(head);
-    if (step.relation == "held by") return (kinds_of(step.thing.noun) & Body) != 0;
+    if (step.relation == "held by")
+        return (kinds_of(step.thing.noun) & Body) != 0 || has(Class::body_place, step.thing.noun);
     return step.relation == "worn by" && !has(Class::worn, head) && (kinds & Kind::Worn) == 0 &&
            (kinds & (Vehicle | Food | Person)) != 0;
 }
@@ -166,8 +168,9 @@ bool leaves_unsaid(Words words, const SceneWords& scene, const Texts& said) {
             at += fixed;
             continue;
         }
-        const auto pattern = match(Class::pattern_animal, here).length;
-        if (pattern > 0 && is_said(here, said)) {  // "zebra stripes"
+        const auto animal = match(Class::pattern_animal, here).length;
+        const auto pattern = here[0].text == "rainbow" ? 1 : animal;  // "rainbow-striped"
+        if (pattern > 0 && is_said(here, said)) {                     // "zebra stripes"
             at += pattern + match(Class::pattern_plain, words.subspan(at + pattern)).length;
             continue;
         }

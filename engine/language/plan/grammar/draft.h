@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/language/plan/grammar/phrase.h"
 #include "engine/language/plan/notation/plan.h"
+#include "engine/language/plan/phrases/phrase.h"
 
 namespace gse::language::plan {
 
@@ -73,6 +73,8 @@ public:
     /// Things added from that step on without a place stand where the last one does ("a cup and a plate on
     /// the table").
     void share_place(std::size_t from);
+    /// Tells whether the target is added to the scene without a place.
+    bool stands_nowhere(const Target& made) const;
     /// Tells whether a step changes a thing as a whole, and not a part of it.
     bool changes_whole() const;
     /// Tells whether a step puts another thing in its place.
@@ -80,6 +82,7 @@ public:
     /// Leaves the thing out of the steps from that one on, which are about all of its kind.
     void leave_out(const Target& target, std::size_t from);
     void refuse(std::string_view reason, std::string_view word = {});
+    void contradict() { contradicted_ = true; }
     void already_so() { same_ = true; }
     void nothing_asked() { asked_nothing_ = true; }
     /// Tells whether the last step makes the target.
@@ -111,7 +114,7 @@ private:
     std::vector<Step> steps_;
     std::optional<Target> last_;
     std::vector<Step> denied_;
-    bool same_ = false, asked_nothing_ = false;
+    bool same_ = false, asked_nothing_ = false, contradicted_ = false;
 };
 
 /// Tells whether the word names a part of a thing rather than clothes.

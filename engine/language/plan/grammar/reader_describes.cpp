@@ -43,7 +43,10 @@ bool Reader::describe_part(const Phrase& phrase, const Target& found) {
     std::vector<Attribute> attributes;
     for (const auto& attribute : phrase.attributes)
         if (attribute.quality != Quality::Side) attributes.push_back(attribute);
-    const bool placed = phrase.plural && !phrase.has_determiner() && c_.peek(Class::relation);
+    Cursor colour = c_;  // "paw pads in pink"
+    const bool coloured = colour.take(Class::relation).value == "in" && !colour.take_attributes().empty() &&
+                          colour.at_end_of_clause();
+    const bool placed = phrase.plural && !phrase.has_determiner() && c_.peek(Class::relation) && !coloured;
     if (attributes.empty() && (phrase.indefinite || placed) && !phrase.owner)
         return describe_new(phrase);  // "a chimney on the house", "leaves on the pavement"
     const bool own_worn = is_worn(phrase) && !phrase.owner && (kinds_of(phrase.noun) & Body) == 0;
@@ -192,35 +195,6 @@ bool Reader::describe(const Phrase& phrase) {
     return describe_more();
 }
 
-/// A ground or a place: "snow instead of grass", "a forest"; nothing for things.
-std::optional<bool> Reader::describe_place(const Phrase& phrase, bool bare) {
-    Cursor instead = c_;
-    Phrase replaced;
-    if (is_ground(phrase) && instead.take(Class::rather_than) &&
-        instead.take_phrase(replaced)) {  // "snow instead of grass"
-        const auto old = d_.resolve(replaced);
-        if (!old.found()) return expect(replaced).found();
-        c_.at = instead.at;
-        return become({old}, phrase);
-    }
-    if (is_ground(phrase) && !is_worn(phrase) && phrase.count.empty() && (described_ || bare) &&
-        !has(Class::thing, phrase.noun)) {
-        d_.ground(phrase);
-        return true;
-    }
-    if (has(Class::place, phrase.noun) && bare) {
-        d_.environment(phrase.typed);
-        return true;
-    }
-    if (bare && has(Class::environment, phrase.noun)) {  // "golden sunlight"
-        std::string text;
-        for (const auto& attribute : phrase.attributes) text += attribute.typed + " ";
-        d_.environment(text + phrase.typed);
-        return true;
-    }
-    return std::nullopt;
-}
-
 /// A new thing, and the thing of the scene behind it: "a cat near a bear", "a tree and a bear".
 bool Reader::describe_beside(const Phrase& phrase) {
     const auto focus = d_.focus();
@@ -256,7 +230,7 @@ bool Reader::describe_beside(const Phrase& phrase) {
 /// "a cat instead of the bear".
 std::optional<bool> Reader::describe_instead(const Phrase& phrase) {
     Cursor ahead = c_;
-    if (!ahead.take(Class::rather_than)) ahead.take(Class::than);
+    if (!ahead.take(Class::rather_than) && !ahead.take(Class::than)) ++ahead.at;  // "prefer ... over"
     Phrase old;
     if (ahead.take_phrase(old)) {
         const auto target = d_.resolve(old);
@@ -290,7 +264,10 @@ bool Reader::stands_by_other(const Phrase& phrase) const {
 /// "a striped pattern on the bear".
 bool Reader::describe_pattern(const Phrase& phrase) {
     const auto focus = d_.focus();
-    if (!focus.found() || !own_pattern(focus, phrase)) return false;
+    const auto where_to = c_.peek(Class::relation);
+    const bool thing =
+        has(Class::thing, phrase.noun) && where_to && where_to.value != "on";  // "a rainbow over"
+    if (thing || !focus.found() || !own_pattern(focus, phrase)) return false;
     Cursor place = c_;
     Phrase where;
     if ((place.take(Class::relation) || place.take(Class::to)) && place.take_phrase(where) &&
@@ -382,6 +359,18 @@ std::optional<bool> Reader::describe_elsewhere(const Phrase& phrase) {
     return std::nullopt;
 }
 
+/// Further things stand beside the first, or are worn by it.
+bool Reader::describe_further(const Phrase& phrase, const Target& bearer) {
+    if (!bearer.found()) return fail(reason::Ambiguous);
+    const auto how =
+        is_worn(phrase) && d_.can_wear(bearer) ? std::string_view("worn by") : std::string_view("beside");
+    const auto made = d_.add(phrase, how, {bearer});
+    d_.mention(made);
+    nested(made, bearer);
+    posts(made);
+    return describe_more();
+}
+
 /// A thing that the scene does not show.
 bool Reader::describe_new(const Phrase& phrase) {
     const auto focus = d_.focus();
@@ -393,22 +382,16 @@ bool Reader::describe_new(const Phrase& phrase) {
     if (!is_thing(phrase)) return fail(reason::NotASentence);
     if (const auto read = describe_one_of(phrase)) return *read;
     if (const auto read = describe_elsewhere(phrase)) return *read;
+    if (is_ground(phrase) && !phrase.has_determiner() && !c_.peek(Class::rather_than))
+        c_.take(Class::as_well);  // "snow everywhere"
     const bool bare = c_.at_end_of_clause();
     if (const auto placed = describe_on_top(phrase)) return *placed;
     if (const auto read = describe_place(phrase, bare)) return *read;
     const bool wears = is_worn(phrase) || (is_held(phrase) && described_);
     const auto bearer = described_ && described_->found() ? *described_ : focus;
-    if (described_) {  // further things stand beside the first, or are worn by it
-        if (!bearer.found()) return fail(reason::Ambiguous);
-        const auto how =
-            is_worn(phrase) && d_.can_wear(bearer) ? std::string_view("worn by") : std::string_view("beside");
-        const auto made = d_.add(phrase, how, {bearer});
-        d_.mention(made);
-        nested(made, bearer);
-        posts(made);
-        return describe_more();
-    }
-    if (c_.peek(Class::rather_than) || (c_.peek(Class::than) && requested_)) {
+    if (described_) return describe_further(phrase, bearer);
+    const bool over = prefers_ && (c_.is(Class::word_to) || c_.word().text == "over");
+    if (c_.peek(Class::rather_than) || (c_.peek(Class::than) && requested_) || over) {
         if (const auto read = describe_instead(phrase)) return *read;
     }
     const bool later = mentions_focus(c_.at);

@@ -29,7 +29,8 @@ void Reader::skip_from(Targets& targets) {
     }
     Cursor off = c_;
     Phrase bearer;
-    if (c_.at > 0 && off.take_phrase(bearer) && bearer.naming == Naming::Thing && d_.resolve(bearer).found())
+    if (c_.at > 0 && off.take_phrase(bearer) && d_.resolve(bearer).found() &&
+        (bearer.naming == Naming::Thing || bearer.naming == Naming::Person))
         c_.at = off.at;
     if (c_.take(Class::from) || c_.is(Class::word_of) || c_.peek(Class::relation)) {
         if (c_.is(Class::word_of)) ++c_.at;
@@ -120,7 +121,7 @@ bool Reader::remove_clause() {
     std::vector<Phrase> phrases;
     Phrase first;
     Cursor ahead = c_;
-    if (!ahead.take_phrase(first)) return false;
+    if (!ahead.take_phrase(first) && !c_.peek(Class::what_stands) && !c_.is(Class::word_what)) return false;
     const auto alone = direct.length < 2 && (gets || takes);
     if (alone) {  // needs a particle: "take the hat off", "get the bear out of here"
         if (!takes_away(ahead, direct.length > 0, gets)) return false;
@@ -183,6 +184,18 @@ Reader::Targets Reader::things_on(const Target& target) const {
             on.push_back(d_.target_of_thing(i));
     }
     return on;
+}
+
+/// "the thing on the table": names what stands there.
+void Reader::narrow(Phrase& phrase) {
+    Cursor ahead = c_;
+    Phrase place;
+    if (!has(Class::thing_name, phrase.noun) || !phrase.definite || d_.focus().found()) return;
+    if (!ahead.take(Class::relation) || !ahead.take_phrase(place)) return;
+    const auto on = things_on(d_.resolve(place));
+    if (on.size() != 1 || !on.front().thing) return;
+    phrase.noun = phrase.typed = d_.scene().things[*on.front().thing].noun;
+    c_.at = ahead.at;
 }
 
 /// "empty the vase", "clear the table", "strip the bear of its hat", "rid the bear of its hat".
@@ -283,6 +296,7 @@ bool Reader::keep_clause() {
     if (ahead.take(Class::verb_keep)) {
         Phrase phrase;
         Cursor object = ahead;
+        if (ahead.peek(Class::only)) return false;
         if (!object.take_phrase(phrase)) {
             if (!ahead.at_end_of_clause()) return false;
             c_.at = ahead.at;
@@ -312,8 +326,13 @@ bool Reader::keep_clause() {
         leave_as_it_is(kept);
         return true;
     }
+    return likes_clause();
+}
+
+/// "I like the hat, but make it yellow", "everything except the hat stays".
+bool Reader::likes_clause() {
     Phrase subject;
-    ahead = c_;
+    Cursor ahead = c_;
     if (ahead.take(Class::liked) && ahead.take_phrase(subject) && d_.resolve(subject).found() &&
         ahead.peek(Class::contrast)) {  // "I like the hat, but make it yellow"
         d_.mention(d_.resolve(subject));

@@ -10,6 +10,22 @@ bool Reader::only_clause() {
     Phrase phrase;
     const bool keeps = ahead.take(Class::verb_keep).length > 0;
     if (!ahead.take(Class::only) || !ahead.take_phrase(phrase)) return false;
+    std::vector<Phrase> kept{phrase};
+    Cursor more = ahead;
+    for (Phrase next; (more.take_mark(','), more.take(Class::conjunction), more.at > ahead.at) &&
+                      more.take_phrase(next) && !next.none && d_.resolve(next).thing;) {
+        kept.push_back(next);
+        ahead.at = more.at;
+    }
+    if (kept.size() > 1 && d_.resolve(phrase).thing && ahead.at_end_of_clause() && d_.size() == 0) {
+        Targets others;  // "leave only the bear and the grass"
+        c_.at = ahead.at;
+        if (!all_but(kept, others)) return false;
+        std::erase_if(others, [&](const Target& each) { return d_.scene().things[*each.thing].is_ground; });
+        d_.already_so();
+        remove_all(others);
+        return true;
+    }
     Cursor said = ahead;
     said.take(Class::modal);
     bool stays = said.is(Class::word_stay) || said.is(Class::word_stays) || said.is(Class::word_remain) ||
@@ -29,6 +45,10 @@ bool Reader::only_clause() {
         }
     }
     if (d_.size() > 0 || !phrase.attributes.empty() || phrase.naming != Naming::Thing) return false;
+    if (phrase.single && d_.things_named(phrase).size() > 1) {  // "keep only one chair"
+        c_.at = ahead.at;
+        return describe(phrase);
+    }
     const auto found = d_.resolve(phrase);
     const auto focus = d_.focus();
     if (!found.thing || !focus.found()) return false;
@@ -105,158 +125,6 @@ bool Reader::there_is_clause() {
     return true;
 }
 
-/// "no hat on the bear", "not a bear but a lion".
-bool Reader::no_thing_clause() {
-    Cursor ahead = c_;
-    Phrase phrase;
-    if (!ahead.take_phrase(phrase) || !phrase.none) return false;
-    if (phrase.noun.empty()) {  // "a silver crown, not a golden one"
-        if (phrase.attributes.empty() || !ahead.at_end_of_clause()) return false;
-        if (d_.size() == 0)  // "no green, make it purple"
-            for (const auto& attribute : phrase.attributes) d_.deny(d_.focus(), attribute);
-        c_.at = ahead.at;
-        return true;
-    }
-    c_.at = ahead.at;
-    phrase.none = false;
-    if (c_.peek(Class::relation)) {  // "no hat on the bear"
-        Cursor place = c_;
-        place.take(Class::relation);
-        Phrase where;
-        if (place.take_phrase(where)) c_.at = place.at;
-        else c_.take(Class::relation);
-    }
-    Phrase other;
-    Cursor but = c_;
-    but.take_mark(',');
-    if ((but.take(Class::contrast) || but.take(Class::only)) && but.take_phrase(other) && other.indefinite &&
-        other.naming == Naming::Thing && d_.resolve(phrase).found()) {
-        c_.at = but.at;  // "not a bear but a lion"
-        return become({d_.resolve(phrase)}, other);
-    }
-    if (const auto found = d_.resolve(phrase); d_.last_is(found) && found.kind == Target::Kind::Made) {
-        remove_all({found});  // "add a hat. no, no hat"
-        return true;
-    }
-    if (const auto found = d_.resolve(phrase); found.found() && d_.replaces(found)) return true;
-    if (!lack(d_.focus(), phrase)) return false;
-    return !c_.peek(Class::none) || c_.done() || no_thing_clause();
-}
-
-/// "do not touch the bear": nothing is asked.
-bool Reader::do_not_clause(Cursor ahead) {
-    if (starts_verb(ahead.at - c_.at) || ahead.is(Class::word_use) || ahead.word().text == "touch" ||
-        ahead.word().text == "forget") {
-        if (ahead.word().text == "forget") {
-            c_.at = ahead.at + 1;
-            c_.take(Class::to);
-            return clause();
-        }
-        while (!ahead.at_end_of_clause() && !ahead.peek(Class::contrast)) ++ahead.at;
-        c_.at = ahead.at;
-        d_.nothing_asked();
-        return true;
-    }
-    return false;
-}
-
-/// "I do not want to see a bear there", "I do not like red".
-bool Reader::unwanted_clause(Cursor ahead) {
-    Phrase phrase;
-    Attribute colour;
-    Cursor plain = ahead;
-    if (plain.take_attribute(colour, false) && plain.at_end_of_clause() && !plain.done()) {
-        c_.at = plain.at;  // "I do not like red, make it blue"
-        d_.deny(d_.focus(), colour);
-        return true;
-    }
-    if (!ahead.take_phrase(phrase) || phrase.naming != Naming::Thing || d_.things_named(phrase).empty())
-        return false;
-    c_.at = ahead.at;
-    while (c_.take(Class::as_well) || c_.is(Class::word_there)) {
-        if (c_.is(Class::word_there)) ++c_.at;
-    }
-    const auto unwanted = d_.resolve(phrase);
-    if (unwanted.found()) d_.mention(unwanted);
-    if (Cursor worn = c_; unwanted.found() && worn.is(Class::word_to) &&
-                          (worn.peek(Class::wearing, 1) || worn.peek(Class::having, 1))) {
-        c_.at += 2;  // "I do not want the bear to wear a hat"
-        return lack_list(unwanted);
-    }
-    return c_.at_end_of_clause() && lack(d_.focus(), phrase);
-}
-
-/// "neither a bear nor a cat", "neither the car nor the house should change".
-bool Reader::neither_clause() {
-    Cursor ahead = c_;
-    ++ahead.at;
-    Phrase phrase;
-    Cursor said = ahead;  // "neither the car nor the house should change"
-    while (said.take_phrase(phrase) && said.is(Class::word_nor)) ++said.at;
-    if (said.take(Class::modal)) {
-        said.take(Class::copula);
-        if (!said.take(Class::verb_become) && !said.take(Class::verb_turn)) return false;
-        c_.at = said.at;
-        d_.nothing_asked();
-        return true;
-    }
-    Attribute attribute;
-    Cursor denied = ahead;
-    if (denied.take_attribute(attribute, false) && (denied.done() || denied.is(Class::word_nor)))
-        return fail(reason::Incomplete);  // "neither red nor blue"
-    c_.at = ahead.at;
-    do {
-        if (!c_.take_phrase(phrase) || !lack(d_.focus(), phrase)) return false;
-    } while (c_.is(Class::word_nor) && ++c_.at);
-    return true;
-}
-
-/// "no hat", "neither a bear nor a cat", "without a hat", "not red but green".
-bool Reader::negative_clause() {
-    Cursor ahead = c_;
-    if (ahead.take(Class::do_not)) {  // "do not touch the bear": nothing is asked
-        return do_not_clause(ahead);
-    }
-    if (ahead.take(Class::unwanted)) return unwanted_clause(ahead);
-    if (c_.peek(Class::without)) {
-        c_.take(Class::without);
-        return lack_list(d_.last() ? *d_.last() : d_.focus());
-    }
-    if (ahead.is(Class::word_neither)) return neither_clause();
-    if (Cursor colour = ahead; d_.size() == 0 && colour.take(Class::none)) {
-        Attribute denied;  // "no green"
-        if (colour.take_attribute(denied, false) && denied.quality == Quality::Colour &&
-            (colour.at_end_of_clause() || colour.peek(Class::courtesy)) && d_.focus().found()) {
-            c_.at = colour.at;
-            d_.deny(d_.focus(), denied);
-            return true;
-        }
-    }
-    if (ahead.peek(Class::none) && !ahead.peek(Class::correction)) return no_thing_clause();
-    if (ahead.peek(Class::negation)) {
-        const std::size_t start = c_.at;
-        Cursor behind = ahead;
-        behind.take(Class::negation);
-        Phrase other;
-        Attribute attribute;
-        Cursor probe = behind;
-        if (!probe.take_attribute(attribute, false) && behind.take_phrase(other) &&
-            other.naming == Naming::Thing &&
-            (behind.at_end_of_clause() || (other.definite && behind.peek(Class::contrast))) &&
-            (d_.size() > 0 || !behind.done())) {
-            c_.at = behind.at;  // "not the hat, the bear should be yellow"
-            leave_as_it_is(other);
-            return true;
-        }
-        const auto focus = d_.last() ? *d_.last() : d_.focus();
-        if (!focus.found()) return fail(reason::Ambiguous);
-        if (denied({focus})) return true;
-        if (!reason_.empty()) return false;
-        c_.at = start;
-    }
-    return false;
-}
-
 /// "instead of a bear I want a cat".
 bool Reader::instead_clause() {
     Target there;
@@ -271,6 +139,12 @@ bool Reader::instead_clause() {
     Cursor ahead = c_;
     if (!ahead.peek(Class::rather_than) || ahead.is(Class::word_not)) return false;
     ahead.take(Class::rather_than);
+    Attribute denied;
+    if (Cursor colour = ahead;
+        d_.focus().found() && colour.take_attribute(denied, false) && colour.take_mark(',')) {
+        c_.at = colour.at;  // "instead of red, blue"
+        return clause();
+    }
     Phrase old;
     if (!ahead.take_phrase(old)) return false;
     const auto target = d_.resolve(old);
@@ -291,6 +165,7 @@ bool Reader::instead_clause() {
 std::optional<bool> Reader::has_something(const Targets& subjects) {
     for (const auto kind : {Class::wearing, Class::holding, Class::riding, Class::having}) {
         if (!c_.peek(kind) || c_.peek(Class::conjunction)) continue;
+        if (c_.peek(Class::relation).length > c_.peek(kind).length) continue;  // "holding hands with"
         Cursor verb = c_;
         verb.take(kind);
         if (verb.peek(Class::copula) || verb.peek(Class::verb_become)) {  // "has turned blue"
@@ -315,7 +190,7 @@ std::optional<bool> Reader::has_something(const Targets& subjects) {
 }
 
 /// "is blue", "is painted blue", "is replaced by a cat", "is behind the statue".
-bool Reader::is_somehow(const Targets& subjects) {
+bool Reader::is_somehow(const Targets& subjects, bool modal) {
     if (c_.peek(Class::look_word).length > c_.peek(Class::copula).length) c_.take(Class::look_word);
     c_.take(Class::copula);
     if (!c_.is(Class::word_too)) c_.take(Class::as_well);
@@ -337,6 +212,11 @@ bool Reader::is_somehow(const Targets& subjects) {
             remove_all(on);
             return true;
         }
+    if (Cursor complains = c_; !modal && complains.take(Class::complaint) && complains.at_end_of_clause()) {
+        c_.at = complains.at;  // "bears are boring, use a giraffe"
+        d_.nothing_asked();
+        return true;
+    }
     if (c_.peek(Class::fire_words)) return post(subjects.front());
     if (!c_.peek(Class::like) && c_.peek(Class::relation) && !c_.peek(Class::flipping) &&
         !(c_.peek(Class::into) && c_.is(Class::word_into)))
@@ -359,23 +239,15 @@ bool Reader::is_somehow(const Targets& subjects) {
     return complement(subjects);
 }
 
-/// "(should) not be here", "not be red but blue".
-bool Reader::should_not(const Targets& subjects) {
-    if (c_.peek(Class::copula)) c_.take(Class::copula);
-    if (c_.is(Class::word_here) || c_.is(Class::word_there)) {  // "should not be here"
-        ++c_.at;
-        for (const auto& subject : subjects) d_.remove(subject);
-        return true;
-    }
-    if (c_.take(Class::having) || c_.take(Class::wearing) || c_.take(Class::holding))
-        return lack_list(subjects.front());
-    const auto attributes = c_.take_attributes();
-    if (attributes.empty()) return false;
-    for (const auto& subject : subjects)
-        for (const auto& attribute : attributes) d_.deny(subject, attribute);
-    c_.take_mark(',');
-    if (c_.take(Class::contrast)) return complement(subjects);
-    return fail(reason::Incomplete);
+/// "stands on the grass wearing a hat", "leaning on", "hiding behind a bush"; nothing for other verbs.
+std::optional<bool> Reader::stands_somewhere(const Target& subject) {
+    const bool stands = c_.peek(Class::emerging) && c_.peek(Class::relation, c_.peek(Class::emerging).length);
+    const bool placed = c_.peek(Class::relation).length > 1 && c_.word().text.ends_with("ing");
+    if (!stands && !placed) return std::nullopt;
+    if (!placed) c_.take(Class::emerging);
+    if (!related(subject)) return false;
+    posts(subject);
+    return true;
 }
 
 bool Reader::predicate(const Targets& subjects) {
@@ -384,6 +256,16 @@ bool Reader::predicate(const Targets& subjects) {
         c_.at = start;
         return false;
     };
+    if (c_.take(Class::modal_not)) return should_not(subjects) || back();
+    if (c_.take(Class::past_be)) {  // "used to be red, now it is white"
+        d_.already_so();
+        return !c_.take_attributes().empty() || back();
+    }
+    if (gets_something() && subjects.size() == 1) {
+        if (c_.is(Class::word_has) || c_.is(Class::word_have)) ++c_.at;
+        ++c_.at;
+        return has_list(subjects.front(), "with") || back();
+    }
     const bool modal = c_.take(Class::modal).length > 0;
     if (modal && (c_.peek(Class::article) || c_.peek(Class::number) || c_.peek(Class::some)) &&
         subjects.size() == 1)
@@ -413,14 +295,9 @@ bool Reader::predicate(const Targets& subjects) {
         return remove_clause() || back();  // "takes off its hat"
     if (const auto read = has_something(subjects)) return *read || back();
     if (stands_on_part(subjects.front())) return true;
-    if (c_.peek(Class::emerging) && c_.peek(Class::relation, c_.peek(Class::emerging).length)) {
-        c_.take(Class::emerging);
-        if (!related(subjects.front())) return back();
-        posts(subjects.front());  // "stands on the grass wearing a hat"
-        return true;
-    }
+    if (const auto read = stands_somewhere(subjects.front())) return *read || back();
     if (c_.peek(Class::copula) || c_.peek(Class::look_word) || c_.peek(Class::verb_become) || modal) {
-        return is_somehow(subjects) || back();
+        return is_somehow(subjects, modal) || back();
     }
     if (c_.is_mark(":>")) {
         ++c_.at;
@@ -498,16 +375,41 @@ bool Reader::becomes_bare(const Phrase& phrase) {
     return become({found}, other);
 }
 
+/// "gets a scarf", "receives two medals".
+bool Reader::gets_something() const {
+    const std::size_t at = c_.is(Class::word_has) || c_.is(Class::word_have) ? 1 : 0;  // "has grown a beard"
+    const auto& verb = c_.word(at).base;
+    if (verb == "grow" && c_.peek(Class::worn, at + 1)) return true;
+    return (verb == "get" || verb == "receive" || verb == "gain" || verb == "grow" || verb == "sprout") &&
+           (c_.peek(Class::article, at + 1) || c_.peek(Class::number, at + 1) ||
+            c_.peek(Class::some, at + 1));
+}
+
 /// Tells whether a predicate of the phrase follows: "is", "should", "wears", "takes off its".
 bool Reader::says_of(const Phrase& phrase) const {
     const auto off = c_.peek(Class::verb_remove);
-    return c_.peek(Class::copula) || (off.length > 1 && c_.peek(Class::possessive, off.length)) ||
+    return c_.peek(Class::copula) || c_.peek(Class::modal_not) || c_.peek(Class::past_be) ||
+           gets_something() || (off.length > 1 && c_.peek(Class::possessive, off.length)) ||
            (c_.is(Class::word_does) && c_.peek(Class::negation, 1)) || c_.peek(Class::modal) ||
            c_.peek(Class::gone) || c_.is_mark(":>") || c_.peek(Class::verb_become) ||
            c_.peek(Class::look_word) ||
            (phrase.has_determiner() &&
             (c_.peek(Class::wearing) || c_.peek(Class::holding) ||
              (c_.is(Class::word_has) || c_.is(Class::word_have)) || c_.peek(Class::verb_pose)));
+}
+
+/// "hat: red": takes how a new thing is behind a colon.
+bool Reader::coloned(Phrase& phrase) {
+    Cursor colon = c_;
+    const bool is_new = phrase.naming == Naming::Thing && !phrase.noun.empty() && !phrase.definite &&
+                        d_.things_named(phrase).empty() && is_worn(phrase);
+    if (!is_new || !c_.is_mark(":>")) return false;
+    ++colon.at;
+    const auto how = colon.take_attributes();
+    if (how.empty() || !colon.at_end_of_clause()) return false;
+    c_.at = colon.at;
+    phrase.attributes.insert(phrase.attributes.end(), how.begin(), how.end());
+    return true;
 }
 
 bool Reader::noun_clause() {
@@ -518,6 +420,7 @@ bool Reader::noun_clause() {
     if (holds && d_.size() > 0) return fail(reason::NotASentence);  // who holds it was not said
     if (!c_.take_phrase(phrase)) return false;
     if (phrase.naming == Naming::Something) return false;
+    narrow(phrase);
     if (phrase.definite) c_.at = behind_modifiers(c_).at;
     if (phrase.owner && has(Class::colour_word, phrase.noun) && c_.peek(Class::modal))
         phrase = Phrase(*phrase.owner);  // "the color of the bear should be red"
@@ -546,6 +449,7 @@ bool Reader::noun_clause() {
         !said && adjective.take_attribute(behind, false) && adjective.at_end_of_clause();
     if (!said && d_.size() == 0 && becomes_bare(phrase)) return true;
     if (!reason_.empty()) return false;
+    if (coloned(phrase)) return describe(phrase);
     if (said || adjective_behind) {
         if (const auto read = statement(phrases, said, adjective_behind)) return *read;
     }

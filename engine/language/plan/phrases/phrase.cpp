@@ -1,5 +1,5 @@
 // Reading noun phrases.
-#include "engine/language/plan/grammar/phrase.h"
+#include "engine/language/plan/phrases/phrase.h"
 
 #include <algorithm>
 #include <cctype>
@@ -26,12 +26,12 @@ constexpr Class EndingClasses[] = {Class::relation,    Class::inverse_relation,
 
 /// Classes that end a phrase when its noun is there already: "the bear smile", "the bear upside down".
 constexpr Class EndingAfterNoun[] = {
-    Class::copula,  Class::pose,        Class::verb_pose,  Class::look_word, Class::emerging,
-    Class::gone,    Class::direction,   Class::flipping,   Class::turning,   Class::degree,
-    Class::as_well, Class::holding,     Class::riding,     Class::times,     Class::more,
-    Class::less,    Class::verb_become, Class::verb_keep,  Class::instead,   Class::courtesy,
-    Class::number,  Class::another,     Class::fire_words, Class::clockwise, Class::verb_face,
-    Class::none,    Class::sequence};
+    Class::copula,  Class::pose,        Class::verb_pose,   Class::look_word, Class::emerging,
+    Class::gone,    Class::direction,   Class::flipping,    Class::turning,   Class::degree,
+    Class::as_well, Class::holding,     Class::riding,      Class::times,     Class::more,
+    Class::less,    Class::verb_become, Class::verb_keep,   Class::instead,   Class::courtesy,
+    Class::number,  Class::another,     Class::fire_words,  Class::clockwise, Class::verb_face,
+    Class::none,    Class::sequence,    Class::subordinate, Class::word_there};
 
 constexpr Class NounClasses[] = {
     Class::compound,    Class::worn,         Class::held,         Class::part,        Class::ground,
@@ -137,8 +137,10 @@ bool Cursor::ends_phrase(std::size_t ahead, bool after_noun) const {
     if (!after_noun && peek(Class::compound, ahead).length > 1) return false;  // "a red sports car"
     const bool describes = peek(Class::relation, ahead).length == 1 && peek(Class::state, ahead) &&
                            noun_length(ahead + 1) > 0 && !after_noun;  // "round window"
+    const bool part = !after_noun && at + ahead > 0 && has(Class::definite, words_[at + ahead - 1].text) &&
+                      peek(Class::part, ahead) && peek(Class::of, ahead + 1);  // "the inside of its ears"
     for (const auto kind : EndingClasses)
-        if (peek(kind, ahead) && !describes) return true;
+        if (peek(kind, ahead) && !describes && !part) return true;
     if (!after_noun) return peek(Class::copula, ahead).length > 0 && noun_length(ahead) == 0;
     const bool thing = (kinds_of(word(ahead).text) & Concrete) != 0;
     const bool owner = at + ahead > 0 && is_scene_noun(words_[at + ahead - 1].singular);  // "the bear fly"
@@ -207,6 +209,7 @@ bool Cursor::take_pronoun(Phrase& phrase) {
 
 void Cursor::take_determiners(Phrase& phrase) {
     while (!done()) {
+        if (peek(Class::more) && peek(Class::colour, 1) && noun_length(2) == 0) break;  // "more red"
         if (const auto found = peek(Class::number); found && found.length >= peek(Class::some).length &&
                                                     !(found.length == 1 && word(1).text.empty())) {
             at += found.length;
@@ -231,6 +234,9 @@ void Cursor::take_determiners(Phrase& phrase) {
             phrase.some_of = true;
             phrase.indefinite = false;
         } else if (take(Class::caption)) {
+        } else if (phrase.indefinite && !noun_length() && peek(Class::quality_word) &&
+                   !ends_phrase(peek(Class::quality_word).length, false)) {
+            take(Class::quality_word);  // "a hyperrealistic golden bear"
         } else break;
     }
 }
@@ -261,6 +267,10 @@ bool Cursor::reads_as_noun(const Phrase& phrase) const {
     bool last = ends_phrase(1, true);
     const std::size_t length = noun_length();
     if (length > 1) return true;
+    if (Cursor colours = *this; peek(Class::colour) && is(Class::word_and, 1) && peek(Class::colour, 2)) {
+        Attribute both;  // "an orange and black bear"
+        if (colours.take_colour(both, true) && colours.at > at + 2 && colours.noun_length() > 0) return false;
+    }
     const bool compound = has(Class::held, word(1).singular) || has(Class::thing, word(1).singular);
     if (!last && length == 1 && !compound) {  // "the animal blue": what follows describes and ends the clause
         Cursor ahead = *this, whole = *this;
@@ -307,7 +317,9 @@ bool Cursor::describes_to_the_end() const {
         return true;
     for (const auto kind : {Class::colour, Class::ground, Class::material, Class::pattern}) {
         Cursor behind = *this;
-        if (behind.take(kind) && (behind.at_end_of_clause() || behind.peek(Class::conjunction))) return true;
+        if (behind.take(kind) && (behind.at_end_of_clause() || behind.peek(Class::conjunction) ||
+                                  (kind == Class::colour && behind.peek(Class::having))))
+            return true;
     }
     return false;
 }
@@ -319,6 +331,9 @@ void Cursor::take_nouns(Phrase& phrase, bool split, std::size_t length) {
     while (!done() && !ends_phrase(0, true)) {
         const auto so_far = joined_texts(words_.subspan(begin, at - begin));
         const bool owner = is_scene_noun(words_[at - 1].singular);
+        if (owner && word().text.ends_with("ing") && peek(Class::possessive, 1))
+            break;  // "scratching its back"
+        if (owner && peek(Class::swap_places)) break;
         if (owner && peek(Class::verb_face) && (peek(Class::direction, 1) || peek(Class::definite, 1))) break;
         const bool telegraphic =  // "bear hat": it wears one
             owner && at == begin + 1 && !phrase.has_determiner() && phrase.attributes.empty() &&
@@ -384,7 +399,12 @@ bool Cursor::take_body(Phrase& phrase, bool split) {
                 ++at;
                 continue;
             }
-            break;
+            const bool tows = phrase.indefinite && phrase.attributes.empty() && !ends_phrase(0, false) &&
+                              (kinds_of(word().text) & Kind::Verb) != 0 && noun_length(1) == 1 &&
+                              (kinds_of(word(1).singular) & Concrete) != 0 && ends_phrase(2, true);
+            if (!tows) break;
+            take_nouns(phrase, split, 2);  // "a tow truck"
+            return true;
         }
         take_nouns(phrase, split, length);
         return true;
@@ -393,6 +413,22 @@ bool Cursor::take_body(Phrase& phrase, bool split) {
     if (at > start && (phrase.attributes.size() > 0) && (phrase.definite || phrase.has_determiner()))
         return true;  // "the red one", "the red"
     return false;
+}
+
+/// "a witch's hat": a kind of hat, of no witch.
+void Cursor::take_maker(Phrase& phrase) {
+    const bool kind = phrase.indefinite && phrase.attributes.empty() && !is_scene_noun(phrase.noun) &&
+                      (kinds_of(phrase.noun) & (Person | Animal)) != 0;
+    if (!kind || !is_owner_mark()) return;
+    Cursor ahead = *this;
+    ++ahead.at;
+    Phrase made;
+    if (!ahead.take_body(made, false) || made.noun.empty() || !made.attributes.empty()) return;
+    phrase.noun += "'s " + made.noun;
+    phrase.typed += "'s " + made.typed;
+    phrase.plural = made.plural;
+    at = ahead.at;
+    phrase.end = at;
 }
 
 void Cursor::take_owner_behind(Phrase& phrase, bool split) {
@@ -505,6 +541,7 @@ bool Cursor::take_phrase(Phrase& phrase, bool split) {
     } else if (has(Class::thing_name, phrase.noun) && (phrase.noun == "one" || phrase.noun == "ones"))
         phrase.noun.clear();
     if (phrase.some_of && phrase.single) phrase.plural = false;
+    take_maker(phrase);
     take_owner_behind(phrase, split);
     if (phrase.definite && !phrase.owner) {  // "the car on the left"
         const auto side = peek(Class::direction);

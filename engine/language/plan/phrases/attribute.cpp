@@ -1,7 +1,7 @@
 // Reading descriptions: colours, materials, patterns, sizes, looks and poses.
 #include <algorithm>
 
-#include "engine/language/plan/grammar/phrase.h"
+#include "engine/language/plan/phrases/phrase.h"
 
 namespace gse::language::plan {
 namespace {
@@ -25,30 +25,6 @@ std::string less_of(const std::string& change) {
     return change;
 }
 
-/// "too red", "too dark": what is asked for is less of it.
-void temper(Attribute& attribute) {
-    constexpr std::pair<std::string_view, std::string_view> Opposites[] = {
-        {"dark", "lighter"},         {"darker", "lighter"},
-        {"light", "darker"},         {"lighter", "darker"},
-        {"bright", "darker"},        {"brighter", "darker"},
-        {"pale", "darker"},          {"paler", "darker"},
-        {"vivid", "less saturated"}, {"colorful", "less saturated"},
-        {"old", "younger"},          {"young", "older"}};
-    if (attribute.quality == Quality::Size) {
-        attribute.value = less_of(attribute.value);
-        return;
-    }
-    for (const auto& [much, wanted] : Opposites)
-        if (attribute.value == much) {
-            attribute.value = wanted;
-            return;
-        }
-    attribute.value = "less " + attribute.value;
-    if (attribute.quality != Quality::Colour && attribute.quality != Quality::Shift)
-        attribute.quality = Quality::State;
-    attribute.typed = attribute.value;
-}
-
 /// "riper", "floppier": no word of the lists, made of an adjective.
 bool is_comparative(const std::string& word) {
     if (word.size() < 5 || !word.ends_with("er")) return false;
@@ -58,7 +34,12 @@ bool is_comparative(const std::string& word) {
                has(Class::material_surface, text);
     };
     const bool doubled = stem[stem.size() - 1] == stem[stem.size() - 2];
-    return describes(stem) || describes(stem + "e") ||
+    const auto vowel = [&](std::size_t back) {
+        return std::string_view("aeiouy").find(stem[stem.size() - back]) != std::string_view::npos;
+    };
+    const bool once = stem.size() == 3 && !vowel(1) && vowel(2) && !vowel(3) && stem[2] != 'w' &&
+                      stem[2] != 'x';  // "biger" lacks a letter
+    return (describes(stem) && !once) || describes(stem + "e") ||
            (stem.ends_with('i') && describes(stem.substr(0, stem.size() - 1) + "y")) ||
            (doubled && describes(stem.substr(0, stem.size() - 1)));
 }
@@ -102,6 +83,29 @@ std::size_t colour_length(std::span<const Word> words, std::string& name) {
 }
 
 }  // namespace
+
+void temper(Attribute& attribute) {
+    constexpr std::pair<std::string_view, std::string_view> Opposites[] = {
+        {"dark", "lighter"},         {"darker", "lighter"},
+        {"light", "darker"},         {"lighter", "darker"},
+        {"bright", "darker"},        {"brighter", "darker"},
+        {"pale", "darker"},          {"paler", "darker"},
+        {"vivid", "less saturated"}, {"colorful", "less saturated"},
+        {"old", "younger"},          {"young", "older"}};
+    if (attribute.quality == Quality::Size) {
+        attribute.value = less_of(attribute.value);
+        return;
+    }
+    for (const auto& [much, wanted] : Opposites)
+        if (attribute.value == much) {
+            attribute.value = wanted;
+            return;
+        }
+    attribute.value = "less " + attribute.value;
+    if (attribute.quality != Quality::Colour && attribute.quality != Quality::Shift)
+        attribute.quality = Quality::State;
+    attribute.typed = attribute.value;
+}
 
 bool Cursor::take_colour(Attribute& attribute, bool in_phrase) {
     std::string name;
@@ -179,6 +183,9 @@ bool Cursor::take_graded(Attribute& attribute) {
 
 /// Adjectives that are in no class: "grumpy", "thatched".
 bool Cursor::take_other_attribute(Attribute& attribute, bool in_phrase) {
+    for (const auto kind :
+         {Class::courtesy, Class::correction, Class::wearing, Class::holding, Class::having, Class::riding})
+        if (peek(kind)) return false;
     if (peek(Class::thing_name) || peek(Class::number) || peek(Class::direction) || peek(Class::like) ||
         peek(Class::sequence))
         return false;
@@ -217,6 +224,7 @@ bool Cursor::take_pattern(Attribute& attribute, bool in_phrase) {
     if (!found) return false;
     const std::string value(meaning(Class::pattern, found.value).value_or(found.value));
     attribute = {Quality::Pattern, value, value, ""};
+    if (value == "rainbow") take(Class::pattern_plain);  // "rainbow-striped"
     Attribute colour;
     Cursor behind = *this;
     if (!in_phrase && behind.take_colour(colour, false) && colour.quality == Quality::Colour &&
