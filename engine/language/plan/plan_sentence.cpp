@@ -100,6 +100,31 @@ std::optional<Plan> with_a_slip(const SentenceWords& sentence, const SceneWords&
 
 }  // namespace
 
+/// "entirely blue and entirely green".
+bool wants_two_wholes(const std::vector<Word>& words, const Plan& plan) {
+    const auto wholly = std::count_if(words.begin(), words.end(),
+                                      [](const Word& word) { return has(Class::wholly, word.text); });
+    return wholly > 1 && std::any_of(plan.steps.begin(), plan.steps.end(), [](const Step& step) {
+               return step.operation == Operation::Recolour && step.text.find(" and ") != std::string::npos;
+           });
+}
+
+/// Words without what stands between commas and tells why or when: "add, if you have the time, a bench".
+std::vector<Word> without_asides(const std::vector<Word>& words) {
+    std::vector<Word> left;
+    for (std::size_t at = 0; at < words.size(); ++at) {
+        const bool comma = words[at].mark && words[at].text == "," && at + 1 < words.size();
+        const auto end =
+            std::find_if(words.begin() + static_cast<std::ptrdiff_t>(std::min(at + 1, words.size())),
+                         words.end(), [](const Word& word) { return word.mark; });
+        const bool aside = comma && end != words.end() && end->text == "," &&
+                           match(Class::aside, std::span(words).subspan(at + 1));
+        if (aside) at = static_cast<std::size_t>(end - words.begin());
+        else left.push_back(words[at]);
+    }
+    return left;
+}
+
 Plan plan_sentence(std::string_view sentence, const SceneWords& scene, std::string_view source) {
     const auto clean = clean_text(sentence);
     if (!clean.refused.empty()) return refusal(clean.refused);
@@ -111,8 +136,13 @@ Plan plan_sentence(std::string_view sentence, const SceneWords& scene, std::stri
     const bool unread = is_refused_for(plan, {reason::NotASentence, reason::Incomplete});
     if (unread || is_refused_for(plan, {reason::NotInScene}))
         if (auto other = with_a_slip(words, scene, source, needed, !unread)) return *other;
-    if (words.words.size() > StoryLength && plan.steps.front().operation == Operation::Refuse)
+    if (words.words.size() > StoryLength && plan.steps.front().operation == Operation::Refuse) {
+        const auto plain = without_asides(words.words);
+        auto shorter = plain.size() < words.words.size() ? Reader(plain, scene, source).read() : plan;
+        if (!shorter.is_refusal()) return shorter;
         return Reader(words.words, scene, source).read_story();
+    }
+    if (wants_two_wholes(words.words, plan)) return refusal(reason::Contradiction);
     if (const auto reason = doubt(words.words, scene, plan); !reason.empty()) return refusal(reason);
     return plan;
 }

@@ -106,6 +106,7 @@ private:
     bool is_plural(const Target& target) const;
     std::optional<Target> ordinal(const Phrase& phrase) const;
     Target owned(const Phrase& phrase) const;
+    std::optional<Target> told_thing(const Phrase& phrase) const;
     std::optional<Target> made_named(const Phrase& phrase) const;
     const SceneWords* scene_;
     std::optional<std::size_t> focus_;

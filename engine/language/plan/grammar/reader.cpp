@@ -266,7 +266,7 @@ void Reader::skip_rest(std::size_t steps) {
 
 bool Reader::ends_well() const {
     Cursor here = c_;
-    while (here.take(Class::as_well) || here.take(Class::courtesy)) {}
+    while ((!here.peek(Class::rather_than) && here.take(Class::as_well)) || here.take(Class::courtesy)) {}
     return here.at_end_of_clause() || here.peek(Class::rather_than) || here.peek(Class::except) ||
            here.peek(Class::conjunction) || here.peek(Class::sequence) || here.peek(Class::contrast) ||
            here.peek(Class::noise) || (here.peek(Class::plain_verb) && starts_verb(here.at - c_.at));
@@ -329,7 +329,7 @@ bool Reader::in_place_of(Target& target) {
     ++ahead.at;
     Cursor place = ahead;
     place.take(Class::definite);
-    if (takes && place.is(Class::word_place) && place.peek(Class::of, 1)) {  // "the place of the bear"
+    if (place.is(Class::word_place) && place.peek(Class::of, 1)) {  // "the place of the bear"
         place.at += 2;
         if (!place.take_phrase(owner)) return false;
         ahead.at = place.at;

@@ -64,6 +64,7 @@ private:
     bool turn_clause();
     std::optional<bool> use_clause(bool substitute);
     bool replace_clause();
+    bool become_each(const Targets& targets, const Phrase& first);
     bool give_clause();
     bool dress_clause();
     bool cover_clause();
@@ -95,6 +96,8 @@ private:
     std::string take_amount();
     void move_way(const Target& target, const Match& direction, std::string amount);
     bool skip_origin();
+    void skip_particle();
+    bool poses_so(std::string_view verb, const Targets& targets);
     bool move_to(const Target& target, const Match& relation, bool from = false);
     bool move_clause();
     std::string take_factor(bool scale, bool smaller);
@@ -119,6 +122,8 @@ private:
     bool becomes_bare(const Phrase& phrase);
     bool says_of(const Phrase& phrase) const;
     bool gets_something() const;
+    bool moves_part() const;
+    bool names_need() const;
     bool coloned(Phrase& phrase);
     bool noun_clause();
     std::optional<bool> has_something(const Targets& subjects);
@@ -258,7 +263,7 @@ private:
     std::vector<std::string> not_there_;  // what orders that are left out are about
     std::optional<Target> described_;
     bool described_definite_ = false;  // "the bear", not "a bear"
-    bool requested_ = false, prefers_ = false, refused_part_ = false;
+    bool requested_ = false, prefers_ = false, puts_ = false, refused_part_ = false;
     std::size_t word_count_ = 0;
 };
 

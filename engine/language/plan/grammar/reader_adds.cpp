@@ -240,6 +240,7 @@ bool Reader::add_one() {
         return move_target(found);
     }
     if (phrase.noun.empty()) return fail(reason::Incomplete);
+    if (c_.is(Class::word_there) && c_.peek(Class::rather_than, 1)) ++c_.at;  // "put a cat there instead of"
     Cursor choice = c_;
     if (choice.take(Class::alternative)) return fail(reason::Ambiguous);
     if (one_more(phrase)) return true;
@@ -255,7 +256,8 @@ bool Reader::add_one() {
         if (!move_target(found)) return false;
         return true;
     }
-    if (!found.found() && phrase.definite && !phrase.possessive && is_worn(phrase) &&
+    const bool known = puts_ && (kinds_of(phrase.noun) & (Artifact | Animal | Person | Vehicle | Plant)) != 0;
+    if (!found.found() && phrase.definite && !phrase.possessive && (is_worn(phrase) || known) &&
         found.kind == Target::Kind::Missing) {
         missing_ = phrase.noun;  // "place the hat on the grass"
         return fail(reason::NotInScene);
@@ -284,6 +286,8 @@ bool Reader::add_one() {
 
 bool Reader::add_clause() {
     const bool paints = !c_.peek(Class::verb_add);
+    const auto& base = c_.word().base;
+    puts_ = base == "put" || base == "place" || base == "set" || base == "move";
     if (!c_.take(Class::verb_add) && !c_.take(Class::verb_recolour) && !c_.take(Class::verb_carve) &&
         !c_.take(Class::verb_make) && !c_.take(Class::verb_move))
         return false;
@@ -435,7 +439,11 @@ bool Reader::dress_clause() {
     ++c_.at;
     Attribute colour;
     Cursor ahead = c_;
-    if (ahead.take_attribute(colour, false) && ahead.at_end_of_clause()) return false;
+    if (ahead.take_attribute(colour, false) && ahead.at_end_of_clause()) {
+        if (colour.quality != Quality::Pattern) return false;
+        c_.at = ahead.at;  // "dress the bear up in stripes"
+        return apply_all(targets, {colour});
+    }
     return has_list(targets.front(), "worn by");
 }
 

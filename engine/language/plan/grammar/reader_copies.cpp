@@ -227,7 +227,7 @@ bool Reader::swap_clause() {
     if (of.take_phrase(quality) && quality.owner && !is_part(quality))
         return fail(reason::NotASentence);  // "the colors of"
     if (!objects(targets)) return false;
-    if (c_.at_end_of_clause() && swap_all(targets)) return true;
+    if (ends_well() && swap_all(targets)) return true;
     if (!reason_.empty()) return false;
     if (targets.size() == 1 && (c_.is(Class::word_with) || c_.is(Class::word_and))) {
         Cursor ahead = c_;

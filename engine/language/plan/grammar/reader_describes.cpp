@@ -46,7 +46,9 @@ bool Reader::describe_part(const Phrase& phrase, const Target& found) {
     Cursor colour = c_;  // "paw pads in pink"
     const bool coloured = colour.take(Class::relation).value == "in" && !colour.take_attributes().empty() &&
                           colour.at_end_of_clause();
-    const bool placed = phrase.plural && !phrase.has_determiner() && c_.peek(Class::relation) && !coloured;
+    const bool placed =
+        (phrase.plural && !phrase.has_determiner() && c_.peek(Class::relation) && !coloured) ||
+        c_.is(Class::word_for);  // "wings for the bear"
     if (attributes.empty() && (phrase.indefinite || placed) && !phrase.owner)
         return describe_new(phrase);  // "a chimney on the house", "leaves on the pavement"
     const bool own_worn = is_worn(phrase) && !phrase.owner && (kinds_of(phrase.noun) & Body) == 0;
@@ -98,6 +100,9 @@ bool Reader::describe_nameless(const Phrase& phrase) {
     if (phrase.indefinite && !phrase.definite && phrase.attributes.size() > 1 &&
         (last == Quality::State || last == Quality::Other) && !described_)
         return fail(reason::NotASentence);  // "a blue bare": what is blue is not said
+    const bool bare = phrase.indefinite && !phrase.definite && !described_ && last == Quality::State &&
+                      (c_.peek(Class::wearing) || c_.peek(Class::holding) || c_.peek(Class::having));
+    if (bare) return fail(reason::NotASentence);  // "a bare wearing a hat"
     auto target = phrase.definite ? d_.resolve(phrase) : d_.focus();
     Cursor whose = c_;
     Phrase bearer;
@@ -110,20 +115,6 @@ bool Reader::describe_nameless(const Phrase& phrase) {
     return apply_all({target}, phrase.attributes);
 }
 
-/// "an empty lawn", "an empty table": what stands there goes.
-bool Reader::describe_empty(const Phrase& phrase, const Target& found) {
-    if (phrase.attributes.empty() || !has(Class::empty, phrase.attributes.front().typed)) return false;
-    const bool on_ground = found.thing && d_.scene().things[*found.thing].is_ground;
-    if (on_ground && d_.focus().found()) {
-        d_.remove(d_.focus());
-        return true;
-    }
-    const auto on = things_on(found);
-    if (on.empty() || !c_.at_end_of_clause()) return false;
-    remove_all(on);
-    return true;
-}
-
 /// "bear hat red", "golden bear grass": what stands behind it without a joint.
 void Reader::describe_telegraphic(const Target& found) {
     Cursor worn = c_;
@@ -132,6 +123,12 @@ void Reader::describe_telegraphic(const Target& found) {
         clothes.naming == Naming::Thing && (worn.peek(Class::colour) || worn.at_end_of_clause())) {
         c_.at = worn.at;
         nested(d_.add(clothes, "worn by", {found}), found);
+    }
+    Cursor none = c_;
+    Phrase lacking;
+    if (none.take_phrase(lacking) && lacking.none && !lacking.noun.empty()) {  // "bear no hat"
+        c_.at = none.at;
+        if (!lack(found, lacking)) c_.at = none.at;
     }
     Cursor last = c_;
     Phrase ground;
@@ -258,6 +255,12 @@ bool Reader::stands_by_other(const Phrase& phrase) const {
         return found.reference.root() != focus.reference.root();
     if (!found.thing || found.thing == focus.thing || d_.scene().things[*found.thing].is_ground) return false;
     if (relation.value == "above") return true;  // "a dragon above the castle"
+    const auto lives = [](const std::string& noun) {
+        return has(Class::animal, noun) || (kinds_of(noun) & (Animal | Person)) != 0;
+    };
+    const bool backdrop = has(Class::place, found.reference.root()) && relation.value == "in front of";
+    if (backdrop && lives(phrase.noun) && lives(focus.reference.root()))
+        return false;  // "a dragon in front of"
     return (kinds_of(phrase.noun) & kinds_of(d_.scene().things[*focus.thing].noun) & Concrete) == 0;
 }
 
@@ -528,8 +531,12 @@ bool Reader::attribute_clause() {
     const auto target = made ? *d_.last() : described_ && described_->found() ? *described_ : d_.focus();
     Attribute attribute;
     Cursor ahead = c_;
-    ahead.take(Class::article);
+    const auto degree = ahead.peek(Class::degree).length;  // "a little bit bluer"
+    const bool article = degree < 2 && ahead.take(Class::article).length > 0;
     const bool attributes = ahead.take_attribute(attribute, false);
+    const bool acts = ahead.peek(Class::wearing) || ahead.peek(Class::holding) || ahead.peek(Class::having);
+    if (article && acts && attribute.quality == Quality::State)
+        return fail(reason::NotASentence);  // "a bare wearing a hat"
     const bool begins = c_.peek(Class::relation) || c_.peek(Class::wearing) || c_.peek(Class::holding) ||
                         c_.peek(Class::having) || c_.peek(Class::made_of) ||
                         c_.peek(Class::inverse_relation) || c_.peek(Class::riding) || c_.peek(Class::like) ||

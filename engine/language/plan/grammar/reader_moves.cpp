@@ -68,6 +68,7 @@ bool Reader::skip_origin() {
 bool Reader::move_to(const Target& target, const Match& relation, bool from) {
     auto name = relation ? relation.value : std::string_view("beside");
     c_.at += relation ? relation.length : 1;
+    if (name == "in" && in_colour(target)) return true;  // "put the bear in camouflage"
     if (c_.is(Class::word_to) || c_.is(Class::word_of)) ++c_.at;
     Phrase where;
     if (!c_.take_phrase(where)) { return fail(reason::Incomplete); }
@@ -123,6 +124,14 @@ bool Reader::move_to(const Target& target, const Match& relation, bool from) {
     return true;
 }
 
+/// Steps over "over" and "down" before a place: "over to the statue", "down on the floor", "back on it".
+void Reader::skip_particle() {
+    const bool over = c_.word().text == "over" && (c_.is(Class::word_to, 1) || c_.peek(Class::relation, 1));
+    const bool down = (c_.is(Class::word_down) || c_.word().text == "back") && c_.peek(Class::relation, 1) &&
+                      !c_.is(Class::word_by, 1) && c_.peek(Class::relation).length < 2;
+    if (over || down) ++c_.at;
+}
+
 /// A thing that is there goes to another place.
 bool Reader::move_target(const Target& target) {
     c_.take(Class::degree);
@@ -147,9 +156,7 @@ bool Reader::move_target(const Target& target) {
         }
         c_.take(Class::degree);
         while (c_.take(Class::emerging)) {}
-        const bool over =
-            c_.word().text == "over" && (c_.is(Class::word_to, 1) || c_.peek(Class::relation, 1));
-        if (over) ++c_.at;  // "over to the right side of the statue"
+        skip_particle();
         Target whose;
         if (const auto side = take_side(whose); !side.empty()) {
             d_.move(target, "move " + std::string(side), whose);
@@ -183,10 +190,23 @@ bool Reader::move_target(const Target& target) {
     return moved || fail(reason::Incomplete);
 }
 
+/// "(lay the bear) down": a pose.
+bool Reader::poses_so(std::string_view verb, const Targets& targets) {
+    const std::string_view pose = verb == "lay"     ? "lying"
+                                  : verb == "sit"   ? "sitting"
+                                  : verb == "stand" ? "standing"
+                                                    : "";
+    if (pose.empty() || !(c_.is(Class::word_down) || c_.is(Class::word_up))) return false;
+    ++c_.at;
+    for (const auto& target : targets) d_.step(Operation::Pose, target, std::string(pose));
+    return true;
+}
+
 bool Reader::move_clause() {
     const auto lift = c_.peek(Class::verb_lift);
     const auto verb = c_.peek(Class::verb_move);
     if (!verb && !lift) return false;
+    const auto base = c_.word().text;
     c_.at += std::max(verb.length, lift.length);
     Targets targets;
     Phrase first;
@@ -200,8 +220,10 @@ bool Reader::move_clause() {
         return false;
     }
     if (found.kind == Target::Kind::There && !found.thing && found.reference.links.size() > 1)
-        return false;  // a part: a pose
+        return false;                 // a part: a pose
+    if (first.another) return false;  // "put another flower in the vase"
     if (!objects(targets)) return false;
+    if (poses_so(base, targets)) return ends_well();
     Cursor way = c_;
     while (way.take(Class::degree) || way.take(Class::emerging)) {}
     const bool goes =

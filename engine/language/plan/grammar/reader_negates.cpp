@@ -214,8 +214,8 @@ bool Reader::negative_clause() {
 /// "(should) not be here", "not be red but blue".
 bool Reader::should_not(const Targets& subjects) {
     if (c_.peek(Class::copula)) c_.take(Class::copula);
-    if (c_.is(Class::word_here) || c_.is(Class::word_there)) {  // "should not be here"
-        ++c_.at;
+    if (const auto present = c_.peek(Class::present)) {  // "should not be here"
+        c_.at += present.length;
         for (const auto& subject : subjects) d_.remove(subject);
         return true;
     }
@@ -224,6 +224,13 @@ bool Reader::should_not(const Targets& subjects) {
     const bool so = c_.word().text == "so" || c_.word().text == "that" || c_.is(Class::word_too);
     if (c_.word().text == "that") ++c_.at;
     auto attributes = c_.take_attributes();
+    Phrase same;
+    if (Cursor but = c_; attributes.empty() && but.take_phrase(same) && d_.resolve(same).found()) {
+        but.take_mark(',');
+        if (!but.take(Class::contrast)) return false;
+        c_.at = but.at;  // "should not be a bear but a wolf"
+        return complement(subjects);
+    }
     if (attributes.empty()) return false;
     if (so && c_.at_end_of_clause()) {  // "should not be so big"
         for (auto& each : attributes) temper(each);
@@ -310,8 +317,11 @@ bool Reader::lack_list(const Target& subject) {
             d_.nothing_asked();
             continue;
         }
-        if (!c_.take_phrase(phrase)) return false;
-        if (!lack(subject, phrase)) return false;
+        if (c_.take(Class::something)) {  // "not wearing anything"
+            undress();
+            continue;
+        }
+        if (!c_.take_phrase(phrase) || !lack(subject, phrase)) return false;
 
     } while (list_goes_on());
     return true;

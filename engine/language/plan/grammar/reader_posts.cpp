@@ -64,6 +64,12 @@ bool Reader::own_pattern(const Target& subject, const Phrase& phrase) {
             value = attribute.value, colour = attribute.colour.empty() ? colour : attribute.colour;
     }
     const bool named = has(Class::pattern_word, last);
+    if (Cursor of = c_; named && value.empty() && of.take(Class::of)) {  // "a pattern of hearts"
+        if (const auto motif = of.take(Class::pattern)) {
+            c_.at = of.at;
+            value = motif.value;
+        }
+    }
     if (named && first != last && has(Class::material, first) && !has(Class::pattern, first)) {
         const auto stuff = *meaning(Class::material, first);  // "a wood grain"
         d_.apply(subject, {Quality::Material, std::string(stuff), std::string(stuff), ""});

@@ -267,6 +267,15 @@ bool Reader::relate(const Target& subject, std::string_view relation, const Phra
         else apply_all({found}, phrase.attributes);
         return true;
     }
+    const bool like = there && subject.thing && found.reference == subject.reference && phrase.indefinite;
+    const bool other = like && std::any_of(phrase.attributes.begin(), phrase.attributes.end(),
+                                           [&](const Attribute& each) { return !d_.is_so(subject, each); });
+    if (other) {  // "a red bear next to a blue bear"
+        Phrase second = phrase;
+        second.another = true;
+        nested(d_.add(second, inverse(relation), {subject}), subject);
+        return true;
+    }
     if (there) { return relate_there(subject, relation, phrase, found); }
     if (found.kind == Target::Kind::Ambiguous) return fail(reason::Ambiguous);
     if (phrase.noun.empty() || phrase.naming != Naming::Thing) return false;
@@ -393,7 +402,7 @@ bool Reader::style_clause() {
         return false;
     }
     ahead = c_;
-    if (ahead.is(Class::word_in) || ahead.is(Class::word_as)) ++ahead.at;
+    if (ahead.is(Class::word_in) || ahead.is(Class::word_as) || ahead.is(Class::word_like)) ++ahead.at;
     c_.at = ahead.at;
     if (style_text({d_.scene_target()})) {
         Cursor whom = c_, last = c_;

@@ -21,6 +21,13 @@ bool stays(Cursor& here) {
 
 /// "off the bear", "out of here", "from the table"; a part is of what is named there.
 void Reader::skip_from(Targets& targets) {
+    Cursor with = c_;  // "the vase with the flower"
+    Phrase along;
+    if (with.take(Class::having) && with.take_phrase(along) && along.definite && d_.resolve(along).thing &&
+        with.at_end_of_clause()) {
+        c_.at = with.at;
+        targets.push_back(d_.resolve(along));
+    }
     while (c_.take(Class::gone) || c_.is(Class::word_off) || c_.is(Class::word_out) ||
            c_.is(Class::word_down) || c_.is(Class::word_away)) {
         if (c_.is(Class::word_off) || c_.is(Class::word_out) || c_.is(Class::word_down) ||
@@ -73,7 +80,10 @@ bool Reader::take_things_there(Targets& targets) {
     if (!ahead.take_phrase(place) || place.naming != Naming::Thing) return true;
     const auto found = d_.resolve(place);
     if (!found.thing || d_.scene().things[*found.thing].is_ground) return true;
-    const auto on = things_on(found);
+    Targets worn;  // "everything off the bear"
+    for (std::size_t i = 0; d_.can_wear(found) && i < d_.scene().things.size(); ++i)
+        if (d_.scene().things[i].is_worn) worn.push_back(d_.target_of_thing(i));
+    const auto on = worn.empty() ? things_on(found) : worn;
     if (on.empty()) return fail(reason::Ambiguous);
     c_.at = ahead.at;
     targets = on;
@@ -366,6 +376,20 @@ bool Reader::fire_clause() {
     Phrase flames;
     flames.noun = flames.typed = std::string(fire.value);
     d_.add(flames, "on", {target});
+    return true;
+}
+
+/// "an empty lawn", "an empty table": what stands there goes.
+bool Reader::describe_empty(const Phrase& phrase, const Target& found) {
+    if (phrase.attributes.empty() || !has(Class::empty, phrase.attributes.front().typed)) return false;
+    const bool on_ground = found.thing && d_.scene().things[*found.thing].is_ground;
+    if (on_ground && d_.focus().found()) {
+        d_.remove(d_.focus());
+        return true;
+    }
+    const auto on = things_on(found);
+    if (on.empty() || !c_.at_end_of_clause()) return false;
+    remove_all(on);
     return true;
 }
 

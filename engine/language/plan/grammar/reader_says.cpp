@@ -128,7 +128,8 @@ bool Reader::there_is_clause() {
 /// "instead of a bear I want a cat".
 bool Reader::instead_clause() {
     Target there;
-    if (const std::size_t start = c_.at; stands_where(there)) {  // "where the bear is, put a fountain"
+    if (const std::size_t start = c_.at;
+        stands_where(there) || (c_.is(Class::word_in) && in_place_of(there))) {  // "where the bear is, put"
         skip_lead_in();
         while (c_.take(Class::verb_add) || c_.take(Class::there_is) || c_.take(Class::verb_make)) {}
         Phrase phrase;
@@ -267,8 +268,7 @@ bool Reader::predicate(const Targets& subjects) {
         return has_list(subjects.front(), "with") || back();
     }
     const bool modal = c_.take(Class::modal).length > 0;
-    if (modal && (c_.peek(Class::article) || c_.peek(Class::number) || c_.peek(Class::some)) &&
-        subjects.size() == 1)
+    if (modal && subjects.size() == 1 && names_need())
         return has_list(subjects.front(), "with") || back();  // "the bear needs a hat"
     while (c_.take(Class::as_well)) {}
     if (c_.peek(Class::gone)) {
@@ -304,7 +304,8 @@ bool Reader::predicate(const Targets& subjects) {
         if (c_.at_end_of_clause()) return back();
         return complement(subjects) || back();
     }
-    if (c_.peek(Class::verb_pose) && subjects.front().found()) return pose_text(subjects) || back();
+    if ((c_.peek(Class::verb_pose) || moves_part()) && subjects.front().found())
+        return pose_text(subjects) || back();
     return back();
 }
 
@@ -313,11 +314,22 @@ std::optional<bool> Reader::statement(const std::vector<Phrase>& phrases, bool s
     const auto& phrase = phrases.front();
     Targets subjects;
     bool all = true;
-    if (phrases.size() == 1 && phrase.indefinite && is_worn(phrase) && c_.peek(Class::emerging) &&
-        d_.things_named(phrase).empty()) {  // "a crown sits on its head"
+    const bool is_new = phrases.size() == 1 && phrase.indefinite && d_.things_named(phrase).empty();
+    if (is_new && is_worn(phrase) && c_.peek(Class::emerging)) {  // "a crown sits on its head"
         Targets made;
         return place_new(phrase, made);
     }
+    if (Cursor place = c_; is_new && is_thing(phrase) && !d_.kin_of(phrase) && place.take(Class::modal) &&
+                           (place.take(Class::copula) || place.peek(Class::emerging))) {
+        place.take(Class::emerging);
+        if (place.peek(Class::relation)) {  // "a sign should stand in front of the bear"
+            Targets made;
+            c_.at = place.at;
+            return place_new(phrase, made);
+        }
+    }
+    if (phrase.noun.empty() && phrase.indefinite && !phrase.definite)
+        return std::nullopt;  // "a bare wearing"
     const auto named = d_.things_named(phrase);
     const bool exact = std::any_of(named.begin(), named.end(),
                                    [&](std::size_t i) { return d_.scene().things[i].noun == phrase.noun; });
@@ -375,6 +387,20 @@ bool Reader::becomes_bare(const Phrase& phrase) {
     return become({found}, other);
 }
 
+/// Tells whether a thing stands there that someone may need: "(needs) a hat", "(needs) wings".
+bool Reader::names_need() const {
+    Cursor needed = c_;
+    Phrase clothes;
+    return c_.peek(Class::article) || c_.peek(Class::number) || c_.peek(Class::some) ||
+           (needed.take_phrase(clothes) && is_worn(clothes) && !clothes.definite);
+}
+
+/// "raises its arms".
+bool Reader::moves_part() const {
+    const auto raises = c_.peek(Class::verb_raise);
+    return raises && (c_.peek(Class::possessive, raises.length) || c_.is(Class::word_both, raises.length));
+}
+
 /// "gets a scarf", "receives two medals".
 bool Reader::gets_something() const {
     const std::size_t at = c_.is(Class::word_has) || c_.is(Class::word_have) ? 1 : 0;  // "has grown a beard"
@@ -394,7 +420,7 @@ bool Reader::says_of(const Phrase& phrase) const {
            c_.peek(Class::gone) || c_.is_mark(":>") || c_.peek(Class::verb_become) ||
            c_.peek(Class::look_word) ||
            (phrase.has_determiner() &&
-            (c_.peek(Class::wearing) || c_.peek(Class::holding) ||
+            (c_.peek(Class::wearing) || c_.peek(Class::holding) || moves_part() ||
              (c_.is(Class::word_has) || c_.is(Class::word_have)) || c_.peek(Class::verb_pose)));
 }
 

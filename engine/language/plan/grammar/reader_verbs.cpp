@@ -565,7 +565,28 @@ bool Reader::replace_clause() {
         d_.move(targets[0], "swap with", other);
         return true;
     }
-    return become(targets, phrase);
+    return targets.size() > 1 ? become_each(targets, phrase) : become(targets, phrase);
+}
+
+/// "replace the bear and the grass with a cat and snow": one by one; a single thing takes the place of all.
+bool Reader::become_each(const Targets& targets, const Phrase& first) {
+    std::vector<Phrase> things{first};
+    Cursor list = c_;
+    for (Phrase next; (list.take_mark(','), list.take(Class::conjunction), list.at > c_.at) &&
+                      !starts_verb(list.at - c_.at) && list.take_phrase(next) && !next.noun.empty();) {
+        things.push_back(next);
+        c_.at = list.at;
+    }
+    if (things.size() == targets.size()) {
+        for (std::size_t i = 0; i < things.size(); ++i)
+            if (!become({targets[i]}, things[i])) return false;
+        return true;
+    }
+    if (things.size() > 1) return fail(reason::NotASentence);
+    if (!first.indefinite || first.plural) return become(targets, first);
+    if (!become({targets.front()}, first)) return false;
+    for (std::size_t i = 1; i < targets.size(); ++i) d_.remove(targets[i]);
+    return true;
 }
 
 }  // namespace gse::language::plan

@@ -283,10 +283,10 @@ std::optional<Target> Draft::ordinal(const Phrase& phrase) const {
         return Target{Target::Kind::Missing, {}, std::nullopt, std::nullopt, "second " + phrase.noun};
     if (side != phrase.attributes.end() && !phrase.owner && !is_part(phrase)) {  // "the other one"
         std::vector<std::size_t> others;
+        const auto first = focus_ ? focus_ : last_ ? last_->thing : std::nullopt;
         for (std::size_t i = 0; i < scene_->things.size(); ++i)
-            if (!scene_->things[i].is_ground && !scene_->things[i].is_worn && focus_ != i)
-                others.push_back(i);
-        if (side->value == "other" && focus_ && others.size() == 1 &&
+            if (!scene_->things[i].is_ground && !scene_->things[i].is_worn && first != i) others.push_back(i);
+        if (side->value == "other" && first && others.size() == 1 &&
             (phrase.noun.empty() || names(scene_->things[others.front()], phrase)))
             return target_of_thing(others.front());
         if (things_named(phrase).size() == 1)
@@ -309,6 +309,17 @@ Target Draft::owned(const Phrase& phrase) const {
     return is_worn(phrase) && !is_part(phrase) && !(kinds_of(phrase.noun) & Body)
                ? missing
                : part_target(owner, phrase);
+}
+
+/// "the blue thing": the only one that is so.
+std::optional<Target> Draft::told_thing(const Phrase& phrase) const {
+    if (!has(Class::thing_name, phrase.noun) || !phrase.definite || phrase.attributes.empty())
+        return std::nullopt;
+    std::vector<std::size_t> told;
+    for (std::size_t i = 0; i < scene_->things.size(); ++i)
+        if (!scene_->things[i].is_ground && told_of(scene_->things[i], phrase.attributes.front()))
+            told.push_back(i);
+    return told.size() == 1 ? std::optional(target_of_thing(told.front())) : std::nullopt;
 }
 
 Target Draft::resolve(const Phrase& phrase) const {
@@ -352,6 +363,7 @@ Target Draft::resolve(const Phrase& phrase) const {
         return of_several(phrase, found);
     }
     if (found.size() > 1) return of_several(phrase, found);
+    if (const auto told = told_thing(phrase)) return *told;
     if (has(Class::thing_name, phrase.noun) && phrase.definite)  // "every item on the desk" is not one thing
         return phrase.count == "all" ? pronoun(Naming::They) : focus();
     const bool new_thing = phrase.indefinite && !phrase.possessive && has(Class::thing, phrase.noun) &&

@@ -67,6 +67,7 @@ std::size_t colour_length(std::span<const Word> words, std::string& name) {
         }
     }
     const auto& word = words[0].text;
+    if (has(Class::pattern_plain, word)) return 0;  // "rainbow-colored"
     if (word.ends_with("-colored") && word.size() > 8) {
         name = word;
         return 1;
@@ -183,8 +184,8 @@ bool Cursor::take_graded(Attribute& attribute) {
 
 /// Adjectives that are in no class: "grumpy", "thatched".
 bool Cursor::take_other_attribute(Attribute& attribute, bool in_phrase) {
-    for (const auto kind :
-         {Class::courtesy, Class::correction, Class::wearing, Class::holding, Class::having, Class::riding})
+    for (const auto kind : {Class::courtesy, Class::correction, Class::wearing, Class::holding, Class::having,
+                            Class::riding, Class::degree, Class::all})
         if (peek(kind)) return false;
     if (peek(Class::thing_name) || peek(Class::number) || peek(Class::direction) || peek(Class::like) ||
         peek(Class::sequence))

@@ -26,12 +26,12 @@ constexpr Class EndingClasses[] = {Class::relation,    Class::inverse_relation,
 
 /// Classes that end a phrase when its noun is there already: "the bear smile", "the bear upside down".
 constexpr Class EndingAfterNoun[] = {
-    Class::copula,  Class::pose,        Class::verb_pose,   Class::look_word, Class::emerging,
-    Class::gone,    Class::direction,   Class::flipping,    Class::turning,   Class::degree,
-    Class::as_well, Class::holding,     Class::riding,      Class::times,     Class::more,
-    Class::less,    Class::verb_become, Class::verb_keep,   Class::instead,   Class::courtesy,
-    Class::number,  Class::another,     Class::fire_words,  Class::clockwise, Class::verb_face,
-    Class::none,    Class::sequence,    Class::subordinate, Class::word_there};
+    Class::copula,  Class::pose,        Class::verb_pose,   Class::look_word,  Class::emerging,
+    Class::gone,    Class::direction,   Class::flipping,    Class::turning,    Class::degree,
+    Class::as_well, Class::holding,     Class::riding,      Class::times,      Class::more,
+    Class::less,    Class::verb_become, Class::verb_keep,   Class::instead,    Class::courtesy,
+    Class::number,  Class::another,     Class::fire_words,  Class::clockwise,  Class::verb_face,
+    Class::none,    Class::sequence,    Class::subordinate, Class::word_there, Class::word_does};
 
 constexpr Class NounClasses[] = {
     Class::compound,    Class::worn,         Class::held,         Class::part,        Class::ground,
@@ -224,6 +224,9 @@ void Cursor::take_determiners(Phrase& phrase) {
         else if (take(Class::all)) phrase.count = "all", phrase.definite = true;
         else if (take(Class::none)) phrase.none = true;
         else if (take(Class::some)) phrase.count = "some";
+        else if (const auto degree = peek(Class::degree);
+                 is(Class::word_a) && (degree.length > 2 || (degree.length == 2 && !is(Class::size, 1))))
+            at += degree.length;  // "a little bit bluer"
         else if (take(Class::article)) phrase.indefinite = true;
         else if (peek(Class::definite)) take(Class::definite), phrase.definite = true;
         else if (take(Class::possessive)) phrase.possessive = true;
@@ -333,7 +336,8 @@ void Cursor::take_nouns(Phrase& phrase, bool split, std::size_t length) {
         const bool owner = is_scene_noun(words_[at - 1].singular);
         if (owner && word().text.ends_with("ing") && peek(Class::possessive, 1))
             break;  // "scratching its back"
-        if (owner && peek(Class::swap_places)) break;
+        const bool raises = peek(Class::verb_raise).length == 1 && peek(Class::possessive, 1);
+        if (owner && (raises || peek(Class::swap_places))) break;  // "the bear raises its arms"
         if (owner && peek(Class::verb_face) && (peek(Class::direction, 1) || peek(Class::definite, 1))) break;
         const bool telegraphic =  // "bear hat": it wears one
             owner && at == begin + 1 && !phrase.has_determiner() && phrase.attributes.empty() &&
@@ -481,7 +485,7 @@ void Cursor::take_whole_behind(Phrase& phrase) {
     Phrase whole;
     const bool holds = has(Class::container, phrase.noun) || has(Class::held, phrase.noun);
     const bool many = ahead.word().text != ahead.word().singular && !is_scene_noun(phrase.noun) &&
-                      !has(Class::part, phrase.noun);
+                      (!has(Class::part, phrase.noun) || has(Class::worn, phrase.noun));
     if (!ahead.take_phrase(whole) && (holds || many) && ahead.noun_length() > 0) {  // "a bowl of honey"
         whole.noun = whole.typed = ahead.word().text;
         ++ahead.at;
@@ -513,7 +517,7 @@ void Cursor::take_whole_behind(Phrase& phrase) {
     } else if (!whole.definite && whole.naming == Naming::Thing && !whole.noun.empty() &&
                (!has(Class::material, whole.noun) ||
                 (whole.plural && (has(Class::heap, phrase.noun) || has(Class::worn, phrase.noun)))) &&
-               !part &&
+               (!part || has(Class::worn, phrase.noun)) &&
                ((kinds_of(phrase.noun) & (Artifact | Perhaps | Other | Object)) != 0 ||
                 has(Class::thing, phrase.noun)) &&
                (!is_scene_noun(phrase.noun) || whole.indefinite)) {

@@ -99,8 +99,8 @@ const std::regex& code_pattern() {
 }
 
 /// Marks that a prompt has for programs that draw, and their plain form.
-const std::array<Rule, 23>& noise_rules() {
-    static const std::array<Rule, 23> Rules = {{
+const std::array<Rule, 24>& noise_rules() {
+    static const std::array<Rule, 24> Rules = {{
         {std::regex(R"(<(lora|lyco|hypernet|embedding|ti)[^>]*>)"), " "},
         {std::regex(R"(\bembedding:\S+)"), " "},
         {std::regex(R"(\bf/[0-9.]+|\b[0-9]+ ?mm\b|\biso ?[0-9]+\b)"), " "},
@@ -115,6 +115,7 @@ const std::array<Rule, 23>& noise_rules() {
         {std::regex(R"(-+>|=+>|=|>)"), " > "},
         {std::regex("\xe2\x80\x94|(^|\\s)-{1,3}(?=\\s)"), " , "},
         {std::regex(R"(\.{2,}|\xe2\x80\xa6)"), " . "},
+        {std::regex(R"((!+)1+(?=\s|$))"), "$1"},
         {std::regex(R"(\s\+\s|&)"), " and "},
         {std::regex(R"(\bw/o\b)"), " without "},
         {std::regex(R"(\bw/)"), " with "},

@@ -57,7 +57,7 @@ constexpr std::string_view ClassNames[] = {
     "word_does", "verb_need", "quality", "heap", "facial_hair", "liked", "verb_toss", "copy_name",
     "modal_not", "weather_goes", "complaint", "word_what", "cloth", "before_place",
     "stuff_of", "place_word", "stuff_noun", "quality_word", "swap_places",
-    "past_be"};
+    "past_be", "wholly", "aside", "present"};
 // clang-format on
 static_assert(std::size(ClassNames) == ClassCount);
 

@@ -47,7 +47,7 @@ enum class Class : std::uint16_t {
     furniture_flat, word_into, word_years, word_both, ordinal, word_does, verb_need, quality, heap,
     facial_hair, liked, verb_toss, copy_name, modal_not, weather_goes, complaint, word_what,
     cloth, before_place, stuff_of, place_word, stuff_noun, quality_word, swap_places,
-    past_be,
+    past_be, wholly, aside, present,
     Count
     // clang-format on
 };
