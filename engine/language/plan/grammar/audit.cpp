@@ -165,6 +165,15 @@ bool leaves_unsaid(Words words, const SceneWords& scene, const Texts& said) {
             at += 2;
             continue;
         }
+        if (const auto compound = match(Class::compound, here); compound.length > 1) {
+            Texts meant;
+            add_words(meant, compound.value);
+            if (std::none_of(meant.begin(), meant.end(),
+                             [&](const auto& each) { return said.contains(each); }))
+                return true;
+            at += compound.length;
+            continue;
+        }
         if (const auto fixed = longest(here, Fixed); fixed > 0) {
             at += fixed;
             continue;

@@ -354,6 +354,12 @@ std::optional<Target> Draft::removed_last() const {
     return std::nullopt;
 }
 
+bool Draft::is_removed(const Target& target) const {
+    return std::any_of(steps_.begin(), steps_.end(), [&](const Step& step) {
+        return step.operation == Operation::Remove && step.subject == target.reference;
+    });
+}
+
 void Draft::drop_last() {
     if (!steps_.empty()) steps_.pop_back();
     last_.reset();

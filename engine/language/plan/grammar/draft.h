@@ -89,6 +89,7 @@ public:
     bool last_is(const Target& made) const { return made.step && *made.step + 1 == steps_.size(); }
     /// Thing that the last step removes.
     std::optional<Target> removed_last() const;
+    bool is_removed(const Target& target) const;
     /// Takes the last step back ("no wait", "take it off again").
     void drop_last();
     std::size_t size() const { return steps_.size(); }

@@ -123,6 +123,10 @@ private:
     bool says_of(const Phrase& phrase) const;
     bool gets_something() const;
     bool moves_part() const;
+    bool takes_off() const;
+    bool take_off();
+    bool takes_alone(Cursor& ahead, Phrase& phrase) const;
+    bool is_to_move(const Target& subject);
     bool names_need() const;
     bool coloned(Phrase& phrase);
     bool noun_clause();

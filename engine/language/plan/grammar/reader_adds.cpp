@@ -121,7 +121,8 @@ bool Reader::place_aside(const Target& thing) {
 bool Reader::place_new(const Phrase& phrase, Targets& made) {
     if (!is_thing(phrase)) return false;
     const auto focus = d_.focus();
-    const auto bearer = d_.last() && d_.last()->found() ? *d_.last() : focus;
+    const bool last = d_.last() && d_.last()->found() && !d_.is_removed(*d_.last());
+    const auto bearer = last ? *d_.last() : focus;  // "remove the grass and add a chair behind it"
     const bool wears = is_worn(phrase) && d_.can_wear(focus) && !has(Class::ground, phrase.noun);
     Target thing = wears ? d_.add(phrase, "worn by", {focus}) : d_.add(phrase, "in", {d_.scene_target()});
     if (thing.kind == Target::Kind::There) {

@@ -51,7 +51,9 @@ bool Reader::describe_part(const Phrase& phrase, const Target& found) {
         c_.is(Class::word_for);  // "wings for the bear"
     if (attributes.empty() && (phrase.indefinite || placed) && !phrase.owner)
         return describe_new(phrase);  // "a chimney on the house", "leaves on the pavement"
-    const bool own_worn = is_worn(phrase) && !phrase.owner && (kinds_of(phrase.noun) & Body) == 0;
+    const bool own_worn = is_worn(phrase) && !phrase.owner &&
+                          ((kinds_of(phrase.noun) & Body) == 0 ||
+                           (attributes.empty() && !phrase.definite && c_.at_end_of_clause()));  // "beard"
     if (own_worn) {
         d_.add(phrase, "worn by", {d_.focus()});
         return describe_more();

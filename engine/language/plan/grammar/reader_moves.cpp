@@ -519,7 +519,9 @@ bool Reader::measure(const Targets& targets) {
         else return false;
     }
     ahead.take(Class::like);
-    if (ahead.is(Class::word_it) || ahead.is(Class::word_now)) ++ahead.at;
+    while (ahead.is(Class::word_it) || ahead.is(Class::word_now) || ahead.word().text == "is" ||
+           ahead.word().text == "was" || ahead.word().text == "before")
+        ++ahead.at;  // "twice as tall as it is now"
     const bool grows = factor[0] != '0';
     std::string change = "scale " + factor;
     if (sizes != "scale") {
@@ -562,6 +564,11 @@ bool Reader::compared(const Targets& targets) {
     ++ahead.at;
     if (!ahead.take(Class::like) && !ahead.take(Class::of)) return false;
     const std::size_t begin = ahead.at;
+    Attribute stuff;
+    if (Cursor plain = ahead; colour && plain.take_attribute(stuff, false) && plain.at_end_of_clause()) {
+        c_.at = plain.at;  // "the color of chocolate"
+        return apply_all(targets, {{Quality::Colour, stuff.value, stuff.typed, ""}});
+    }
     if (!ahead.take_phrase(other)) return false;
     const auto found = d_.resolve(other);
     if (dimension) {

@@ -25,6 +25,10 @@ bool Reader::no_thing_clause() {
         Phrase where;
         if (place.take_phrase(where)) c_.at = place.at;
         else c_.take(Class::relation);
+    } else if (Cursor whom = c_; whom.is(Class::word_for)) {  // "no hat for the bear"
+        Phrase bearer;
+        ++whom.at;
+        if (whom.take_phrase(bearer) && d_.resolve(bearer).found()) c_.at = whom.at;
     }
     Phrase other;
     Cursor but = c_;
@@ -337,6 +341,12 @@ bool Reader::denied(const Targets& targets) {
     while (ahead.take_attribute(one, false)) {
         attributes.push_back(one);
         if (!ahead.take(Class::alternative)) break;
+    }
+    if (Phrase same; attributes.empty() && ahead.take_phrase(same) && d_.resolve(same).found()) {
+        ahead.take_mark(',');
+        if (!ahead.take(Class::contrast)) return false;
+        c_.at = ahead.at;  // "is not a bear but a dog"
+        return complement(targets);
     }
     if (attributes.empty()) return false;
     while (ahead.take(Class::as_well)) {}

@@ -76,9 +76,15 @@ bool Reader::own_pattern(const Target& subject, const Phrase& phrase) {
         return true;
     }
     if (named && first != last) value = meaning(Class::pattern, first).value_or(first);
+    const bool motif = last == "pattern" || last == "print" || last == "motif";
+    for (const auto& attribute : phrase.attributes)  // "a diamond pattern"
+        if (motif && value.empty() && attribute.quality == Quality::Material &&
+            has(Class::pattern, attribute.value))
+            value = *meaning(Class::pattern, attribute.value), colour.clear();
     if (named && value.empty()) {
         for (const auto& attribute : phrase.attributes)
-            if (attribute.quality == Quality::Material || attribute.quality == Quality::Surface) {
+            if (attribute.quality == Quality::Material || attribute.quality == Quality::Surface ||
+                (attribute.quality == Quality::Colour && !motif)) {
                 d_.apply(subject, attribute);
                 return true;
             }

@@ -95,6 +95,10 @@ bool Reader::surroundings(const Target& subject, std::string_view relation) {
             ahead.at = described.at;
         }
     }
+    if (const auto kind = ahead.peek(Class::environment); kind && ahead.peek(Class::place, kind.length)) {
+        text = std::string(kind.value) + " ";  // "in a dark forest"
+        ahead.at += kind.length;
+    }
     const auto weather = ahead.peek(Class::environment);
     Cursor time = ahead;
     time.at += weather.length;

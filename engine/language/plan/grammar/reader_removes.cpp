@@ -98,7 +98,7 @@ bool Reader::pull_off() {
     if (!tossed && !pulled.take(Class::verb_off)) return false;
     if (!pulled.take_phrase(what)) return false;
     const bool away = tossed && (pulled.is(Class::word_away) || pulled.is(Class::word_out));
-    if (!away && !pulled.is(Class::word_off)) return false;
+    if (!away && !pulled.is(Class::word_off) && (tossed || !pulled.is(Class::word_from))) return false;
     const auto found = expect(what);
     if (!found.found()) return false;
     c_.at = pulled.at;

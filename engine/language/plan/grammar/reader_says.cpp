@@ -4,12 +4,22 @@
 #include "engine/language/plan/grammar/reader.h"
 
 namespace gse::language::plan {
+/// "the grass alone", to the end of the sentence.
+bool Reader::takes_alone(Cursor& ahead, Phrase& phrase) const {
+    Cursor alone = ahead;
+    const bool read = alone.take_phrase(phrase) && phrase.definite && alone.word().text == "alone" &&
+                      alone.at + 1 >= word_count_;
+    if (read) ahead.at = alone.at + 1;
+    return read;
+}
+
 /// "only grass": what else is there goes.
 bool Reader::only_clause() {
     Cursor ahead = c_;
     Phrase phrase;
     const bool keeps = ahead.take(Class::verb_keep).length > 0;
-    if (!ahead.take(Class::only) || !ahead.take_phrase(phrase)) return false;
+    if ((keeps || !takes_alone(ahead, phrase)) && !(ahead.take(Class::only) && ahead.take_phrase(phrase)))
+        return false;
     std::vector<Phrase> kept{phrase};
     Cursor more = ahead;
     for (Phrase next; (more.take_mark(','), more.take(Class::conjunction), more.at > ahead.at) &&
@@ -221,7 +231,7 @@ bool Reader::is_somehow(const Targets& subjects, bool modal) {
     if (c_.peek(Class::fire_words)) return post(subjects.front());
     if (!c_.peek(Class::like) && c_.peek(Class::relation) && !c_.peek(Class::flipping) &&
         !(c_.peek(Class::into) && c_.is(Class::word_into)))
-        return related(subjects.front());
+        return (modal && is_to_move(subjects.front())) || related(subjects.front());
     // "is replaced by a cat", "is painted blue", "is removed"
     if (c_.peek(Class::verb_replace) && c_.word().text.ends_with("ed")) {
         ++c_.at;
@@ -293,6 +303,7 @@ bool Reader::predicate(const Targets& subjects) {
     if (const auto off = c_.peek(Class::verb_remove);
         off.length > 1 && c_.peek(Class::possessive, off.length))
         return remove_clause() || back();  // "takes off its hat"
+    if (takes_off()) return take_off() || back();
     if (const auto read = has_something(subjects)) return *read || back();
     if (stands_on_part(subjects.front())) return true;
     if (const auto read = stands_somewhere(subjects.front())) return *read || back();
@@ -387,12 +398,40 @@ bool Reader::becomes_bare(const Phrase& phrase) {
     return become({found}, other);
 }
 
+/// "(the vase should be) under the table": moves it to what is there.
+bool Reader::is_to_move(const Target& subject) {
+    Cursor ahead = c_;
+    Phrase place;
+    const auto relation = ahead.take(Class::relation);
+    if (!subject.thing || !ahead.take_phrase(place) || !place.definite) return false;
+    const auto found = d_.resolve(place);
+    return found.thing && !d_.scene().things[*found.thing].is_ground && move_to(subject, relation);
+}
+
 /// Tells whether a thing stands there that someone may need: "(needs) a hat", "(needs) wings".
 bool Reader::names_need() const {
     Cursor needed = c_;
     Phrase clothes;
     return c_.peek(Class::article) || c_.peek(Class::number) || c_.peek(Class::some) ||
            (needed.take_phrase(clothes) && is_worn(clothes) && !clothes.definite);
+}
+
+/// "takes its hat off".
+bool Reader::takes_off() const {
+    Cursor ahead = c_;
+    Phrase worn;
+    if (ahead.word().base != "take" || !c_.peek(Class::possessive, 1)) return false;
+    ++ahead.at;
+    return ahead.take_phrase(worn) && ahead.is(Class::word_off);
+}
+
+bool Reader::take_off() {
+    Phrase worn;
+    ++c_.at;
+    const auto found = c_.take_phrase(worn) ? expect(worn) : Target{};
+    ++c_.at;
+    if (found.found()) remove_all({found});
+    return found.found();
 }
 
 /// "raises its arms".
@@ -414,7 +453,7 @@ bool Reader::gets_something() const {
 /// Tells whether a predicate of the phrase follows: "is", "should", "wears", "takes off its".
 bool Reader::says_of(const Phrase& phrase) const {
     const auto off = c_.peek(Class::verb_remove);
-    return c_.peek(Class::copula) || c_.peek(Class::modal_not) || c_.peek(Class::past_be) ||
+    return c_.peek(Class::copula) || takes_off() || c_.peek(Class::modal_not) || c_.peek(Class::past_be) ||
            gets_something() || (off.length > 1 && c_.peek(Class::possessive, off.length)) ||
            (c_.is(Class::word_does) && c_.peek(Class::negation, 1)) || c_.peek(Class::modal) ||
            c_.peek(Class::gone) || c_.is_mark(":>") || c_.peek(Class::verb_become) ||

@@ -15,7 +15,7 @@ constexpr Class Verbs[] = {
     Class::verb_flip,     Class::verb_face,    Class::verb_duplicate, Class::verb_style,
     Class::verb_material, Class::verb_carve,   Class::verb_pattern,   Class::verb_alter,
     Class::verb_pose,     Class::verb_raise,   Class::verb_keep,      Class::fire_verb,
-    Class::verb_wear};
+    Class::verb_wear,     Class::verb_off};
 
 }  // namespace
 
@@ -405,6 +405,8 @@ bool Reader::paint_clause() {
     Cursor how = c_;
     if (how.is(Class::word_in) || how.is(Class::word_with) || how.is(Class::word_to)) {
         ++how.at;
+        if (Cursor at = c_; how.peek(Class::definite) && (c_.at = how.at, compared(targets))) return true;
+        else c_.at = at.at;  // "in the color of the hat"
         how.take(Class::article);
         if (how.peek(Class::definite) && how.peek(Class::colour_word, 1)) how.at += 2;  // "in the color blue"
         const auto attributes = how.take_attributes();

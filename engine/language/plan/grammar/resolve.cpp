@@ -59,6 +59,7 @@ bool tells_apart(const Attribute& attribute) {
 
 bool is_part(const Phrase& phrase) {
     const auto head = head_of(phrase.noun);
+    if (has(Class::compound, phrase.noun) && !has(Class::part, phrase.noun)) return false;  // "a lily pad"
     return has(Class::part, phrase.noun) || has(Class::part, head) ||
            has(Class::part, word_of(head).singular);
 }

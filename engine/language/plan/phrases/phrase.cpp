@@ -209,7 +209,9 @@ bool Cursor::take_pronoun(Phrase& phrase) {
 
 void Cursor::take_determiners(Phrase& phrase) {
     while (!done()) {
-        if (peek(Class::more) && peek(Class::colour, 1) && noun_length(2) == 0) break;  // "more red"
+        const bool graded =
+            (phrase.indefinite && !phrase.single) || (peek(Class::colour, 1) && noun_length(2) == 0);
+        if (peek(Class::more) && graded && phrase.count.empty()) break;  // "more red", "a more colorful bear"
         if (const auto found = peek(Class::number); found && found.length >= peek(Class::some).length &&
                                                     !(found.length == 1 && word(1).text.empty())) {
             at += found.length;
@@ -518,7 +520,7 @@ void Cursor::take_whole_behind(Phrase& phrase) {
                (!has(Class::material, whole.noun) ||
                 (whole.plural && (has(Class::heap, phrase.noun) || has(Class::worn, phrase.noun)))) &&
                (!part || has(Class::worn, phrase.noun)) &&
-               ((kinds_of(phrase.noun) & (Artifact | Perhaps | Other | Object)) != 0 ||
+               ((kinds_of(words_[phrase.end - 1].singular) & (Artifact | Perhaps | Other | Object)) != 0 ||
                 has(Class::thing, phrase.noun)) &&
                (!is_scene_noun(phrase.noun) || whole.indefinite)) {
         phrase.noun += " of " + (whole.typed.empty() ? whole.noun : whole.typed);  // "bowl of fruit"

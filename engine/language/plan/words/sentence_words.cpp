@@ -154,6 +154,7 @@ std::vector<std::string> slips_of(std::string_view typed, std::span<const std::s
         // what sentences are made of, before parts of rare names ("bale" of "hay bale")
         if (has(Class::colour, word) || has(Class::worn, word) || is_grammatical(word)) cost -= 1;
         if (has(Class::worn, word) && !has(Class::colour, word)) cost -= 1;
+        if (has(Class::modal, word) || has(Class::copula, word)) cost -= 1;
         if (std::none_of(found.begin(), found.end(), [&](const auto& each) { return each.second == word; }))
             found.emplace_back(cost, word);
     });
