@@ -193,6 +193,9 @@ void Reader::skip_lead_in() {
             const bool gets = c_.is(Class::word_get, found.length - 1) &&
                               c_.peek(Class::verb_remove, found.length - 1);  // "can we get rid of the bear?"
             c_.at = gets ? ahead.at - 1 : ahead.at;
+            const auto& who = c_.word().text;  // "it would be nice if you put"
+            if (c_.previous().text == "if" && (who == "you" || who == "we"))
+                c_.at += c_.peek(Class::modal, 1) ? 2 : 1;
             prefers_ = c_.previous().text == "prefer";
             requested_ = true;
         } else if (const auto polite = c_.peek(Class::courtesy);

@@ -60,11 +60,14 @@ private:
     bool likes_clause();
     bool make_clause();
     bool looks_as_a_whole();
+    bool makes_several(Cursor counted);
     bool paint_clause();
     bool turn_clause();
     std::optional<bool> use_clause(bool substitute);
+    bool takes_exchange();
     bool replace_clause();
     bool become_each(const Targets& targets, const Phrase& first);
+    void add_beside();
     bool give_clause();
     bool dress_clause();
     bool cover_clause();
@@ -137,7 +140,10 @@ private:
     bool describe(const Phrase& phrase);
     bool describe_nameless(const Phrase& phrase);
     bool describe_empty(const Phrase& phrase, const Target& found);
+    bool empties(const Targets& targets);
+    static bool ends_at(const Cursor& here) { return here.at_end_of_clause() || here.peek(Class::courtesy); }
     void describe_telegraphic(const Target& found);
+    bool lies_on_ground(const Phrase& phrase);
     std::optional<bool> describe_elsewhere(const Phrase& phrase);
     bool describe_part(const Phrase& phrase, const Target& found);
     std::optional<bool> describe_place(const Phrase& phrase, bool bare);
@@ -193,6 +199,7 @@ private:
     bool pose_clause();
     bool complement(const Targets& targets);
     bool described_as(const Targets& targets);
+    bool stands_so(const Targets& targets);
     bool complement_once(const Targets& targets);
     bool as_much_as(const Targets& targets);
     bool faces(const Targets& targets);
@@ -249,6 +256,7 @@ private:
     Targets things_on(const Target& target) const;
     Targets what_is_worn();
     void narrow(Phrase& phrase);
+    void tell_apart(Phrase& phrase);
     std::string doing();
     bool all_but(const std::vector<Phrase>& excepted, Targets& targets);
     Targets both() const;

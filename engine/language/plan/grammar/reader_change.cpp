@@ -303,6 +303,7 @@ bool Reader::described_as(const Targets& targets) {
     const bool a_lot = adjectives.peek(Class::degree).length > 1;  // "a lot furrier"
     const bool article = !a_lot && adjectives.take(Class::article).length > 0;
     const auto attributes = adjectives.take_attributes();
+    if (article && !attributes.empty() && adjectives.is(Class::word_one)) ++adjectives.at;  // "a blue one"
     const bool ends = adjectives.at_end_of_clause() || adjectives.ends_phrase(0, true) ||
                       adjectives.noun_length() == 0 || adjectives.peek(Class::colour_word);
     const bool model = std::any_of(attributes.begin(), attributes.end(),
@@ -376,6 +377,15 @@ bool Reader::faces(const Targets& targets) {
     return true;
 }
 
+/// "stand on cobblestones", "stand on its head".
+bool Reader::stands_so(const Targets& targets) {
+    ++c_.at;
+    const auto turned = c_.take(Class::flipping);
+    if (!turned) return targets.size() == 1 && related(targets.front());
+    for (const auto& target : targets) d_.step(Operation::Transform, target, std::string(turned.value));
+    return true;
+}
+
 bool Reader::complement_once(const Targets& targets) {
     const std::size_t start = c_.at;
     if (looks_somewhere(targets) || swaps_places(targets)) return true;
@@ -424,11 +434,8 @@ bool Reader::complement_once(const Targets& targets) {
     if (faces(targets)) return true;
     if (c_.peek(Class::inverse_relation) && targets.size() == 1)  // "full of flowers"
         return inversely_related(targets.front());
-    if (described_as(targets)) return true;
-    if (c_.word().base == "stand" && c_.peek(Class::relation, 1)) {  // "let it stand on cobblestones"
-        ++c_.at;
-        return targets.size() == 1 && related(targets.front());
-    }
+    if (empties(targets) || described_as(targets)) return true;
+    if (c_.word().base == "stand" && c_.peek(Class::relation, 1)) return stands_so(targets);
     if (pose_text(targets)) return true;
     Phrase phrase;
     if (c_.take_phrase(phrase) && become(targets, phrase)) return true;

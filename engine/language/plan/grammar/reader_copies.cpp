@@ -246,4 +246,39 @@ bool Reader::swap_clause() {
     return false;
 }
 
+/// "replace the bear and the grass with a cat and snow": one by one; a single thing takes the place of all.
+bool Reader::become_each(const Targets& targets, const Phrase& first) {
+    std::vector<Phrase> things{first};
+    Cursor list = c_;
+    for (Phrase next; (list.take_mark(','), list.take(Class::conjunction), list.at > c_.at) &&
+                      !starts_verb(list.at - c_.at) && list.take_phrase(next) && !next.noun.empty();) {
+        things.push_back(next);
+        c_.at = list.at;
+    }
+    if (things.size() == targets.size()) {
+        for (std::size_t i = 0; i < things.size(); ++i)
+            if (!become({targets[i]}, things[i])) return false;
+        return true;
+    }
+    if (things.size() > 1) return fail(reason::NotASentence);
+    if (!first.indefinite || first.plural) return become(targets, first);
+    if (!become({targets.front()}, first)) return false;
+    for (std::size_t i = 1; i < targets.size(); ++i) d_.remove(targets[i]);
+    return true;
+}
+
+/// "(replace it with two dogs) and a cat": the further ones stand beside the first.
+void Reader::add_beside() {
+    Cursor more = c_;
+    while (more.take_mark(','), more.take(Class::conjunction), more.at > c_.at) {
+        Phrase next;
+        Cursor behind = more;
+        const bool is_new = !starts_verb(more.at - c_.at) && behind.take_phrase(next) && next.indefinite &&
+                            is_thing(next) && !is_worn(next) && !d_.resolve(next).found() && ends_at(behind);
+        if (!is_new || !d_.last()) break;
+        d_.add(next, "beside", {*d_.last()});
+        c_.at = more.at = behind.at;
+    }
+}
+
 }  // namespace gse::language::plan

@@ -327,19 +327,23 @@ bool Reader::is_slip_of_focus(const Phrase& phrase) const {
     return focus.found() && (!being || (acts && !lives)) && is_one_slip(phrase.noun, focus.reference.root());
 }
 
+/// "snow on the ground": the ground becomes so.
+bool Reader::lies_on_ground(const Phrase& phrase) {
+    Cursor below = c_;
+    Phrase ground;
+    if (!is_ground(phrase) || phrase.has_determiner() || !below.is(Class::word_on)) return false;
+    ++below.at;
+    const auto old = below.take_phrase(ground) ? d_.resolve(ground) : Target{};
+    if (!old.thing || !d_.scene().things[*old.thing].is_ground || !below.at_end_of_clause()) return false;
+    c_.at = below.at;
+    d_.ground(phrase);
+    return true;
+}
+
 /// "snow on the ground", "a tutu for the bear", "a lion out of the bear", "a moose where the bear is";
 /// nothing for other phrases.
 std::optional<bool> Reader::describe_elsewhere(const Phrase& phrase) {
-    if (Cursor below = c_; is_ground(phrase) && !phrase.has_determiner() && below.is(Class::word_on)) {
-        Phrase ground;  // "snow on the ground"
-        ++below.at;
-        const auto old = below.take_phrase(ground) ? d_.resolve(ground) : Target{};
-        if (old.thing && d_.scene().things[*old.thing].is_ground && below.at_end_of_clause()) {
-            c_.at = below.at;
-            d_.ground(phrase);
-            return true;
-        }
-    }
+    if (lies_on_ground(phrase)) return true;
     if (Cursor whom = c_; !described_ && whom.is(Class::word_for)) {
         Phrase bearer;  // "a pink tutu for the bear"
         ++whom.at;

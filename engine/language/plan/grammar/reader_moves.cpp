@@ -5,13 +5,20 @@
 
 namespace gse::language::plan {
 
+static bool is_article(const Cursor& here, std::size_t ahead) {
+    return here.peek(Class::article, ahead).length > 0;
+}
+
 /// "2 meters", "by 50 cm": as a change has it, with a blank before; empty for none, and for other units.
 std::string Reader::take_amount() {
     std::string amount;
     Cursor ahead = c_;
     ahead.is(Class::word_by) ? void(++ahead.at) : void();
     Cursor number = ahead;
-    if (const auto named = number.peek(Class::number)) {
+    if (ahead.is(Class::word_half) && number.peek(Class::unit, 2) && is_article(number, 1)) {
+        amount = "0.5";  // "half a meter"
+        number.at += 2;
+    } else if (const auto named = number.peek(Class::number)) {
         amount = named.value;
         number.at += named.length;
     } else if (number.take(Class::article)) amount = "1";
@@ -230,7 +237,7 @@ bool Reader::move_clause() {
         way.peek(Class::direction) || way.peek(Class::relation) || way.is(Class::word_to) ||
         way.is(Class::word_by) ||
         (!way.word().text.empty() && std::isdigit(static_cast<unsigned char>(way.word().text[0])) != 0) ||
-        way.peek(Class::number) || way.is(Class::word_from) ||
+        way.peek(Class::number) || way.is(Class::word_from) || way.is(Class::word_half) ||
         (way.peek(Class::article) && way.peek(Class::unit, 1));
     Cursor position = c_;
     const bool stands =

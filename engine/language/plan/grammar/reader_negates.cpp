@@ -218,6 +218,12 @@ bool Reader::negative_clause() {
 /// "(should) not be here", "not be red but blue".
 bool Reader::should_not(const Targets& subjects) {
     if (c_.peek(Class::copula)) c_.take(Class::copula);
+    if (c_.word().text.ends_with("ed") && (c_.peek(Class::verb_turn) || c_.peek(Class::verb_recolour) ||
+                                           c_.peek(Class::verb_remove) || c_.peek(Class::verb_move))) {
+        ++c_.at;  // "must not be changed"
+        d_.nothing_asked();
+        return true;
+    }
     if (const auto present = c_.peek(Class::present)) {  // "should not be here"
         c_.at += present.length;
         for (const auto& subject : subjects) d_.remove(subject);
@@ -323,6 +329,9 @@ bool Reader::lack_list(const Target& subject) {
         }
         if (c_.take(Class::something)) {  // "not wearing anything"
             undress();
+            Cursor place = c_;
+            Phrase where;
+            if (place.take(Class::relation) && place.take_phrase(where) && is_part(where)) c_.at = place.at;
             continue;
         }
         if (!c_.take_phrase(phrase) || !lack(subject, phrase)) return false;

@@ -33,10 +33,13 @@ bool Reader::list_goes_on() {
     const bool comma = ahead.take_mark(',');
     const bool joint = ahead.take(Class::conjunction).length > 0 || ahead.take(Class::alternative).length > 0;
     if (!comma && !joint) return false;
-    while (ahead.take(Class::having) || ahead.take(Class::wearing) || ahead.take(Class::as_well)) {}
+    while (ahead.take(Class::having) || ahead.take(Class::as_well)) {}
+    if (ahead.peek(Class::wearing)) return false;
     const std::size_t distance = ahead.at - c_.at;
     if (comma && ahead.peek(Class::noise)) return false;
-    if (starts_verb(distance) || ahead.peek(Class::holding) || ahead.peek(Class::riding)) return false;
+    const bool clothes = ahead.peek(Class::worn) && !starts_object(distance + 1);  // "a suit and tie"
+    if ((starts_verb(distance) && !clothes) || ahead.peek(Class::holding) || ahead.peek(Class::riding))
+        return false;
     if (ahead.peek(Class::sequence) && !ahead.peek(Class::another)) return false;  // "and finally remove"
     Phrase next;
     Cursor probe = ahead;
@@ -185,7 +188,9 @@ bool Reader::own(const Target& subject, const Phrase& phrase, std::string_view r
     if (is_ground(phrase) && relation == "with" && !is_worn(phrase) && !is_held(phrase) &&
         !has(Class::floating, phrase.noun) && !has(Class::thing, phrase.noun))
         return relate(subject, "on", phrase);
-    if (is_part(phrase) && relation != "worn by" && own_part(subject, phrase)) return true;
+    const bool of_things = d_.can_wear(subject) && has(Class::part_made, word_of(phrase.noun).singular) &&
+                           phrase.indefinite;  // "a golden key around its neck"
+    if (is_part(phrase) && !of_things && relation != "worn by" && own_part(subject, phrase)) return true;
     if (is_part(phrase) && !is_worn(phrase) && relation == "with" && d_.can_wear(subject) &&
         ((kinds_of(phrase.noun) & Body) != 0 ||
          (has(Class::body_place, phrase.noun) && !phrase.count.empty()))) {

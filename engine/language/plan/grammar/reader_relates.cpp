@@ -102,7 +102,8 @@ bool Reader::surroundings(const Target& subject, std::string_view relation) {
     const auto weather = ahead.peek(Class::environment);
     Cursor time = ahead;
     time.at += weather.length;
-    if (weather && (relation != "on" || time.peek(Class::time_of_day))) {
+    const bool hour = time.at > ahead.at && has(Class::time_of_day, time.previous().text);  // "rainy evening"
+    if (weather && (relation != "on" || hour || time.peek(Class::time_of_day))) {
         Cursor behind = ahead;
         behind.at += weather.length;
         const auto more = behind.take(Class::environment);  // "a winter evening"

@@ -187,7 +187,8 @@ Reader::Targets Reader::things_on(const Target& target) const {
     if (!target.thing) return on;
     const auto& things = d_.scene().things;
     const auto& noun = things[*target.thing].noun;
-    const bool container = has(Class::container, noun) || has(Class::held, noun);
+    const bool container =
+        has(Class::container, noun) || (has(Class::held, noun) && !has(Class::furniture_flat, noun));
     for (std::size_t i = 0; i < things.size(); ++i) {
         const bool stays = things[i].is_ground || things[i].is_worn || has(Class::furniture, things[i].noun);
         if (i != *target.thing && !stays && (!container || i > *target.thing))
@@ -289,7 +290,9 @@ bool Reader::keep_coloured(const Phrase& phrase, Cursor behind) {
     const auto found = d_.resolve(phrase);
     const bool stuff = attribute.quality == Quality::Colour || attribute.quality == Quality::Material;
     if (!found.found() || !stuff) return false;
+    const auto steps = d_.size();
     d_.apply(found, attribute);
+    if (d_.size() < steps) d_.contradict();  // "paint it blue but leave it red"
     c_.at = behind.at;
     return true;
 }
@@ -388,9 +391,62 @@ bool Reader::describe_empty(const Phrase& phrase, const Target& found) {
         return true;
     }
     const auto on = things_on(found);
+    const auto& noun = found.reference.root();
+    if (on.empty() && found.thing && (has(Class::container, noun) || has(Class::furniture, noun))) {
+        d_.already_so();  // "an empty vase" of one that is
+        described_ = found;
+        posts(found);
+        return describe_more();
+    }
     if (on.empty() || !c_.at_end_of_clause()) return false;
     remove_all(on);
     return true;
+}
+
+/// "the car that is blue": what tells which of several.
+void Reader::tell_apart(Phrase& phrase) {
+    Cursor told = c_;
+    if (!phrase.definite || d_.things_named(phrase).size() < 2 || !told.take(Class::relative) ||
+        !told.take(Class::copula))
+        return;
+    const auto how = told.take_attributes();
+    if (how.empty() || !(ends_at(told) || told.peek(Class::conjunction))) return;
+    phrase.attributes.insert(phrase.attributes.end(), how.begin(), how.end());
+    c_.at = told.at;
+}
+
+/// "(make the lawn) empty": what stands there goes.
+bool Reader::empties(const Targets& targets) {
+    Cursor empty = c_;
+    if (targets.size() != 1 || !targets.front().thing || !empty.take(Class::empty) || !ends_at(empty))
+        return false;
+    const auto on = d_.scene().things[*targets.front().thing].is_ground && d_.focus().found()
+                        ? Targets{d_.focus()}
+                        : things_on(targets.front());
+    if (on.empty()) return false;
+    c_.at = empty.at;
+    remove_all(on);
+    return true;
+}
+
+/// "what the bear is wearing", "what it has on its head"; none where no such words stand.
+Reader::Targets Reader::what_is_worn() {
+    Cursor ahead = c_;
+    Phrase who, place;
+    Targets worn;
+    if (!ahead.is(Class::word_what)) return worn;
+    ++ahead.at;
+    if (!ahead.take_phrase(who) || !d_.resolve(who).found()) return worn;
+    ahead.take(Class::copula);
+    if (ahead.take(Class::having)) {
+        if (!ahead.is(Class::word_on)) return worn;
+        ++ahead.at;
+        if (Cursor part = ahead; part.take_phrase(place) && is_part(place)) ahead.at = part.at;
+    } else if (!ahead.take(Class::wearing)) return worn;
+    for (std::size_t i = 0; i < d_.scene().things.size(); ++i)
+        if (d_.scene().things[i].is_worn) worn.push_back(d_.target_of_thing(i));
+    if (!worn.empty()) c_.at = ahead.at;
+    return worn;
 }
 
 }  // namespace gse::language::plan

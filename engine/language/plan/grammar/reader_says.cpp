@@ -122,7 +122,7 @@ bool Reader::there_is_clause() {
             c_.at = start;
             return false;
         }
-        if (one_more(phrase)) continue;
+        if (one_more(phrase) || lies_on_ground(phrase)) continue;
         const auto found = d_.resolve(phrase);
         if (found.found() && phrase.count.empty() && !phrase.another) {
             apply_all({found}, phrase.attributes);
@@ -217,12 +217,7 @@ bool Reader::is_somehow(const Targets& subjects, bool modal) {
     if (const auto stands = c_.peek(Class::emerging);                 // "is parked on the beach"
         stands && c_.peek(Class::relation, stands.length) && !c_.peek(Class::pose))
         c_.at += stands.length;
-    if (Cursor empty = c_; empty.take(Class::empty) && empty.at_end_of_clause() && subjects.size() == 1)
-        if (const auto on = things_on(subjects.front()); !on.empty()) {  // "the table should be empty"
-            c_.at = empty.at;
-            remove_all(on);
-            return true;
-        }
+    if (empties(subjects)) return true;  // "the table should be empty"
     if (Cursor complains = c_; !modal && complains.take(Class::complaint) && complains.at_end_of_clause()) {
         c_.at = complains.at;  // "bears are boring, use a giraffe"
         d_.nothing_asked();

@@ -139,26 +139,6 @@ Reader::Targets Reader::collective(const Phrase& phrase) const {
     return all;
 }
 
-/// "what the bear is wearing", "what it has on its head"; none where no such words stand.
-Reader::Targets Reader::what_is_worn() {
-    Cursor ahead = c_;
-    Phrase who, place;
-    Targets worn;
-    if (!ahead.is(Class::word_what)) return worn;
-    ++ahead.at;
-    if (!ahead.take_phrase(who) || !d_.resolve(who).found()) return worn;
-    ahead.take(Class::copula);
-    if (ahead.take(Class::having)) {
-        if (!ahead.is(Class::word_on)) return worn;
-        ++ahead.at;
-        if (Cursor part = ahead; part.take_phrase(place) && is_part(place)) ahead.at = part.at;
-    } else if (!ahead.take(Class::wearing)) return worn;
-    for (std::size_t i = 0; i < d_.scene().things.size(); ++i)
-        if (d_.scene().things[i].is_worn) worn.push_back(d_.target_of_thing(i));
-    if (!worn.empty()) c_.at = ahead.at;
-    return worn;
-}
-
 /// "what stands on the table", "both of them"; nothing where the object has a noun.
 std::optional<bool> Reader::untold_object(Targets& targets, Phrase& phrase) {
     if (Cursor of = c_; of.take(Class::definite) && of.take(Class::colour) && of.take(Class::of)) {
@@ -200,6 +180,7 @@ bool Reader::object(Targets& targets, Phrase& phrase, bool split) {
     if (const auto read = untold_object(targets, phrase)) return *read;
     if (!c_.take_phrase(phrase, split)) return false;
     narrow(phrase);
+    tell_apart(phrase);
     if (phrase.excepted.size() > 1) return all_but(phrase.excepted, targets);
     if (phrase.owner && has(Class::colour_word, phrase.noun))
         phrase = Phrase(*phrase.owner);  // "the colors of the bear"
@@ -312,6 +293,15 @@ bool Reader::try_verbs() {
     return false;
 }
 
+/// "(make it) three chairs" of two.
+bool Reader::makes_several(Cursor counted) {
+    Phrase several;
+    if (!counted.take_phrase(several) || several.count.empty() || d_.things_named(several).size() < 2)
+        return false;
+    c_.at = counted.at;
+    return one_more(several);
+}
+
 /// "make it look like a comic", "turn it into a painting": a style is of the whole scene.
 bool Reader::looks_as_a_whole() {
     const std::size_t start = c_.at;
@@ -344,13 +334,7 @@ bool Reader::make_clause() {
         if (c_.done()) return fail(reason::Incomplete);
         return attribute_clause();
     }
-    if (Cursor counted = ahead; first.naming == Naming::It) {  // "make it three chairs" of two
-        Phrase several;
-        if (counted.take_phrase(several) && !several.count.empty() && d_.things_named(several).size() > 1) {
-            c_.at = counted.at;
-            return one_more(several);
-        }
-    }
+    if (first.naming == Naming::It && makes_several(ahead)) return true;
     if (first.naming == Naming::Something) return false;
     const bool grows = first.naming == Naming::Thing && !first.noun.empty() && !first.definite &&
                        !first.possessive && ahead.peek(Class::emerging) && is_thing(first);
@@ -368,6 +352,10 @@ bool Reader::make_clause() {
         return !how.empty();
     }
     if (!objects(targets, &phrases)) return false;
+    const bool poses = c_.peek(Class::verb_pose) || c_.peek(Class::pose);
+    if (first.naming == Naming::It && poses && targets.front().kind == Target::Kind::Made &&
+        !d_.is_animate(targets.front()))
+        targets.front() = d_.pronoun(Naming::It, true);  // "give it wings and let it fly"
     frame_ = Frame::Make;
     c_.take(Class::instead);
     if (c_.at_end_of_clause()) {
@@ -510,6 +498,17 @@ std::optional<bool> Reader::use_clause(bool substitute) {
     return std::nullopt;
 }
 
+/// Steps over "with", "for", "in for" between what goes and what comes.
+bool Reader::takes_exchange() {
+    if ((c_.is(Class::word_in) || c_.is(Class::word_out)) &&
+        (c_.is(Class::word_for, 1) || c_.is(Class::word_with, 1)))
+        ++c_.at;  // "trade the bear in for a cat"
+    const bool joint = c_.is(Class::word_with) || c_.is(Class::word_by) || c_.is(Class::word_for) ||
+                       c_.is(Class::word_to) || c_.is(Class::word_against);
+    if (joint) ++c_.at;
+    return joint || c_.take(Class::into);
+}
+
 bool Reader::replace_clause() {
     if (c_.peek(Class::verb_swap) && c_.peek(Class::verb_replace).length == 0) return false;
     const bool use = c_.is(Class::word_use), substitute = c_.is(Class::word_substitute);
@@ -542,13 +541,7 @@ bool Reader::replace_clause() {
         targets.push_back(d_.focus());
     } else if (!objects(targets)) return false;
     frame_ = Frame::Replace;
-    if ((c_.is(Class::word_in) || c_.is(Class::word_out)) &&
-        (c_.is(Class::word_for, 1) || c_.is(Class::word_with, 1)))
-        ++c_.at;  // "trade the bear in for a cat"
-    const bool joint = c_.is(Class::word_with) || c_.is(Class::word_by) || c_.is(Class::word_for) ||
-                       c_.is(Class::word_to) || c_.is(Class::word_against);
-    if (joint) ++c_.at;
-    else if (!c_.take(Class::into)) return fail(reason::Incomplete);
+    if (!takes_exchange()) return fail(reason::Incomplete);
     if (c_.at_end_of_clause()) return fail(reason::Incomplete);
     Cursor paint = c_;  // "replace its color with blue"
     if (const auto how = paint.take_attributes(); of_colour && !how.empty() && paint.at_end_of_clause()) {
@@ -567,27 +560,9 @@ bool Reader::replace_clause() {
         d_.move(targets[0], "swap with", other);
         return true;
     }
-    return targets.size() > 1 ? become_each(targets, phrase) : become(targets, phrase);
-}
-
-/// "replace the bear and the grass with a cat and snow": one by one; a single thing takes the place of all.
-bool Reader::become_each(const Targets& targets, const Phrase& first) {
-    std::vector<Phrase> things{first};
-    Cursor list = c_;
-    for (Phrase next; (list.take_mark(','), list.take(Class::conjunction), list.at > c_.at) &&
-                      !starts_verb(list.at - c_.at) && list.take_phrase(next) && !next.noun.empty();) {
-        things.push_back(next);
-        c_.at = list.at;
-    }
-    if (things.size() == targets.size()) {
-        for (std::size_t i = 0; i < things.size(); ++i)
-            if (!become({targets[i]}, things[i])) return false;
-        return true;
-    }
-    if (things.size() > 1) return fail(reason::NotASentence);
-    if (!first.indefinite || first.plural) return become(targets, first);
-    if (!become({targets.front()}, first)) return false;
-    for (std::size_t i = 1; i < targets.size(); ++i) d_.remove(targets[i]);
+    if (targets.size() > 1) return become_each(targets, phrase);
+    if (!become(targets, phrase)) return false;
+    if (targets.front().thing) add_beside();
     return true;
 }
 

@@ -168,6 +168,7 @@ bool Draft::may_have(const Target& owner, const Phrase& phrase) const {
     Phrase whole;  // "the cage door"
     whole.noun = whole.typed = phrase.noun.substr(0, std::min(phrase.noun.rfind(' '), phrase.noun.size()));
     if (whole.noun.size() < phrase.noun.size() && things_named(whole).size() == 1) return true;
+    if (is_being(root) && has(Class::worn, head) && has(Class::part_made, head)) return false;  // a crown
     return !lives || is_kind(root, Plant) ||
            !(has(Class::part_made, head) || has(Class::part_made, phrase.noun));
 }

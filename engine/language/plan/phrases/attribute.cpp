@@ -367,6 +367,8 @@ std::string brace_text(const Attribute& attribute) {
 Thing thing_of(const Phrase& phrase) {
     Thing thing{phrase.noun, phrase.count == "all" ? "some" : phrase.count, {}};
     if (thing.count == "2" && has(Class::pair_noun, phrase.noun)) thing.count.clear();  // "a pair of glasses"
+    if (thing.count == "some" && has(Class::pair_noun, phrase.noun) && has(Class::worn, phrase.noun))
+        thing.count.clear();  // "some wings"
     if (!thing.count.empty() && phrase.plural && has(Class::pair_noun, phrase.noun) &&
         phrase.noun.find(' ') == std::string::npos)
         thing.noun = word_of(phrase.noun).singular;                    // "some leaves"

@@ -267,6 +267,7 @@ void Cursor::close_noun(Phrase& phrase, std::size_t begin, std::size_t end) cons
 }
 
 bool Cursor::reads_as_noun(const Phrase& phrase) const {
+    if (peek(Class::colour).length > 1) return false;  // "a grass green bear"
     if (is_scene_noun(word().singular)) return true;
     if (peek(Class::colour) && is(Class::colour_word, 1)) return false;  // "a violet color"
     bool last = ends_phrase(1, true);

@@ -216,7 +216,8 @@ void drop_degrees(std::vector<Word>& words) {
         const auto before = match(Class::before_place, std::span(words).subspan(i, 1)).length > 0;
         const bool side = match(Class::definite, std::span(words).subspan(i - 1)).length > 0 ||
                           match(Class::possessive, std::span(words).subspan(i - 1)).length > 0 ||
-                          match(Class::to, std::span(words).subspan(i - 1)).length > 0;
+                          match(Class::to, std::span(words).subspan(i - 1)).length > 0 ||
+                          match(Class::article, std::span(words).subspan(i - 1)).length > 0;
         if (before && !side && match(Class::place_word, std::span(words).subspan(i + 1)))
             words.erase(words.begin() + static_cast<std::ptrdiff_t>(i));
     }
