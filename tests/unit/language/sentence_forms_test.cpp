@@ -51,7 +51,7 @@ const Case Cases[] = {
     {Bear, "bear", "make it blue and green all over", "recolour(bear, blue and green)"},
     {Bear, "bear", "give the bear a hat and paint the house green",
      "add(hat, worn by, bear) ; refuse(not in scene, house)"},
-    {Bear, "bear", "an ice sculpture of a bear on the grass", "replace(bear, ice sculpture of bear)"},
+    {Bear, "bear", "an ice sculpture of a bear on the grass", "material(bear, ice)"},
     {Bear, "bear", "an orange and black bear", "recolour(bear, orange and black)"},
     {Bear, "bear", "a lion with a huge mane sitting on the grass",
      "replace(bear, lion) ; transform(mane of lion, bigger)"},

@@ -32,6 +32,10 @@ Plan Reader::failure() const {
 bool Reader::wishes(const Cursor& start) {
     Cursor at = start;
     Phrase subject;
+    if (Cursor be = at; be.take(Class::wish) && be.peek(Class::there_is)) {  // "can there be a cat?"
+        c_.at = start.at + 1;
+        return true;
+    }
     if (!at.take(Class::wish) || !at.take_phrase(subject) || !d_.resolve(subject).found()) return false;
     if (!at.peek(Class::copula) && !at.peek(Class::wearing) && !at.peek(Class::having) &&
         !at.peek(Class::holding) && !at.peek(Class::verb_become) && !at.peek(Class::verb_need))

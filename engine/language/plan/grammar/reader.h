@@ -62,6 +62,7 @@ private:
     bool looks_as_a_whole();
     bool makes_several(Cursor counted);
     bool paint_clause();
+    std::optional<bool> changes_backdrop();
     bool turn_clause();
     std::optional<bool> use_clause(bool substitute);
     bool takes_exchange();
@@ -70,6 +71,7 @@ private:
     void add_beside();
     bool give_clause();
     bool dress_clause();
+    bool covers_plainly(const Targets& targets);
     bool cover_clause();
     void skip_from(Targets& targets);
     void take_worn(Targets& targets) const;
@@ -157,6 +159,7 @@ private:
     bool describe_clinging(const Phrase& phrase);
     bool is_slip_of_focus(const Phrase& phrase) const;
     std::optional<bool> describe_other_kind(const Phrase& phrase, const Target& found);
+    bool describe_likeness(const Phrase& phrase);
     bool describe_in_style(const Phrase& phrase, std::size_t thing);
     bool skip_instead();
     bool describe_more();

@@ -448,6 +448,17 @@ bool Reader::dress_clause() {
     return has_list(targets.front(), "worn by");
 }
 
+/// "(cover the bear) in mud", which is a material too.
+bool Reader::covers_plainly(const Targets& targets) {
+    Cursor plain = c_;
+    const bool ground = targets.front().thing && d_.scene().things[*targets.front().thing].is_ground;
+    const auto stuff = plain.take(Class::covering);
+    if (!stuff || ground || !ends_at(plain) || plain.previous().text != plain.previous().singular)
+        return false;
+    c_.at = plain.at;
+    return apply_all(targets, {{Quality::Material, std::string(stuff.value), std::string(stuff.value), ""}});
+}
+
 bool Reader::cover_clause() {
     const bool around = c_.peek(Class::verb_around).length > 0, fills = c_.peek(Class::verb_fill).length > 0;
     const auto wear = c_.peek(Class::verb_wear);
@@ -466,6 +477,7 @@ bool Reader::cover_clause() {
     if (!c_.is(Class::word_in) && !c_.is(Class::word_with) && !c_.is(Class::word_by)) return false;
     (void)relation;
     ++c_.at;
+    if (!around && !fills && covers_plainly(targets)) return true;
     Cursor ahead = c_;
     std::vector<Attribute> found;
     Attribute next;

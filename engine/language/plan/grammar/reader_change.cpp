@@ -473,8 +473,12 @@ bool Reader::complement(const Targets& targets) {
         const bool denied_more = ahead.peek(Class::negation) && targets.size() == 1;
         if (!adjective && !denied_more) break;
         if (adjective && starts_verb(ahead.at - c_.at)) break;
+        const std::size_t here = c_.at;
         c_.at = ahead.at;
-        if (!complement_once(targets)) return false;
+        if (complement_once(targets)) continue;
+        c_.at = here;  // "paint the bear green, not the hat"
+        if (!denied_more) return false;
+        break;
     }
     (void)before;
     return true;
@@ -538,6 +542,24 @@ bool Reader::pose_clause() {
         ++c_.at;
     while (c_.take(Class::pose_manner)) {}
     for (const auto& target : targets) d_.step(Operation::Pose, target, std::string(text));
+    return true;
+}
+
+/// "an ice sculpture of a bear": the bear of that material.
+bool Reader::describe_likeness(const Phrase& phrase) {
+    const auto focus = d_.focus();
+    const auto of = phrase.noun.find(" of ");
+    if (described_ || !focus.thing || of == std::string::npos ||
+        !has(Class::figure, phrase.noun.substr(0, of)) ||
+        phrase.noun.substr(of + 4) != focus.reference.root())
+        return false;
+    std::vector<Attribute> stuff;
+    for (const auto& each : phrase.attributes)
+        if (each.quality == Quality::Material) stuff.push_back(each);
+    if (stuff.empty() || stuff.size() != phrase.attributes.size()) return false;
+    described_ = focus;
+    apply_all({focus}, stuff);
+    posts(focus);
     return true;
 }
 

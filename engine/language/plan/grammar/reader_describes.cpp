@@ -158,12 +158,18 @@ bool Reader::describe(const Phrase& phrase) {
                                    [&](std::size_t i) { return d_.scene().things[i].noun == phrase.noun; });
     if (const auto kin = d_.kin_of(phrase);
         kin && !phrase.owner && (named.empty() || (phrase.indefinite && !exact))) {
+        const auto first = phrase.noun.substr(0, phrase.noun.find(' '));
+        const bool species =
+            (kinds_of(first) & (Concrete | Perhaps | Other | Adjective)) != 0 || kinds_of(first) == 0;
+        if (!species && !has(Class::compound, phrase.noun))
+            return fail(reason::NotASentence);  // "a read bear"
         if (describe_in_style(phrase, *kin)) return describe_more();
         const auto made = d_.replace(d_.target_of_thing(*kin), phrase);
         described_ = made;
         posts(made);
         return describe_more();
     }
+    if (describe_likeness(phrase)) return describe_more();
     const auto found = d_.resolve(phrase);
     if (found.kind == Target::Kind::Ambiguous) return fail(reason::Ambiguous);
     if (!exact)
@@ -325,19 +331,6 @@ bool Reader::is_slip_of_focus(const Phrase& phrase) const {
                        has(Class::animal, phrase.noun) || has(Class::thing, phrase.noun);
     const bool acts = c_.peek(Class::wearing) || c_.peek(Class::holding);  // "a bar wearing a scarf"
     return focus.found() && (!being || (acts && !lives)) && is_one_slip(phrase.noun, focus.reference.root());
-}
-
-/// "snow on the ground": the ground becomes so.
-bool Reader::lies_on_ground(const Phrase& phrase) {
-    Cursor below = c_;
-    Phrase ground;
-    if (!is_ground(phrase) || phrase.has_determiner() || !below.is(Class::word_on)) return false;
-    ++below.at;
-    const auto old = below.take_phrase(ground) ? d_.resolve(ground) : Target{};
-    if (!old.thing || !d_.scene().things[*old.thing].is_ground || !below.at_end_of_clause()) return false;
-    c_.at = below.at;
-    d_.ground(phrase);
-    return true;
 }
 
 /// "snow on the ground", "a tutu for the bear", "a lion out of the bear", "a moose where the bear is";

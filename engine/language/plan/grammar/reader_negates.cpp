@@ -119,6 +119,11 @@ bool Reader::unwanted_clause(Cursor ahead) {
     }
     const auto unwanted = d_.resolve(phrase);
     if (unwanted.found()) d_.mention(unwanted);
+    Cursor there = c_;
+    Phrase where;
+    if (there.take(Class::relation) && there.take_phrase(where) && there.at_end_of_clause() &&
+        d_.resolve(where).found())
+        c_.at = there.at;  // "I do not want that hat on the bear"
     if (Cursor worn = c_; unwanted.found() && worn.is(Class::word_to) &&
                           (worn.peek(Class::wearing, 1) || worn.peek(Class::having, 1))) {
         c_.at += 2;  // "I do not want the bear to wear a hat"
@@ -189,7 +194,8 @@ bool Reader::negative_clause() {
         d_.already_so();
         return true;
     }
-    if (ahead.peek(Class::none) && !ahead.peek(Class::correction)) return no_thing_clause();
+    if (ahead.peek(Class::none) && (!ahead.peek(Class::correction) || d_.size() == 0))
+        return no_thing_clause();
     if (not_there_clause()) return true;
     if (ahead.peek(Class::negation)) {
         const std::size_t start = c_.at;
@@ -351,7 +357,8 @@ bool Reader::denied(const Targets& targets) {
         attributes.push_back(one);
         if (!ahead.take(Class::alternative)) break;
     }
-    if (Phrase same; attributes.empty() && ahead.take_phrase(same) && d_.resolve(same).found()) {
+    if (Phrase same; attributes.empty() && ahead.take_phrase(same) && !targets.empty() &&
+                     d_.resolve(same).reference == targets.front().reference) {
         ahead.take_mark(',');
         if (!ahead.take(Class::contrast)) return false;
         c_.at = ahead.at;  // "is not a bear but a dog"

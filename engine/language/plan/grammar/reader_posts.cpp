@@ -89,9 +89,9 @@ bool Reader::own_pattern(const Target& subject, const Phrase& phrase) {
             if (attribute.quality == Quality::Material || attribute.quality == Quality::Surface ||
                 (attribute.quality == Quality::Colour && !motif)) {
                 d_.apply(subject, attribute);
-                return true;
+                value = attribute.value;
             }
-        return false;
+        return !value.empty();
     }
     if (!named) {
         const auto plain = meaning(Class::pattern, phrase.typed);

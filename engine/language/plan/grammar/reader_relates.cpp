@@ -290,7 +290,8 @@ bool Reader::relate(const Target& subject, std::string_view relation, const Phra
     if (!is_thing(phrase)) return false;
     auto how = inverse(relation);
     if (relation == "between") how = "beside";
-    if (relation == "in" && !has(Class::container, phrase.noun) &&
+    const auto vessel = phrase.noun.substr(phrase.noun.rfind(' ') + 1);
+    if (relation == "in" && !has(Class::container, phrase.noun) && !has(Class::container, vessel) &&
         (kinds_of(phrase.noun) & (Artifact | Object)) == 0) {
         if ((kinds_of(phrase.noun) & (Plant | Animal | Person)) == 0) {
             d_.environment(phrase.typed);
@@ -576,6 +577,19 @@ std::optional<bool> Reader::describe_place(const Phrase& phrase, bool bare) {
         return true;
     }
     return std::nullopt;
+}
+
+/// "snow on the ground": the ground becomes so.
+bool Reader::lies_on_ground(const Phrase& phrase) {
+    Cursor below = c_;
+    Phrase ground;
+    if (!is_ground(phrase) || phrase.has_determiner() || !below.is(Class::word_on)) return false;
+    ++below.at;
+    const auto old = below.take_phrase(ground) ? d_.resolve(ground) : Target{};
+    if (!old.thing || !d_.scene().things[*old.thing].is_ground || !below.at_end_of_clause()) return false;
+    c_.at = below.at;
+    d_.ground(phrase);
+    return true;
 }
 
 }  // namespace gse::language::plan

@@ -202,6 +202,7 @@ std::optional<bool> Reader::has_something(const Targets& subjects) {
 
 /// "is blue", "is painted blue", "is replaced by a cat", "is behind the statue".
 bool Reader::is_somehow(const Targets& subjects, bool modal) {
+    if (looks_somewhere(subjects)) return true;  // "should look to the right"
     if (c_.peek(Class::look_word).length > c_.peek(Class::copula).length) c_.take(Class::look_word);
     c_.take(Class::copula);
     if (!c_.is(Class::word_too)) c_.take(Class::as_well);
@@ -325,8 +326,9 @@ std::optional<bool> Reader::statement(const std::vector<Phrase>& phrases, bool s
         Targets made;
         return place_new(phrase, made);
     }
-    if (Cursor place = c_; is_new && is_thing(phrase) && !d_.kin_of(phrase) && place.take(Class::modal) &&
-                           (place.take(Class::copula) || place.peek(Class::emerging))) {
+    if (Cursor place = c_;
+        is_new && is_thing(phrase) && !d_.kin_of(phrase) &&
+        ((place.take(Class::modal) && place.peek(Class::emerging)) || place.take(Class::copula))) {
         place.take(Class::emerging);
         if (place.peek(Class::relation)) {  // "a sign should stand in front of the bear"
             Targets made;

@@ -419,6 +419,25 @@ bool Reader::paint_clause() {
     return complement(targets);
 }
 
+/// "(change) the background to a city": of the scene; nothing where the scene shows such a thing.
+std::optional<bool> Reader::changes_backdrop() {
+    Cursor whole = c_;
+    Phrase backdrop, place;
+    if (!whole.take_phrase(backdrop) || !has(Class::backdrop, backdrop.noun) ||
+        !d_.things_named(backdrop).empty())
+        return std::nullopt;
+    c_.at = whole.at;
+    while (c_.take(Class::to) || c_.take(Class::into) || c_.take(Class::copula)) {}
+    if (c_.is(Class::word_with) || c_.is(Class::word_by) || c_.is(Class::word_for)) ++c_.at;
+    if (c_.take_phrase(place) && !place.noun.empty()) {
+        d_.environment(place.typed + " " + backdrop.noun);
+        return true;
+    }
+    const auto attributes = c_.take_attributes();
+    for (const auto& attribute : attributes) d_.environment(attribute.typed + " " + backdrop.noun);
+    return !attributes.empty();
+}
+
 bool Reader::turn_clause() {
     const bool colour_first = c_.peek(Class::verb_turn).length > 0;
     if (!colour_first || !c_.take(Class::verb_turn)) return false;
@@ -446,20 +465,7 @@ bool Reader::turn_clause() {
         return complement({target});
     }
     std::vector<Phrase> phrases;
-    const auto backdrop =
-        whole.at > c_.at && has(Class::backdrop, colour.noun) && d_.things_named(colour).empty();
-    if (backdrop) {
-        c_.at = whole.at;
-        while (c_.take(Class::to) || c_.take(Class::into) || c_.take(Class::copula)) {}
-        Phrase place;
-        if (c_.take_phrase(place) && !place.noun.empty()) {
-            d_.environment(place.typed + " " + colour.noun);
-            return true;
-        }
-        const auto attributes = c_.take_attributes();
-        for (const auto& attribute : attributes) d_.environment(attribute.typed + " " + colour.noun);
-        return !attributes.empty();
-    }
+    if (const auto read = changes_backdrop()) return *read;
     if (!objects(targets, &phrases)) return false;
     frame_ = Frame::Turn;
     c_.take(Class::colour_word);
@@ -529,6 +535,7 @@ bool Reader::replace_clause() {
         if (use) return false;
     }
     if (swaps_colours()) return true;
+    if (const auto read = changes_backdrop()) return *read;
     Targets targets;
     Cursor whole = c_;
     Phrase owned;

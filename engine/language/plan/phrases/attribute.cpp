@@ -58,6 +58,10 @@ std::size_t colour_length(std::span<const Word> words, std::string& name) {
         return length + (colored ? 1 : 0);  // "salmon colored"
     }
     if (words.empty()) return 0;
+    if (has(Class::colour_noun, words[0].text) && match(Class::pattern_plain, words.subspan(1))) {
+        name = *meaning(Class::colour_noun, words[0].text);  // "red and gold striped"
+        return 1;
+    }
     if (const auto shade =
             match(Class::shade_of, words.subspan(std::min(at, words.size())))) {  // "a deeper shade of red"
         const auto colour = match(Class::colour, words.subspan(at + shade.length));

@@ -167,7 +167,10 @@ bool Cursor::take_pronoun(Phrase& phrase) {
             Attribute ignored;
             Cursor ahead = *this;
             ahead.at += found.length;
-            if (determines && !ahead.ends_phrase(0, true) &&
+            Cursor how = ahead;  // "make this blue"
+            const bool alone = kind == Class::pronoun_it && how.take_attribute(ignored, false) &&
+                               how.at_end_of_clause() && ignored.quality == Quality::Colour;
+            if (determines && !alone && !ahead.ends_phrase(0, true) &&
                 (ahead.noun_length() > 0 || ahead.take_attribute(ignored, true)) &&
                 (kind != Class::pronoun_person || ahead.noun_length() > 0))
                 continue;

@@ -231,8 +231,10 @@ void drop_degrees(std::vector<Word>& words) {
 
 /// "paint only its nose", "make just the hat blue": says as much without the adverb.
 void drop_adverbs(std::vector<Word>& words, std::span<const std::string> needed) {
-    const bool ordered = words.size() > 2 && has(Class::plain_verb, words[0].text) && words[1].text == ":";
-    if (ordered) words.erase(words.begin() + 1);        // "remove: bear"
+    for (std::size_t i = 0; i + 2 < words.size(); ++i)  // "remove: bear"
+        if ((i == 0 || words[i - 1].mark) && has(Class::plain_verb, words[i].text) &&
+            words[i + 1].text == ":")
+            words.erase(words.begin() + static_cast<std::ptrdiff_t>(i) + 1);
     for (std::size_t i = 0; i + 1 < words.size(); ++i)  // "a blue blue bear"
         if (words.size() > 3 && words[i].text.size() > 1 && !words[i].mark &&
             words[i].text == words[i + 1].text &&
