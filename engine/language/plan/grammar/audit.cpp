@@ -153,7 +153,7 @@ bool names_any(const SceneWords& scene, const Word& word) {
 bool is_odd(const Step& step, const SceneWords& scene) {
     if (has(Class::nobody, step.thing.noun) || has(Class::something, step.thing.noun)) return true;
     if (step.operation == Operation::Replace)
-        return step.subject.links.size() == 1 && (kinds_of(step.thing.noun) & Body) != 0 &&
+        return step.subject.links.size() == 1 && (kinds_of(word_of(step.thing.noun).singular) & Body) != 0 &&
                !has(Class::worn, step.thing.noun);
     if (step.operation == Operation::Alter) {
         const bool lives = (kinds_of(step.subject.root()) & (Animal | Person)) != 0;

@@ -128,6 +128,7 @@ private:
     bool says_of(const Phrase& phrase) const;
     bool gets_something() const;
     bool moves_part() const;
+    bool loses_or_gets(const Target& subject);
     bool takes_off() const;
     bool take_off();
     bool takes_alone(Cursor& ahead, Phrase& phrase) const;

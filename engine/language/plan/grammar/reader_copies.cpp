@@ -92,6 +92,10 @@ bool Reader::one_more(const Phrase& phrase) {
         if (target.found()) d_.duplicate(target, std::to_string(same + 1));
         return target.found();
     }
+    if (same > 1 && phrase.count == std::to_string(same) && !phrase.attributes.empty() && !phrase.another) {
+        for (const auto index : found) apply_all({d_.target_of_thing(index)}, phrase.attributes);
+        return true;  // "two red cars" of two
+    }
     if (const int count = std::atoi(phrase.count.c_str()); same > 1 && count > same && ends_well()) {
         Phrase all = phrase;  // "three chairs" of two
         all.count = "all";

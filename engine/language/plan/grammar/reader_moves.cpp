@@ -64,7 +64,7 @@ void Reader::move_way(const Target& target, const Match& direction, std::string 
 bool Reader::skip_origin() {
     Cursor ahead = c_;
     Phrase origin;
-    if (!ahead.is(Class::word_from) || !ahead.take(Class::from) || !ahead.take_phrase(origin)) return false;
+    if (!ahead.take(Class::from) || !ahead.take_phrase(origin)) return false;
     if (!d_.resolve(origin).found() || !(ahead.is(Class::word_to) || ahead.peek(Class::relation)))
         return false;
     c_.at = ahead.at;

@@ -275,6 +275,7 @@ bool Reader::has_list(const Target& subject, std::string_view relation) {
     if (c_.is(Class::word_neither)) return lack_both(subject);
     do {
         const std::size_t start = c_.at;
+        if (c_.peek(Class::definite) && compared({subject})) continue;  // "the color of honey"
         if (Cursor look = c_; look.take(Class::article) && look.take(Class::style) &&
                               look.take(Class::style_word)) {  // "a vintage look"
             const auto subjects = Targets{subject};

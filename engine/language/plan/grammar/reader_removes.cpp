@@ -317,6 +317,7 @@ bool Reader::keep_clause() {
             return true;
         }
         const Phrase kept = phrase;
+        if (c_.is(Class::word_leave) && object.is(Class::word_out)) return false;  // "leave the hat out"
         if (!kept.excepted.empty() && object.at_end_of_clause() && !c_.peek(Class::do_not)) {
             c_.at = object.at;
             return remove_excepted(kept);  // "keep everything but the hat"

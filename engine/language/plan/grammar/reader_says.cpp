@@ -274,6 +274,8 @@ bool Reader::predicate(const Targets& subjects) {
         return has_list(subjects.front(), "with") || back();
     }
     const bool modal = c_.take(Class::modal).length > 0;
+    if (modal && subjects.size() == 1 && (c_.word().base == "lose" || gets_something()))
+        return loses_or_gets(subjects.front()) || back();
     if (modal && subjects.size() == 1 && names_need())
         return has_list(subjects.front(), "with") || back();  // "the bear needs a hat"
     while (c_.take(Class::as_well)) {}
@@ -405,12 +407,19 @@ bool Reader::is_to_move(const Target& subject) {
     return found.thing && !d_.scene().things[*found.thing].is_ground && move_to(subject, relation);
 }
 
+/// "(should) lose its hat", "(should) get a hat".
+bool Reader::loses_or_gets(const Target& subject) {
+    const bool loses = c_.word().base == "lose";
+    ++c_.at;
+    return loses ? lack_list(subject) : has_list(subject, "with");
+}
+
 /// Tells whether a thing stands there that someone may need: "(needs) a hat", "(needs) wings".
 bool Reader::names_need() const {
     Cursor needed = c_;
     Phrase clothes;
     return c_.peek(Class::article) || c_.peek(Class::number) || c_.peek(Class::some) ||
-           (needed.take_phrase(clothes) && is_worn(clothes) && !clothes.definite);
+           (needed.take_phrase(clothes) && (is_worn(clothes) || is_part(clothes)) && !clothes.definite);
 }
 
 /// "takes its hat off".

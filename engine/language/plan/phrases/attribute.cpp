@@ -219,9 +219,10 @@ bool Cursor::take_other_attribute(Attribute& attribute, bool in_phrase) {
 /// "zebra stripes", "spotted", "striped red and white".
 bool Cursor::take_pattern(Attribute& attribute, bool in_phrase) {
     if (const auto animal = peek(Class::pattern_animal);
-        animal && match(Class::pattern_plain, rest(animal.length)) && !is(Class::word_rainbow, 1)) {
+        animal && !is(Class::word_rainbow, 1) &&
+        (match(Class::pattern_plain, rest(animal.length)) || word(animal.length).text == "patterned")) {
         at += animal.length;
-        take(Class::pattern_plain);
+        if (!take(Class::pattern_plain)) ++at;  // "giraffe-patterned"
         attribute = {Quality::Pattern, std::string(animal.value), std::string(animal.value), ""};
         return true;
     }
