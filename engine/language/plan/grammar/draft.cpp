@@ -288,10 +288,11 @@ void Draft::share_place(std::size_t from) {
     const bool placed = last.operation == Operation::Add && last.anchors.size() == 1 &&
                         !last.anchors.front().is_scene() && last.relation != "worn by" &&
                         last.relation != "held by";
+    if (!placed) return;
     const auto& whose = last.anchors.front().root();
     const bool at_new =
         std::any_of(steps_.begin(), steps_.end(), [&](const Step& step) { return step.thing.noun == whose; });
-    for (std::size_t i = from; placed && !at_new && i + 1 < steps_.size(); ++i) {
+    for (std::size_t i = from; !at_new && i + 1 < steps_.size(); ++i) {
         auto& step = steps_[i];
         if (step.operation != Operation::Add || step.anchors.size() != 1 || !step.anchors.front().is_scene())
             continue;
