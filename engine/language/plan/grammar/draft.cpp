@@ -153,6 +153,9 @@ void Draft::step(Operation operation, const Target& target, std::string text, st
     made.subject = target.reference;
     made.text = std::move(text);
     made.text2 = std::move(text2);
+    if (made.text.starts_with("face ") && !steps_.empty() && steps_.back().text == "rotate" &&
+        steps_.back().subject == made.subject)
+        steps_.pop_back();  // "rotate it so that it looks to the left"
     push(made);
 }
 

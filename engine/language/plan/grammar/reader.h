@@ -161,6 +161,7 @@ private:
     bool is_slip_of_focus(const Phrase& phrase) const;
     std::optional<bool> describe_other_kind(const Phrase& phrase, const Target& found);
     bool describe_likeness(const Phrase& phrase);
+    bool describe_kin(const Phrase& phrase, const Target& kin, std::size_t thing);
     bool describe_in_style(const Phrase& phrase, std::size_t thing);
     bool skip_instead();
     bool describe_more();

@@ -563,4 +563,15 @@ bool Reader::describe_likeness(const Phrase& phrase) {
     return true;
 }
 
+/// "anime girl" of a girl.
+bool Reader::describe_in_style(const Phrase& phrase, std::size_t thing) {
+    const auto first = phrase.noun.substr(0, phrase.noun.rfind(' '));
+    if (!has(Class::style, first)) return false;
+    described_ = d_.target_of_thing(thing);
+    d_.style(*described_, first);
+    apply_all({*described_}, phrase.attributes);
+    posts(*described_);
+    return true;
+}
+
 }  // namespace gse::language::plan

@@ -7,6 +7,8 @@
 namespace gse::language::plan {
 namespace {
 
+constexpr std::size_t LongestPlain = 14;  // words; in longer sentences "my sister" is who tells
+
 bool is_one_slip(const std::string& noun, const std::string& other) {
     const std::vector<std::string> needed{other};
     const auto near = slips_of(noun, needed, 100);
@@ -85,17 +87,6 @@ std::optional<bool> Reader::describe_other_kind(const Phrase& phrase, const Targ
     return std::nullopt;
 }
 
-/// "anime girl" of a girl.
-bool Reader::describe_in_style(const Phrase& phrase, std::size_t thing) {
-    const auto first = phrase.noun.substr(0, phrase.noun.rfind(' '));
-    if (!has(Class::style, first)) return false;
-    described_ = d_.target_of_thing(thing);
-    d_.style(*described_, first);
-    apply_all({*described_}, phrase.attributes);
-    posts(*described_);
-    return true;
-}
-
 /// "the red one", "a darker red": a description without a noun.
 bool Reader::describe_nameless(const Phrase& phrase) {
     const auto last = phrase.attributes.empty() ? Quality::Other : phrase.attributes.back().quality;
@@ -139,6 +130,26 @@ void Reader::describe_telegraphic(const Target& found) {
         c_.at = last.at;
 }
 
+/// "a polar bear" of a bear: another thing, or the bear in a style or a pose.
+bool Reader::describe_kin(const Phrase& phrase, const Target& kin, std::size_t thing) {
+    const auto first = phrase.noun.substr(0, phrase.noun.find(' '));
+    const bool compound = has(Class::compound, phrase.noun);
+    if (first.ends_with("ing") && word_of(first).base != first && !compound) {
+        described_ = kin;  // "a hugging bear"
+        d_.step(Operation::Pose, kin, first);
+        posts(kin);
+        return describe_more();
+    }
+    const bool species =
+        (kinds_of(first) & (Concrete | Perhaps | Other | Adjective)) != 0 || kinds_of(first) == 0;
+    if (!species && !compound) return fail(reason::NotASentence);  // "a read bear"
+    if (describe_in_style(phrase, thing)) return describe_more();
+    const auto made = d_.replace(kin, phrase);
+    described_ = made;
+    posts(made);
+    return describe_more();
+}
+
 /// The first thing of a description: it is there, or stands in the place of what is.
 bool Reader::describe(const Phrase& phrase) {
     frame_ = Frame::Describe;
@@ -157,18 +168,8 @@ bool Reader::describe(const Phrase& phrase) {
     const bool exact = std::any_of(named.begin(), named.end(),
                                    [&](std::size_t i) { return d_.scene().things[i].noun == phrase.noun; });
     if (const auto kin = d_.kin_of(phrase);
-        kin && !phrase.owner && (named.empty() || (phrase.indefinite && !exact))) {
-        const auto first = phrase.noun.substr(0, phrase.noun.find(' '));
-        const bool species =
-            (kinds_of(first) & (Concrete | Perhaps | Other | Adjective)) != 0 || kinds_of(first) == 0;
-        if (!species && !has(Class::compound, phrase.noun))
-            return fail(reason::NotASentence);  // "a read bear"
-        if (describe_in_style(phrase, *kin)) return describe_more();
-        const auto made = d_.replace(d_.target_of_thing(*kin), phrase);
-        described_ = made;
-        posts(made);
-        return describe_more();
-    }
+        kin && !phrase.owner && (named.empty() || (phrase.indefinite && !exact)))
+        return describe_kin(phrase, d_.target_of_thing(*kin), *kin);
     if (describe_likeness(phrase)) return describe_more();
     const auto found = d_.resolve(phrase);
     if (found.kind == Target::Kind::Ambiguous) return fail(reason::Ambiguous);
@@ -381,7 +382,9 @@ bool Reader::describe_new(const Phrase& phrase) {
         return fail(reason::NotInScene);
     }
     if (describe_pattern(phrase)) return true;
-    if (!is_thing(phrase)) return fail(reason::NotASentence);
+    const bool tells =
+        word_count_ > LongestPlain && phrase.possessive && (kinds_of(phrase.noun) & Person) != 0;
+    if (tells || !is_thing(phrase)) return fail(reason::NotASentence);
     if (const auto read = describe_one_of(phrase)) return *read;
     if (const auto read = describe_elsewhere(phrase)) return *read;
     if (is_ground(phrase) && !phrase.has_determiner() && !c_.peek(Class::rather_than))

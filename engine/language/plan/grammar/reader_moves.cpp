@@ -508,6 +508,7 @@ bool Reader::measure(const Targets& targets) {
         ahead.at += 2;
     } else return percent(targets);
     ahead.take(Class::like);
+    ahead.take(Class::of);
     ahead.take(Class::possessive);
     ahead.take(Class::definite);
     Match dimension = ahead.take(Class::dimension);
