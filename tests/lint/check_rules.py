@@ -67,8 +67,9 @@ SUB_ROOMS = {
         "": set(),
         "plan/notation": set(),
         "plan/words": {"plan/notation"},
-        "plan/grammar": {"plan/notation", "plan/words"},
-        "plan": {"", "plan/notation", "plan/words", "plan/grammar"},
+        "plan/phrases": {"plan/notation", "plan/words"},
+        "plan/grammar": {"plan/notation", "plan/words", "plan/phrases"},
+        "plan": {"", "plan/notation", "plan/words", "plan/phrases", "plan/grammar"},
     },
     "remote": {
         "api": set(),

@@ -58,6 +58,12 @@ bool may_name_thing(const std::vector<Word>& words, std::size_t at) {
     return article && (at == 1 || !is_a(at - 2, Class::relation));  // not "in a row"
 }
 
+bool begins_object(const std::vector<Word>& words, std::size_t at) {
+    const auto rest = std::span(words).subspan(at);
+    return match(Class::article, rest) || match(Class::definite, rest) || match(Class::possessive, rest) ||
+           match(Class::pronoun_it, rest) || match(Class::pronoun_person, rest);
+}
+
 /// The plan when one word, though it is one, is a slip: "a bear wearing a hate". Nothing where no word makes
 /// sense of the sentence.
 std::optional<Plan> with_a_slip(const SentenceWords& sentence, const SceneWords& scene,
@@ -71,13 +77,16 @@ std::optional<Plan> with_a_slip(const SentenceWords& sentence, const SceneWords&
         const bool joins = has(Class::word_for, word.text) || has(Class::word_out, word.text);
         if (word.mark || word.text.size() < 2 || told || joins || is_grammatical(word.text)) continue;
         const Word typed = word;
+        const bool known = std::ranges::binary_search(spellable_words(), std::string_view(typed.text));
+        const bool orders = at == 0 && words.size() > 2 && begins_object(words, 1);
         for (auto& other : slips_of(typed.text, needed, MostSlips)) {
             const bool is_needed = std::find(needed.begin(), needed.end(), other) != needed.end();
             const bool thing = has(Class::worn, other) || has(Class::held, other);
             // "biger", "waring": a form that some word could have, and no word of the list
-            const bool describes =
-                has(Class::colour, other) ||
-                (kinds_of(typed.text) == 0 && (is_grammatical(other) || has(Class::material, other)));
+            const bool describes = has(Class::colour, other) ||
+                                   (kinds_of(typed.text) == 0 && !known &&
+                                    (is_grammatical(other) || has(Class::material, other))) ||
+                                   (orders && has(Class::plain_verb, other));  // "putt a hat on it"
             if (!is_needed && (towards_scene_only || (!thing && !describes))) continue;
             if (!is_needed && !describes && !may_name_thing(words, at)) continue;
             word = word_of(std::move(other));
@@ -91,6 +100,31 @@ std::optional<Plan> with_a_slip(const SentenceWords& sentence, const SceneWords&
 
 }  // namespace
 
+/// "entirely blue and entirely green".
+bool wants_two_wholes(const std::vector<Word>& words, const Plan& plan) {
+    const auto wholly = std::count_if(words.begin(), words.end(),
+                                      [](const Word& word) { return has(Class::wholly, word.text); });
+    return wholly > 1 && std::any_of(plan.steps.begin(), plan.steps.end(), [](const Step& step) {
+               return step.operation == Operation::Recolour && step.text.find(" and ") != std::string::npos;
+           });
+}
+
+/// Words without what stands between commas and tells why or when: "add, if you have the time, a bench".
+std::vector<Word> without_asides(const std::vector<Word>& words) {
+    std::vector<Word> left;
+    for (std::size_t at = 0; at < words.size(); ++at) {
+        const bool comma = words[at].mark && words[at].text == "," && at + 1 < words.size();
+        const auto end =
+            std::find_if(words.begin() + static_cast<std::ptrdiff_t>(std::min(at + 1, words.size())),
+                         words.end(), [](const Word& word) { return word.mark; });
+        const bool aside = comma && end != words.end() && end->text == "," &&
+                           match(Class::aside, std::span(words).subspan(at + 1));
+        if (aside) at = static_cast<std::size_t>(end - words.begin());
+        else left.push_back(words[at]);
+    }
+    return left;
+}
+
 Plan plan_sentence(std::string_view sentence, const SceneWords& scene, std::string_view source) {
     const auto clean = clean_text(sentence);
     if (!clean.refused.empty()) return refusal(clean.refused);
@@ -102,8 +136,13 @@ Plan plan_sentence(std::string_view sentence, const SceneWords& scene, std::stri
     const bool unread = is_refused_for(plan, {reason::NotASentence, reason::Incomplete});
     if (unread || is_refused_for(plan, {reason::NotInScene}))
         if (auto other = with_a_slip(words, scene, source, needed, !unread)) return *other;
-    if (words.words.size() > StoryLength && plan.steps.front().operation == Operation::Refuse)
+    if (words.words.size() > StoryLength && plan.steps.front().operation == Operation::Refuse) {
+        const auto plain = without_asides(words.words);
+        auto shorter = plain.size() < words.words.size() ? Reader(plain, scene, source).read() : plan;
+        if (!shorter.is_refusal()) return shorter;
         return Reader(words.words, scene, source).read_story();
+    }
+    if (wants_two_wholes(words.words, plan)) return refusal(reason::Contradiction);
     if (const auto reason = doubt(words.words, scene, plan); !reason.empty()) return refusal(reason);
     return plan;
 }

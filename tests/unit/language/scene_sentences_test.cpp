@@ -88,9 +88,9 @@ const Case Read[] = {
      "The red color of the bear was never our first choice, and now that the brand has changed its colors, "
      "the bear has to be green, like the logo.",
      "recolour(bear, green)"},
-    {Bear, "bear", "make it look like a Pixar movie", "style(bear, pixar movie)"},
+    {Bear, "bear", "make it look like a Pixar movie", "style(scene, pixar movie)"},
     {Bear, "bear", "a claymation bear", "style(bear, claymation)"},
-    {Bear, "bear", "a bear on a sunny day", "environment(scene, sunny)"},
+    {Bear, "bear", "a bear on a sunny day", "environment(scene, sunny day)"},
     {Frog, "frog", "remove both animals", "remove(bear) ; remove(frog)"},
     {Bear, "bear", "a brown teddy bear sitting on the grass", "replace(bear, teddy bear{brown})"},
     {Bear, "bear", "a red bear with a huge smile", "pose(bear, huge smile)"},

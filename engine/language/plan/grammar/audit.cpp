@@ -15,15 +15,15 @@ using Texts = std::set<std::string, std::less<>>;
 constexpr std::size_t LongestAudited = 18;  // words; longer sentences tell more than they ask for
 
 /// Descriptions that some step has to say.
-constexpr std::array Descriptions = {Class::colour, Class::material, Class::material_surface,
-                                     Class::pattern_plain};
+constexpr std::array Descriptions = {Class::colour,        Class::material, Class::material_surface,
+                                     Class::pattern_plain, Class::size,     Class::state,
+                                     Class::pose};
 /// Words beside which a description may be said of what is not to be.
 constexpr std::array Excuses = {
-    Class::negation,  Class::none,         Class::without,    Class::rather_than,
-    Class::except,    Class::like,         Class::correction, Class::alternative,
-    Class::from,      Class::do_not,       Class::unwanted,   Class::contrast,
-    Class::than,      Class::word_neither, Class::instead,    Class::negative_prompt,
-    Class::verb_keep, Class::sequence};
+    Class::negation,  Class::none,       Class::without,      Class::rather_than, Class::except,
+    Class::like,      Class::correction, Class::alternative,  Class::from,        Class::do_not,
+    Class::unwanted,  Class::than,       Class::word_neither, Class::instead,     Class::negative_prompt,
+    Class::verb_keep, Class::nobody};
 
 template <std::size_t N> bool is_any(Words words, const std::array<Class, N>& kinds) {
     return std::any_of(kinds.begin(), kinds.end(), [&](Class kind) { return match(kind, words).length > 0; });
@@ -52,15 +52,41 @@ bool has_empty_anchor(const Step& step) {
 }
 
 /// Words of the grammar that hold a description or a noun: "overgrown with", "on fire", "in the dark".
-constexpr std::array Fixed = {
-    Class::inverse_relation, Class::fire_words,     Class::relation,    Class::compound,
-    Class::courtesy,         Class::request,        Class::caption,     Class::as_well,
-    Class::emerging,         Class::direction,      Class::environment, Class::viewer,
-    Class::turning,          Class::flipping,       Class::sequence,    Class::pose,
-    Class::there_is,         Class::times,          Class::everything,  Class::pronoun_it,
-    Class::colour_word,      Class::furniture_name, Class::thing_name,  Class::animal_name,
-    Class::person_name,      Class::clothes_name,   Class::ground_name, Class::vehicle_name,
-    Class::plant_name,       Class::noise,          Class::gone};
+constexpr std::array Fixed = {Class::inverse_relation,
+                              Class::fire_words,
+                              Class::relation,
+                              Class::compound,
+                              Class::courtesy,
+                              Class::request,
+                              Class::caption,
+                              Class::as_well,
+                              Class::emerging,
+                              Class::direction,
+                              Class::environment,
+                              Class::viewer,
+                              Class::turning,
+                              Class::flipping,
+                              Class::sequence,
+                              Class::pose,
+                              Class::there_is,
+                              Class::times,
+                              Class::everything,
+                              Class::pronoun_it,
+                              Class::colour_word,
+                              Class::furniture_name,
+                              Class::thing_name,
+                              Class::animal_name,
+                              Class::person_name,
+                              Class::clothes_name,
+                              Class::ground_name,
+                              Class::vehicle_name,
+                              Class::plant_name,
+                              Class::noise,
+                              Class::gone,
+                              Class::degree,
+                              Class::empty,
+                              Class::unworn_adjective,
+                              Class::shade_of};
 
 template <std::size_t N> std::size_t longest(Words words, const std::array<Class, N>& kinds) {
     std::size_t length = 0;
@@ -74,9 +100,10 @@ bool is_said(Words words, const Texts& said) {
     add_words(parts, words[0].text);  // "t-shirt"
     const bool all =
         std::all_of(parts.begin(), parts.end(), [&](const std::string& part) { return said.contains(part); });
+    if (match(Class::size, words).length > 0 && said.contains("transform")) return true;  // "20 % smaller"
     if (said.contains(words[0].singular) || (all && !parts.empty())) return true;
-    for (const auto kind :
-         {Class::colour, Class::material, Class::material_surface, Class::pattern_plain, Class::covering})
+    for (const auto kind : {Class::colour, Class::material, Class::material_surface, Class::pattern_plain,
+                            Class::covering, Class::size, Class::state, Class::pose})
         if (const auto found = match(kind, words)) {
             Texts meant;
             add_words(meant, found.value);
@@ -107,7 +134,7 @@ bool may_name(const Word& word) {
 }
 
 bool is_noun(const Word& word) {
-    if (is_verb(word)) return false;
+    if (is_verb(word) || has(Class::body_place, word.singular)) return false;
     constexpr std::uint32_t Things = Animal | Person | Plant | Food | Vehicle | Kind::Worn | Artifact;
     return ((kinds_of(word.singular) & Things) != 0 &&
             (kinds_of(word.text) & (Kind::Verb | Adjective | Body)) == 0) ||
@@ -124,8 +151,10 @@ bool names_any(const SceneWords& scene, const Word& word) {
 
 /// Tells whether the step asks for what nobody asks: a thing beside the whole scene, a nose for a bear.
 bool is_odd(const Step& step, const SceneWords& scene) {
+    if (has(Class::nobody, step.thing.noun) || has(Class::something, step.thing.noun)) return true;
     if (step.operation == Operation::Replace)
-        return step.subject.links.size() == 1 && (kinds_of(step.thing.noun) & Body) != 0;
+        return step.subject.links.size() == 1 && (kinds_of(word_of(step.thing.noun).singular) & Body) != 0 &&
+               !has(Class::worn, step.thing.noun);
     if (step.operation == Operation::Alter) {
         const bool lives = (kinds_of(step.subject.root()) & (Animal | Person)) != 0;
         return has(Class::praise, step.text) || (lives && has(Class::environment, step.text));
@@ -141,7 +170,8 @@ bool is_odd(const Step& step, const SceneWords& scene) {
         return true;  // a hat beside itself
     const auto head = step.thing.noun.substr(step.thing.noun.rfind(' ') + 1);
     const auto kinds = kinds_of(head);
-    if (step.relation == "held by") return (kinds_of(step.thing.noun) & Body) != 0;
+    if (step.relation == "held by")
+        return (kinds_of(step.thing.noun) & Body) != 0 || has(Class::body_place, step.thing.noun);
     return step.relation == "worn by" && !has(Class::worn, head) && (kinds & Kind::Worn) == 0 &&
            (kinds & (Vehicle | Food | Person)) != 0;
 }
@@ -162,12 +192,22 @@ bool leaves_unsaid(Words words, const SceneWords& scene, const Texts& said) {
             at += 2;
             continue;
         }
+        if (const auto compound = match(Class::compound, here); compound.length > 1) {
+            Texts meant;
+            add_words(meant, compound.value);
+            if (std::none_of(meant.begin(), meant.end(),
+                             [&](const auto& each) { return said.contains(each); }))
+                return true;
+            at += compound.length;
+            continue;
+        }
         if (const auto fixed = longest(here, Fixed); fixed > 0) {
             at += fixed;
             continue;
         }
-        const auto pattern = match(Class::pattern_animal, here).length;
-        if (pattern > 0 && is_said(here, said)) {  // "zebra stripes"
+        const auto animal = match(Class::pattern_animal, here).length;
+        const auto pattern = here[0].text == "rainbow" ? 1 : animal;  // "rainbow-striped"
+        if (pattern > 0 && is_said(here, said)) {                     // "zebra stripes"
             at += pattern + match(Class::pattern_plain, words.subspan(at + pattern)).length;
             continue;
         }
@@ -188,7 +228,8 @@ std::string_view doubt(Words words, const SceneWords& scene, const Plan& plan) {
         if (is_odd(step, scene) || (tells && step.operation == Operation::Alter)) return reason::NotASentence;
     if (tells) return {};
     for (std::size_t at = 0; at < words.size(); ++at)
-        if (is_any(words.subspan(at), Excuses) || words[at].text == "again") return {};
+        if (is_any(words.subspan(at), Excuses) || words[at].text == "again" || words[at].text == "then")
+            return {};
     Texts said;
     add_words(said, to_string(plan));
     for (const auto& thing : scene.things) {

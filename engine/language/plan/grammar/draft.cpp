@@ -153,6 +153,9 @@ void Draft::step(Operation operation, const Target& target, std::string text, st
     made.subject = target.reference;
     made.text = std::move(text);
     made.text2 = std::move(text2);
+    if (made.text.starts_with("face ") && !steps_.empty() && steps_.back().text == "rotate" &&
+        steps_.back().subject == made.subject)
+        steps_.pop_back();  // "rotate it so that it looks to the left"
     push(made);
 }
 
@@ -226,6 +229,8 @@ void Draft::set_anchors(const Target& made, std::string_view relation, const std
     if (relation == "on" && anchors.size() == 1 && anchors.front().thing && is_worn(clothes) &&
         can_wear(anchors.front()))
         step.relation = "worn by";  // "two hats on the bear"
+    if (relation == "above" && has(Class::cloth, step.thing.noun.substr(step.thing.noun.rfind(' ') + 1)))
+        step.relation = "on";  // "a blanket over the sofa"
     step.anchors.clear();
     for (const auto& anchor : anchors) step.anchors.push_back(anchor.reference);
     if (relation != "between" || anchors.size() != 1) return;
@@ -255,6 +260,10 @@ void Draft::ground(const Phrase& phrase, bool another) {
         for (const auto& attribute : phrase.attributes) apply(target_of_thing(*old), attribute);
         return;
     }
+    if (old)
+        std::erase_if(steps_, [&](const Step& step) {  // "no grass, snow"
+            return step.operation == Operation::Remove && step.subject == target_of_thing(*old).reference;
+        });
     push(made);
 }
 
@@ -282,16 +291,23 @@ void Draft::share_place(std::size_t from) {
     const bool placed = last.operation == Operation::Add && last.anchors.size() == 1 &&
                         !last.anchors.front().is_scene() && last.relation != "worn by" &&
                         last.relation != "held by";
+    if (!placed) return;
     const auto& whose = last.anchors.front().root();
     const bool at_new =
         std::any_of(steps_.begin(), steps_.end(), [&](const Step& step) { return step.thing.noun == whose; });
-    for (std::size_t i = from; placed && !at_new && i + 1 < steps_.size(); ++i) {
+    for (std::size_t i = from; !at_new && i + 1 < steps_.size(); ++i) {
         auto& step = steps_[i];
         if (step.operation != Operation::Add || step.anchors.size() != 1 || !step.anchors.front().is_scene())
             continue;
         step.relation = last.relation;
         step.anchors = last.anchors;
     }
+}
+
+bool Draft::stands_nowhere(const Target& made) const {
+    if (!made.step) return false;
+    const auto& step = steps_[*made.step];
+    return step.operation == Operation::Add && step.anchors.size() == 1 && step.anchors.front().is_scene();
 }
 
 bool Draft::changes_whole() const {
@@ -342,6 +358,12 @@ std::optional<Target> Draft::removed_last() const {
     return std::nullopt;
 }
 
+bool Draft::is_removed(const Target& target) const {
+    return std::any_of(steps_.begin(), steps_.end(), [&](const Step& step) {
+        return step.operation == Operation::Remove && step.subject == target.reference;
+    });
+}
+
 void Draft::drop_last() {
     if (!steps_.empty()) steps_.pop_back();
     last_.reset();
@@ -376,7 +398,7 @@ bool Draft::contradicts() const {
 }
 
 Plan Draft::finish() const {
-    if (contradicts()) return refusal(reason::Contradiction);
+    if (contradicted_ || contradicts()) return refusal(reason::Contradiction);
     Plan plan;
     if (steps_.empty()) {
         for (const auto& denied : denied_)  // "no red": of a red bear
@@ -406,6 +428,13 @@ Plan Draft::finish() const {
         const int first = on_made(a) ? 4 : rank(a.operation), second = on_made(b) ? 4 : rank(b.operation);
         return first < second;
     });
+    const auto stands_by = [](const Step& step, const Step& other) {
+        return step.operation == Operation::Add && other.operation == Operation::Add &&
+               std::any_of(step.anchors.begin(), step.anchors.end(),
+                           [&](const Reference& anchor) { return anchor.root() == other.thing.noun; });
+    };
+    for (std::size_t i = 0; i + 1 < plan.steps.size(); ++i)  // "a ball between the bear and a tree"
+        if (stands_by(plan.steps[i], plan.steps[i + 1])) std::swap(plan.steps[i], plan.steps[i + 1]);
     return plan;
 }
 

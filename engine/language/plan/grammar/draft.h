@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/language/plan/grammar/phrase.h"
 #include "engine/language/plan/notation/plan.h"
+#include "engine/language/plan/phrases/phrase.h"
 
 namespace gse::language::plan {
 
@@ -73,6 +73,8 @@ public:
     /// Things added from that step on without a place stand where the last one does ("a cup and a plate on
     /// the table").
     void share_place(std::size_t from);
+    /// Tells whether the target is added to the scene without a place.
+    bool stands_nowhere(const Target& made) const;
     /// Tells whether a step changes a thing as a whole, and not a part of it.
     bool changes_whole() const;
     /// Tells whether a step puts another thing in its place.
@@ -80,12 +82,14 @@ public:
     /// Leaves the thing out of the steps from that one on, which are about all of its kind.
     void leave_out(const Target& target, std::size_t from);
     void refuse(std::string_view reason, std::string_view word = {});
+    void contradict() { contradicted_ = true; }
     void already_so() { same_ = true; }
     void nothing_asked() { asked_nothing_ = true; }
     /// Tells whether the last step makes the target.
     bool last_is(const Target& made) const { return made.step && *made.step + 1 == steps_.size(); }
     /// Thing that the last step removes.
     std::optional<Target> removed_last() const;
+    bool is_removed(const Target& target) const;
     /// Takes the last step back ("no wait", "take it off again").
     void drop_last();
     std::size_t size() const { return steps_.size(); }
@@ -103,6 +107,7 @@ private:
     bool is_plural(const Target& target) const;
     std::optional<Target> ordinal(const Phrase& phrase) const;
     Target owned(const Phrase& phrase) const;
+    std::optional<Target> told_thing(const Phrase& phrase) const;
     std::optional<Target> made_named(const Phrase& phrase) const;
     const SceneWords* scene_;
     std::optional<std::size_t> focus_;
@@ -111,7 +116,7 @@ private:
     std::vector<Step> steps_;
     std::optional<Target> last_;
     std::vector<Step> denied_;
-    bool same_ = false, asked_nothing_ = false;
+    bool same_ = false, asked_nothing_ = false, contradicted_ = false;
 };
 
 /// Tells whether the word names a part of a thing rather than clothes.

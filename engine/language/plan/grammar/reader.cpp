@@ -20,6 +20,11 @@ bool Reader::fail(std::string_view reason) {
 
 Plan Reader::failure() const {
     if (!missing_.empty()) return refusal(reason::NotInScene, missing_);
+    Cursor last = c_;
+    last.at = word_count_ > 1 ? word_count_ - 1 : 0;
+    const bool broken_off = last.peek(Class::article) || last.peek(Class::into) || last.peek(Class::of) ||
+                            last.is(Class::word_with) || last.is(Class::word_and);
+    if (broken_off && word_count_ > 1) return refusal(reason::Incomplete);  // "turn the bear into"
     return refusal(reason_.empty() ? reason::NotASentence : reason_);
 }
 
@@ -27,11 +32,47 @@ Plan Reader::failure() const {
 bool Reader::wishes(const Cursor& start) {
     Cursor at = start;
     Phrase subject;
+    if (Cursor be = at; be.take(Class::wish) && be.peek(Class::there_is)) {  // "can there be a cat?"
+        c_.at = start.at + 1;
+        return true;
+    }
     if (!at.take(Class::wish) || !at.take_phrase(subject) || !d_.resolve(subject).found()) return false;
     if (!at.peek(Class::copula) && !at.peek(Class::wearing) && !at.peek(Class::having) &&
-        !at.peek(Class::holding) && !at.peek(Class::verb_become))
+        !at.peek(Class::holding) && !at.peek(Class::verb_become) && !at.peek(Class::verb_need))
         return false;
     c_.at = start.at + 1;
+    return true;
+}
+
+/// "what would the bear look like in blue?", "what used to be a bear is a lion": steps to what is said of it.
+bool Reader::supposes(Cursor at) {
+    Phrase subject;
+    if (Cursor former = at; former.is(Class::word_what) && ++former.at) {
+        const auto was = former.peek(Class::where_is);
+        if (former.word().text != "is" && was) {
+            former.at += was.length;
+            former.take(Class::to);
+            former.take(Class::copula);
+            const std::size_t begin = former.at;
+            if (former.take_phrase(subject) && d_.resolve(subject).found() &&
+                (former.peek(Class::copula) || former.peek(Class::verb_become) ||
+                 former.peek(Class::modal))) {
+                c_.at = begin;
+                return true;
+            }
+        }
+    }
+    if (at.is(Class::word_what) || at.word().text == "how") ++at.at;
+    else return false;
+    if (at.word().text != "would" && at.word().text != "might") return false;
+    ++at.at;
+    if (!at.take_phrase(subject)) return false;
+    const auto found = subject.naming == Naming::It ? d_.pronoun(Naming::It) : d_.resolve(subject);
+    if (!(found.found() || subject.naming == Naming::It) || !at.take(Class::look_word)) return false;
+    at.take(Class::like);
+    if (at.at_end_of_clause()) return false;
+    if (found.found() && !found.is_scene()) described_ = found;
+    c_.at = at.at;
     return true;
 }
 
@@ -58,7 +99,7 @@ std::optional<Plan> Reader::whole_sentence() {
         if (here.peek(Class::injection)) return refusal(reason::NotAnEdit);
     if (at.done()) return refusal(c_.done() ? reason::NotASentence : reason::NotAnEdit);
     if (at.peek(Class::request)) return std::nullopt;
-    if (wishes(at)) return std::nullopt;
+    if (wishes(at) || supposes(at)) return std::nullopt;
     Target there;
     Reader where = *this;
     where.c_ = at;
@@ -134,6 +175,13 @@ void Reader::skip_lead_in() {
         if (skip_separators() || skip_noise()) continue;
         const std::size_t before = c_.at;
         if (c_.peek(Class::only) || c_.peek(Class::do_not)) break;
+        if (const auto corrects = c_.peek(Class::correction); corrects && d_.size() > 0) {
+            Cursor told = c_;  // "make it yellow. actually, orange"
+            told.at += corrects.length;
+            told.take_mark(',');
+            const bool fragment = !told.done() && !starts_verb(told.at - c_.at) && !told.peek(Class::request);
+            if (fragment && corrects.length >= c_.peek(Class::courtesy).length) break;
+        }
         if (const auto meant = c_.peek(Class::correction); meant.length > 1 && d_.size() == 0 && c_.at < 3)
             c_.at += meant.length;  // "sorry, I meant a blue bear"
         if (const auto found = c_.peek(Class::request)) {
@@ -149,6 +197,10 @@ void Reader::skip_lead_in() {
             const bool gets = c_.is(Class::word_get, found.length - 1) &&
                               c_.peek(Class::verb_remove, found.length - 1);  // "can we get rid of the bear?"
             c_.at = gets ? ahead.at - 1 : ahead.at;
+            const auto& who = c_.word().text;  // "it would be nice if you put"
+            if (c_.previous().text == "if" && (who == "you" || who == "we"))
+                c_.at += c_.peek(Class::modal, 1) ? 2 : 1;
+            prefers_ = c_.previous().text == "prefer";
             requested_ = true;
         } else if (const auto polite = c_.peek(Class::courtesy);
                    polite && !(polite.length == 1 && c_.noun_length() > 0 && c_.is_mark(":", 1))) {
@@ -157,9 +209,9 @@ void Reader::skip_lead_in() {
             c_.at += step.length;
         } else if (c_.peek(Class::conjunction)) {
             c_.take(Class::conjunction);
-        } else if (c_.peek(Class::contrast)) {
+        } else if (c_.peek(Class::contrast) && !c_.peek(Class::rather_than)) {
             c_.take(Class::contrast);
-        } else if (somebody_says()) {
+        } else if (somebody_says() || would_be_good()) {
             requested_ = true;
         } else if (takes_and()) {
         } else if (c_.peek(Class::colour_word) && c_.is_mark(":>", 1)) {
@@ -221,7 +273,7 @@ void Reader::skip_rest(std::size_t steps) {
 
 bool Reader::ends_well() const {
     Cursor here = c_;
-    while (here.take(Class::as_well) || here.take(Class::courtesy)) {}
+    while ((!here.peek(Class::rather_than) && here.take(Class::as_well)) || here.take(Class::courtesy)) {}
     return here.at_end_of_clause() || here.peek(Class::rather_than) || here.peek(Class::except) ||
            here.peek(Class::conjunction) || here.peek(Class::sequence) || here.peek(Class::contrast) ||
            here.peek(Class::noise) || (here.peek(Class::plain_verb) && starts_verb(here.at - c_.at));
@@ -278,12 +330,25 @@ bool Reader::in_place_of(Target& target) {
         c_.at += instead.length;
         return target.found();
     }
-    if (!ahead.is(Class::word_in)) return false;
+    ahead.take(Class::modal);
+    const bool takes = ahead.word().base == "take";  // "take the bear's place"
+    if (!ahead.is(Class::word_in) && !takes) return false;
     ++ahead.at;
-    if (!ahead.take_phrase(owner) || !ahead.is_owner_mark() || !ahead.is(Class::word_place, 1)) return false;
-    target = d_.resolve(owner);
+    Cursor place = ahead;
+    place.take(Class::definite);
+    if (place.is(Class::word_place) && place.peek(Class::of, 1)) {  // "the place of the bear"
+        place.at += 2;
+        if (!place.take_phrase(owner)) return false;
+        ahead.at = place.at;
+    } else if (takes && ahead.peek(Class::possessive) && ahead.is(Class::word_place, 1)) {
+        owner.naming = Naming::It;
+        ahead.at += 2;
+    } else if (ahead.take_phrase(owner) && ahead.is_owner_mark() && ahead.is(Class::word_place, 1)) {
+        ahead.at += 2;
+    } else return false;
+    target = owner.naming == Naming::It ? d_.focus() : d_.resolve(owner);
     if (!target.found()) return false;
-    c_.at = ahead.at + 2;
+    c_.at = ahead.at;
     return true;
 }
 
@@ -295,6 +360,24 @@ bool Reader::somebody_says() {
     const bool person = (kinds_of(who.noun) & Person) != 0 || who.possessive;
     if (!person || d_.resolve(who).found() || is_part(who) || is_worn(who)) return false;
     if (!ahead.take(Class::said_by) || ahead.at_end_of_clause()) return false;
+    c_.at = ahead.at;
+    return true;
+}
+
+/// "it would be fantastic if you could": steps over it.
+bool Reader::would_be_good() {
+    constexpr std::size_t MostWords = 3;  // between "be" and "if"
+    Cursor ahead = c_;
+    if (ahead.is(Class::word_it)) ++ahead.at;
+    if (ahead.word().text != "would" || ahead.word(1).text != "be") return false;
+    ahead.at += 2;
+    std::size_t words = 0;
+    for (; words < MostWords && !ahead.at_end_of_clause() && ahead.word().text != "if"; ++words) ++ahead.at;
+    if (words == 0 || ahead.word().text != "if") return false;
+    ++ahead.at;
+    const auto& who = ahead.word().text;
+    if ((who == "you" || who == "we") && ahead.peek(Class::modal, 1)) ahead.at += 2;
+    else if (who == "you" || who == "we") ++ahead.at;
     c_.at = ahead.at;
     return true;
 }
@@ -365,6 +448,51 @@ Plan Reader::read_story() {
     return d_.finish();
 }
 
+/// An order about what is not there, beside others: "rotate the house and paint the bear black". Steps over
+/// it.
+bool Reader::refuses_clause(std::size_t start) {
+    Phrase named;
+    named.noun = named.typed = missing_;
+    if (missing_.empty() || reason_ != reason::NotInScene || !is_thing(named)) return false;
+    c_.at = start;
+    if (!starts_verb()) return false;
+    Cursor next = c_;
+    ++next.at;
+    for (; !next.done(); ++next.at) {
+        Cursor order = next;
+        while (order.is_mark(".,;") || order.peek(Class::conjunction) || order.peek(Class::sequence))
+            ++order.at;
+        if (order.at > next.at && starts_verb(order.at - c_.at)) break;
+        if (next.is_mark(".;!")) return false;  // what follows is no order
+    }
+    if (next.done() && d_.size() == 0 && not_there_.empty()) return false;
+    for (Cursor rest = next; !rest.done(); ++rest.at)
+        if (rest.peek(Class::pronoun_it) || rest.peek(Class::pronoun_person) || rest.peek(Class::possessive))
+            return false;
+    not_there_.push_back(missing_);
+    reason_ = {};
+    missing_.clear();
+    c_.at = next.at;
+    return true;
+}
+
+/// "turn the bear so that it faces left": the second clause says how. Steps over the first.
+bool Reader::says_how_later(std::size_t start) {
+    Cursor ahead = c_;
+    ahead.at = start;
+    Phrase phrase;
+    const auto verb =
+        ahead.peek(Class::verb_rotate) ? ahead.take(Class::verb_rotate) : ahead.take(Class::verb_move);
+    if (reason_ != reason::Incomplete || !verb || !ahead.take_phrase(phrase) || !ahead.take_mark(','))
+        return false;
+    const auto found = d_.resolve(phrase);
+    if (!found.found() || !(ahead.peek(Class::pronoun_it) || ahead.peek(Class::pronoun_person))) return false;
+    d_.mention(found);
+    reason_ = {};
+    c_.at = ahead.at;
+    return true;
+}
+
 Plan Reader::read() {
     if (auto plan = whole_sentence()) return *plan;
     bool narrated = false;
@@ -376,6 +504,7 @@ Plan Reader::read() {
         const bool read = clause();
         if (read) skip_rest(std::min(steps, d_.size()));
         if (read && ends_well()) continue;
+        if (!read && (refuses_clause(start) || says_how_later(start))) continue;
         if (!missing_.empty() && !read && reason_ == reason::NotInScene && d_.size() == 0) return failure();
         c_.at = start;
         if (read || !skip_narrative(start)) {
@@ -386,6 +515,8 @@ Plan Reader::read() {
         missing_.clear();
         narrated = true;
     }
+    if (d_.size() == 0 && !not_there_.empty()) return refusal(reason::NotInScene, not_there_.front());
+    for (const auto& each : not_there_) d_.refuse(reason::NotInScene, each);
     if (d_.size() == 0 && (!reason_.empty() || !missing_.empty())) return failure();
     if (narrated && d_.size() == 0) return refusal(reason::NotAnEdit);
     if (d_.size() == 0 && !d_.says_same() && !d_.asked_nothing()) return refusal(reason::Incomplete);

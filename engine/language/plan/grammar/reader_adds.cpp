@@ -5,98 +5,6 @@
 
 namespace gse::language::plan {
 
-/// "another bear, a green one, next to it", "two more bears".
-void Reader::add_another(const Phrase& phrase, const Target& target, const std::string& noun) {
-    Cursor ahead = c_;
-    Phrase colour;
-    const bool told = !phrase.attributes.empty() || (ahead.take_mark(',') && ahead.take_phrase(colour) &&
-                                                     colour.noun.empty() && !colour.attributes.empty());
-    if (told) {
-        Phrase second = phrase;
-        if (phrase.attributes.empty()) {
-            second.attributes = colour.attributes;
-            c_.at = ahead.at;
-        }
-        second.noun = noun;
-        const auto made = d_.add(second, "beside", {target});
-        c_.take_mark(',');
-        nested(made, target);
-    } else if (c_.peek(Class::relation) && !c_.is(Class::word_in) &&
-               !c_.is(Class::word_on)) {  // "a second bear to the left of it"
-        Phrase second = phrase;
-        second.noun = noun;
-        const auto made = d_.add(second, "beside", {target});
-        nested(made, target);
-    } else {
-        const int more = phrase.count.empty() || phrase.count == "some" ? 1 : std::atoi(phrase.count.c_str());
-        d_.duplicate(target, phrase.plural && phrase.count.empty() ? "some"
-                             : phrase.count == "some"              ? "some"
-                                                                   : std::to_string(more + 1));
-        nested(target, target);
-        Cursor place = c_;
-        Phrase where;
-        if (place.take(Class::relation) && place.take_phrase(where) && d_.resolve(where).found())
-            c_.at = place.at;
-    }
-}
-
-/// "small boats around the boat", "a baby bear next to the bear": new ones.
-bool Reader::beside_its_like(const Phrase& phrase, const Target& target) {
-    Cursor around = c_;
-    Phrase where;
-    const auto relation = around.take(Class::relation);
-    if (!relation || !around.take_phrase(where) || !where.definite || where.naming != Naming::Thing ||
-        where.noun.empty() || !around.at_end_of_clause() || !target.thing ||
-        !(d_.resolve(where).reference == target.reference))
-        return false;
-    c_.at = around.at;
-    Phrase more = phrase;
-    more.noun = d_.scene().things[*target.thing].noun;
-    d_.mention(d_.add(more, relation.value, {target}));
-    return true;
-}
-
-/// "another bear", "two bears", "one more bear": copies of what is there.
-bool Reader::one_more(const Phrase& phrase) {
-    const bool ordinal =
-        std::any_of(phrase.attributes.begin(), phrase.attributes.end(),
-                    [](const Attribute& each) { return each.typed == "third" || each.typed == "fourth"; });
-    if (!phrase.another && !ordinal && (phrase.count.empty() || phrase.count == "all") && !phrase.plural)
-        return false;
-    const auto found = d_.things_named(phrase);
-    if (found.empty() || d_.scene().things[found.front()].is_ground || phrase.owner || phrase.definite)
-        return false;
-    const auto& noun = d_.scene().things[found.front()].noun;
-    const auto same = std::count_if(d_.scene().things.begin(), d_.scene().things.end(),
-                                    [&](const SceneThing& thing) { return thing.noun == noun; });
-    if (same > 1 && (phrase.another || ordinal) && phrase.count.empty() && ends_well()) {
-        Phrase all = phrase;  // "add a third chair" to two
-        all.count = "all";
-        all.attributes.clear();
-        const auto target = d_.resolve(all);
-        if (target.found()) d_.duplicate(target, std::to_string(same + 1));
-        return target.found();
-    }
-    if (same > 1) return false;
-    if (phrase.typed == noun && !phrase.another && phrase.count.empty()) return false;  // "autumn trees"
-    if (has(Class::pair_noun, noun)) return false;
-    if (!phrase.another && phrase.noun != noun && noun.find(phrase.noun) == std::string::npos &&
-        !are_synonyms(noun, phrase.noun))
-        return false;
-    const auto target = d_.target_of_thing(found.front());
-    d_.mention(target);
-    if (phrase.another) {
-        add_another(phrase, target, noun);
-        return true;
-    }
-    if (beside_its_like(phrase, target)) return true;
-    apply_all({target}, phrase.attributes);
-    described_ = target;
-    d_.duplicate(target, phrase.count.empty() ? "some" : phrase.count);
-    posts(target);
-    return true;
-}
-
 /// "on its head", "in its hand": worn, held, or on that part; false where `where` is none.
 bool Reader::place_on_body(const Phrase& phrase, const Target& thing, Target body, const Phrase& where,
                            std::string_view relation) {
@@ -119,7 +27,8 @@ bool Reader::place_between(const Target& thing, const Target& anchor) {
         d_.set_anchor(thing, "in front of", anchor);
         return true;
     }
-    const auto other = expect(second);
+    const bool is_new = second.indefinite && is_thing(second) && !d_.resolve(second).found();
+    const auto other = is_new ? d_.add(second, "beside", {anchor}) : expect(second);
     if (!other.found()) return false;
     d_.set_anchors(thing, "between", {anchor, other});
     return true;
@@ -162,8 +71,8 @@ bool Reader::place_at(const Phrase& phrase, const Target& thing, const Target& b
                                       : d_.is_animate(anchor)                ? std::string_view("beside")
                                                                              : std::string_view("on"))
                                    : relation;
-    if (relation == "under" && is_ground(phrase) && !phrase.has_determiner() && anchor.thing &&
-        d_.last_is(thing)) {
+    const bool floor = !phrase.has_determiner() || has(Class::ground_name, phrase.noun);
+    if (relation == "under" && is_ground(phrase) && floor && anchor.thing && d_.last_is(thing)) {
         d_.drop_last();  // "put gravel under the bear"
         d_.ground(phrase);
         return true;
@@ -175,11 +84,45 @@ bool Reader::place_at(const Phrase& phrase, const Target& thing, const Target& b
     return true;
 }
 
+/// "on the bear's left": the relation, and whose side it is; empty for other places.
+std::string_view Reader::take_side(Target& whose) {
+    Cursor ahead = c_;
+    Phrase owner;
+    if (!ahead.is(Class::word_on) && !ahead.is(Class::word_to) && !ahead.is(Class::word_at)) return {};
+    ++ahead.at;
+    if (!ahead.take_phrase(owner) || owner.owner || !ahead.is_owner_mark()) return {};
+    ++ahead.at;
+    const auto side = ahead.take(Class::side).value;
+    if (side != "left" && side != "right") return {};
+    if (ahead.word().text == "side") ++ahead.at;
+    whose = d_.resolve(owner);
+    if (!whose.found() || !(ahead.at_end_of_clause() || ahead.peek(Class::conjunction))) return {};
+    c_.at = ahead.at;
+    return side == "left" ? "left of" : "right of";
+}
+
+/// "(a tree) to the left": of what the sentence is about.
+bool Reader::place_aside(const Target& thing) {
+    Target whose;
+    if (const auto relation = take_side(whose); !relation.empty()) {
+        d_.set_anchor(thing, relation, whose);
+        return true;
+    }
+    const auto side = c_.peek(Class::direction);
+    const bool aside = side.length > c_.peek(Class::relation).length && !c_.peek(Class::of, side.length) &&
+                       (side.value == "left" || side.value == "right");
+    if (!aside) return false;
+    c_.at += side.length;
+    if (d_.focus().found()) d_.set_anchor(thing, side.value == "left" ? "left of" : "right of", d_.focus());
+    return true;
+}
+
 /// A new thing and its place.
 bool Reader::place_new(const Phrase& phrase, Targets& made) {
     if (!is_thing(phrase)) return false;
     const auto focus = d_.focus();
-    const auto bearer = d_.last() && d_.last()->found() ? *d_.last() : focus;
+    const bool last = d_.last() && d_.last()->found() && !d_.is_removed(*d_.last());
+    const auto bearer = last ? *d_.last() : focus;  // "remove the grass and add a chair behind it"
     const bool wears = is_worn(phrase) && d_.can_wear(focus) && !has(Class::ground, phrase.noun);
     Target thing = wears ? d_.add(phrase, "worn by", {focus}) : d_.add(phrase, "in", {d_.scene_target()});
     if (thing.kind == Target::Kind::There) {
@@ -187,17 +130,12 @@ bool Reader::place_new(const Phrase& phrase, Targets& made) {
         return true;
     }
     made.push_back(thing);
+    bool placed = false;  // at a thing of the scene
     while (true) {
         const std::size_t start = c_.at;
         while (c_.take(Class::emerging) || c_.take(Class::pose)) {}
         if (c_.is(Class::word_down) && c_.peek(Class::relation, 1)) ++c_.at;  // "set it down beside"
-        if (const auto side = c_.peek(Class::direction); side.length > c_.peek(Class::relation).length &&
-                                                         !c_.peek(Class::of, side.length) &&
-                                                         (side.value == "left" || side.value == "right")) {
-            c_.at += side.length;
-            if (focus.found()) d_.set_anchor(thing, side.value == "left" ? "left of" : "right of", focus);
-            continue;
-        }
+        if (place_aside(thing)) continue;
         if (c_.peek(Class::rather_than).length > c_.peek(Class::relation).length) break;  // "in place of"
         auto relation = c_.take(Class::relation);
         const bool to = !relation && (c_.is(Class::word_to) || c_.is(Class::word_for));
@@ -219,8 +157,12 @@ bool Reader::place_new(const Phrase& phrase, Targets& made) {
             c_.at = start;
             return fail(reason::Incomplete);
         }
+        const auto there = d_.resolve(where);
+        const bool which = !to && placed && there.thing && where.definite;  // "the wall behind him"
+        if (which) continue;
         if (!place_at(phrase, thing, bearer, where, relation ? relation.value : std::string_view()))
             return false;
+        placed = where.definite && there.thing && !d_.scene().things[*there.thing].is_ground;
     }
     d_.mention(thing);
     nested(thing, bearer);
@@ -273,6 +215,21 @@ std::optional<bool> Reader::add_in_place(const Phrase& phrase, const Target& fou
     return std::nullopt;
 }
 
+/// "(put) a flower pattern on the vase".
+bool Reader::add_pattern(const Phrase& phrase) {
+    Cursor place = c_;
+    Phrase where;
+    const auto relation = place.take(Class::relation);
+    const bool placed = (relation || place.take(Class::to)) && place.take_phrase(where);
+    const auto named = placed ? d_.resolve(where) : Target{};
+    const auto whose = named.found() ? named : d_.focus();
+    const bool thing =
+        has(Class::thing, phrase.noun) && relation && relation.value != "on";  // "a rainbow over"
+    if (thing || !whose.found() || !own_pattern(whose, phrase)) return false;
+    if (placed) c_.at = place.at;
+    return true;
+}
+
 /// One thing of a list that is added.
 bool Reader::add_one() {
     Phrase phrase;
@@ -284,18 +241,13 @@ bool Reader::add_one() {
         return move_target(found);
     }
     if (phrase.noun.empty()) return fail(reason::Incomplete);
+    if (c_.is(Class::word_there) && c_.peek(Class::rather_than, 1)) ++c_.at;  // "put a cat there instead of"
     Cursor choice = c_;
     if (choice.take(Class::alternative)) return fail(reason::Ambiguous);
     if (one_more(phrase)) return true;
     const auto focus = d_.focus();
     if (add_paint(phrase)) return true;
-    if (own_pattern(focus, phrase)) {
-        Cursor place = c_;
-        Phrase where;
-        if ((place.take(Class::relation) || place.take(Class::to)) && place.take_phrase(where))
-            c_.at = place.at;
-        return true;
-    }
+    if (add_pattern(phrase)) return true;
     if (add_surroundings(phrase)) return true;
     const auto found = d_.resolve(phrase);
     const bool there = found.found() && found.thing && !phrase.another && phrase.count.empty() &&
@@ -305,7 +257,8 @@ bool Reader::add_one() {
         if (!move_target(found)) return false;
         return true;
     }
-    if (!found.found() && phrase.definite && !phrase.possessive && is_worn(phrase) &&
+    const bool known = puts_ && (kinds_of(phrase.noun) & (Artifact | Animal | Person | Vehicle | Plant)) != 0;
+    if (!found.found() && phrase.definite && !phrase.possessive && (is_worn(phrase) || known) &&
         found.kind == Target::Kind::Missing) {
         missing_ = phrase.noun;  // "place the hat on the grass"
         return fail(reason::NotInScene);
@@ -334,6 +287,8 @@ bool Reader::add_one() {
 
 bool Reader::add_clause() {
     const bool paints = !c_.peek(Class::verb_add);
+    const auto& base = c_.word().base;
+    puts_ = base == "put" || base == "place" || base == "set" || base == "move";
     if (!c_.take(Class::verb_add) && !c_.take(Class::verb_recolour) && !c_.take(Class::verb_carve) &&
         !c_.take(Class::verb_make) && !c_.take(Class::verb_move))
         return false;
@@ -363,22 +318,6 @@ bool Reader::add_clause() {
     return true;
 }
 
-bool Reader::duplicate_clause() {
-    if (!c_.take(Class::verb_duplicate)) return false;
-    Targets targets;
-    if (!objects(targets)) return c_.done() && reason_.empty() ? fail(reason::Incomplete) : false;
-    std::string count = "2";
-    if (const auto times = c_.take(Class::times))
-        count = std::to_string(std::atoi(std::string(times.value).c_str()) + 1);
-    else if (c_.word(1).text == "times" && !c_.word().text.empty() &&
-             std::isdigit(static_cast<unsigned char>(c_.word().text[0])) != 0) {
-        count = std::to_string(std::atoi(c_.word().text.c_str()) + 1);
-        c_.at += 2;
-    }
-    for (const auto& target : targets) d_.duplicate(target, count);
-    return true;
-}
-
 /// The last verb goes on: "paint the bear green, the grass white", "remove the hat and the scarf".
 bool Reader::ellipsis() {
     const std::size_t start = c_.at;
@@ -398,6 +337,7 @@ bool Reader::ellipsis() {
             phrase.naming != Naming::Thing || phrase.noun.empty() || phrase.none)
             return false;
         if (frame_ == Frame::Add && phrase.definite && d_.resolve(phrase).found()) return false;
+        if (ahead.peek(Class::rather_than)) return false;  // "snow instead of grass"
         c_.at = ahead.at;
         if (one_more(phrase)) return true;
         if (frame_ == Frame::Give && d_.last()) {
@@ -414,6 +354,11 @@ bool Reader::ellipsis() {
         return false;
     c_.at = ahead.at;
     if (frame_ == Frame::Remove) {
+        Attribute how;
+        if (c_.take_attribute(how, false)) {  // "remove chair, vase blue"
+            c_.at = start;
+            return false;
+        }
         d_.remove(found);
         return true;
     }
@@ -495,8 +440,23 @@ bool Reader::dress_clause() {
     ++c_.at;
     Attribute colour;
     Cursor ahead = c_;
-    if (ahead.take_attribute(colour, false) && ahead.at_end_of_clause()) return false;
+    if (ahead.take_attribute(colour, false) && ahead.at_end_of_clause()) {
+        if (colour.quality != Quality::Pattern) return false;
+        c_.at = ahead.at;  // "dress the bear up in stripes"
+        return apply_all(targets, {colour});
+    }
     return has_list(targets.front(), "worn by");
+}
+
+/// "(cover the bear) in mud", which is a material too.
+bool Reader::covers_plainly(const Targets& targets) {
+    Cursor plain = c_;
+    const bool ground = targets.front().thing && d_.scene().things[*targets.front().thing].is_ground;
+    const auto stuff = plain.take(Class::covering);
+    if (!stuff || ground || !ends_at(plain) || plain.previous().text != plain.previous().singular)
+        return false;
+    c_.at = plain.at;
+    return apply_all(targets, {{Quality::Material, std::string(stuff.value), std::string(stuff.value), ""}});
 }
 
 bool Reader::cover_clause() {
@@ -517,6 +477,7 @@ bool Reader::cover_clause() {
     if (!c_.is(Class::word_in) && !c_.is(Class::word_with) && !c_.is(Class::word_by)) return false;
     (void)relation;
     ++c_.at;
+    if (!around && !fills && covers_plainly(targets)) return true;
     Cursor ahead = c_;
     std::vector<Attribute> found;
     Attribute next;
@@ -554,34 +515,6 @@ bool Reader::cover_clause() {
         nested(made, target);
     }
     return true;
-}
-
-/// "a red car and a green car" of two cars: how the other one is.
-bool Reader::describe_other(const Phrase& phrase) {
-    const auto& things = d_.scene().things;  // "a red car and a green car" of two cars
-    const auto& noun = things[*described_->thing].noun;
-    Targets others;
-    for (std::size_t i = 0; i < things.size(); ++i)
-        if (i != *described_->thing && things[i].noun == noun && noun == phrase.noun)
-            others.push_back(d_.target_of_thing(i));
-    if (others.size() == 1) {
-        apply_all(others, phrase.attributes);
-        return true;
-    }
-    return false;
-}
-
-/// "a yellow car and a blue car" of two cars: the first is the other one; nothing where no such things are
-/// there.
-std::optional<bool> Reader::describe_one_of(const Phrase& phrase) {
-    const auto all = d_.things_named(phrase);
-    if (described_ || phrase.another || all.size() < 2) return std::nullopt;
-    Cursor list = c_;
-    Phrase kept;
-    const auto found = list.take(Class::conjunction) && list.take_phrase(kept) ? d_.resolve(kept) : Target{};
-    if (all.size() != 2 || !found.thing || !list.at_end_of_clause()) return fail(reason::Ambiguous);
-    c_.at = list.at;
-    return apply_all({d_.target_of_thing(all[0] == *found.thing ? all[1] : all[0])}, phrase.attributes);
 }
 
 }  // namespace gse::language::plan

@@ -28,38 +28,6 @@ bool Reader::apply_all(const Targets& targets, const std::vector<Attribute>& att
     return !attributes.empty();
 }
 
-/// "not red but blue": the first says nothing of what is to be.
-bool Reader::denied(const Targets& targets) {
-    Cursor ahead = c_;
-    if (!ahead.take(Class::negation)) return false;
-    ahead.take(Class::article);
-    std::vector<Attribute> attributes;
-    Attribute one;
-    while (ahead.take_attribute(one, false)) {
-        attributes.push_back(one);
-        if (!ahead.take(Class::alternative)) break;
-    }
-    if (attributes.empty()) return false;
-    while (ahead.take(Class::as_well)) {}
-    c_.at = ahead.at;
-    for (const auto& target : targets)
-        for (const auto& attribute : attributes) d_.deny(target, attribute);
-    c_.take_mark(',');
-    if (c_.take(Class::contrast) || c_.take(Class::rather_than)) return complement(targets);
-    Cursor more = c_;
-    if ((more.take(Class::pronoun_it) || more.take(Class::pronoun_person)) && more.take(Class::copula))
-        c_.at = more.at;  // "it is not blue, it is yellow"
-    else more = c_;
-    Attribute attribute;
-    if (more.take_attribute(attribute, false)) return complement(targets);
-    const bool so = std::any_of(targets.begin(), targets.end(), [&](const Target& target) {
-        return std::any_of(attributes.begin(), attributes.end(),
-                           [&](const Attribute& each) { return d_.is_so(target, each); });
-    });
-    if (!so) d_.already_so();  // "the bear is not blue", and it is red
-    return d_.size() > 0 || !so || fail(reason::Incomplete);
-}
-
 /// "made of glass", "out of polished bronze".
 bool Reader::material_of(const Targets& targets) {
     Cursor ahead = c_;
@@ -67,6 +35,8 @@ bool Reader::material_of(const Targets& targets) {
     while (ahead.take(Class::made_of) || ahead.take(Class::degree)) {}
     ahead.take(Class::article);
     ahead.take(Class::some);
+    ahead.take(Class::number);
+    ahead.take(Class::stuff_of);
     std::vector<Attribute> found;
     Attribute next;
     while (!ahead.at_end_of_clause()) {
@@ -89,119 +59,13 @@ bool Reader::material_of(const Targets& targets) {
         if (!noun) return false;
         found.push_back(material_attribute(stuff.typed));
     }
+    if (named) ahead.take(Class::stuff_noun);  // "built from wooden planks"
     // "polished", "solid", "clear" say how that material is
     std::erase_if(found, [](const Attribute& each) {
         return each.quality != Quality::Material && each.quality != Quality::Colour;
     });
     c_.at = ahead.at;
     return apply_all(targets, found);
-}
-
-/// "50 % bigger".
-bool Reader::percent(const Targets& targets) {
-    Cursor ahead = c_;
-    const bool digits =
-        !ahead.word().text.empty() && std::isdigit(static_cast<unsigned char>(ahead.word().text[0])) != 0;
-    if (!digits || ahead.peek(Class::unit, 1).value != "%") return false;
-    Cursor size = ahead;
-    size.at += 1 + ahead.peek(Class::unit, 1).length;
-    const auto change = size.take(Class::size);
-    if (!change) return false;
-    std::string text(change.value);
-    if (text == "bigger" || text == "smaller") text = "scale " + take_factor(false, text == "smaller");
-    c_.at = size.at;
-    for (const auto& target : targets) d_.step(Operation::Transform, target, text);
-    return true;
-}
-
-/// "twice as big", "half as wide", "two times taller", "half its size".
-bool Reader::measure(const Targets& targets) {
-    Cursor ahead = c_;
-    std::string factor;
-    if (const auto times = ahead.take(Class::times)) factor = times.value;
-    else if (!ahead.word().text.empty() &&
-             std::isdigit(static_cast<unsigned char>(ahead.word().text[0])) != 0 &&
-             (ahead.is(Class::word_times, 1) || ahead.is(Class::word_x, 1))) {
-        factor = ahead.word().text;
-        ahead.at += 2;
-    } else return percent(targets);
-    ahead.take(Class::like);
-    ahead.take(Class::possessive);
-    ahead.take(Class::definite);
-    Match dimension = ahead.take(Class::dimension);
-    std::string_view sizes = dimension.value;
-    if (!dimension) {
-        const auto size = ahead.take(Class::size);
-        const double times = std::atof(factor.c_str());
-        if (size.value == "smaller" && times > 1) {  // "3 times smaller"
-            const int hundredths = static_cast<int>(100 / times);
-            factor = "0." + std::string(hundredths < 10 ? "0" : "") + std::to_string(hundredths);
-            if (factor.ends_with('0')) factor.pop_back();
-        }
-        if (size)
-            sizes =
-                size.value == "bigger" || size.value == "smaller" ? std::string_view("scale") : size.value;
-        else return false;
-    }
-    ahead.take(Class::like);
-    if (ahead.is(Class::word_it) || ahead.is(Class::word_now)) ++ahead.at;
-    const bool grows = factor[0] != '0';
-    std::string change = "scale " + factor;
-    if (sizes != "scale") {
-        const auto blank = sizes.find(' ');
-        change = blank == std::string_view::npos
-                     ? std::string(sizes)
-                     : std::string(grows ? sizes.substr(0, blank) : sizes.substr(blank + 1));
-    }
-    c_.at = ahead.at;
-    c_.take(Class::as_well);
-    for (const auto& target : targets) d_.step(Operation::Transform, target, change);
-    return true;
-}
-
-/// "as tall as the house", "the same size as the car", "the color of the chair", "bigger than the dog".
-bool Reader::compared(const Targets& targets) {
-    Cursor ahead = c_;
-    Phrase other;
-    ahead.take(Class::definite);
-    ahead.take(Class::article);
-    ahead.take(Class::like);
-    const bool same = ahead.is(Class::word_same);
-    if (same) ++ahead.at;
-    if (const auto size = ahead.peek(Class::size); size && !same) {
-        ahead.at += size.length;
-        if (!ahead.take(Class::like) && !ahead.take(Class::than)) return false;
-        const bool equal = ahead.word().text.empty() ? false : c_.is(Class::word_as);
-        if (!ahead.take_phrase(other)) return false;
-        c_.at = ahead.at;
-        const auto model = d_.resolve(other);
-        const bool whole = size.value == "bigger" || size.value == "smaller";
-        for (const auto& target : targets)
-            if (equal && whole && model.thing) d_.move(target, "same size as", model);
-            else d_.step(Operation::Transform, target, std::string(size.value));
-        return true;
-    }
-    const bool colour = ahead.peek(Class::colour_word).length > 0,
-               dimension = ahead.peek(Class::dimension).length > 0;
-    if (!colour && !dimension) return false;
-    ++ahead.at;
-    if (!ahead.take(Class::like) && !ahead.take(Class::of)) return false;
-    const std::size_t begin = ahead.at;
-    if (!ahead.take_phrase(other)) return false;
-    const auto found = d_.resolve(other);
-    if (dimension) {
-        if (!found.found()) return false;
-        c_.at = ahead.at;
-        for (const auto& target : targets) d_.move(target, "same size as", found);
-        return true;
-    }
-    std::string told;
-    if (found.thing)
-        for (const auto& word : d_.scene().things[*found.thing].attributes)
-            if (has(Class::colour, word) || told.empty()) told = word;
-    if (told.empty()) told = c_.rest(begin - c_.at).front().text.empty() ? "" : other.noun + "-colored";
-    c_.at = ahead.at;
-    return apply_all(targets, {{Quality::Colour, told, told, ""}});
 }
 
 /// "(look) like a robot", "like a desert", "like grass".
@@ -338,7 +202,7 @@ bool Reader::said_of_part(const Target& target) const {
 
 /// Another thing in its place, or what it is made of: "into a panda", "into wood", "a darker red".
 bool Reader::become(const Targets& targets, const Phrase& phrase) {
-    if (phrase.naming != Naming::Thing || phrase.none) return false;
+    if (phrase.naming != Naming::Thing || phrase.none || has(Class::direction, phrase.noun)) return false;
     if (phrase.noun.empty()) return apply_all(targets, phrase.attributes);
     if (has(Class::colour_word, phrase.noun) || has(Class::look_word, phrase.noun))
         return apply_all(targets, phrase.attributes);
@@ -392,7 +256,8 @@ bool Reader::pose_text(const Targets& targets) {
         Cursor part = ahead;
         part.at += raised.length;
         Phrase what;
-        if (part.take_phrase(what) && (what.possessive || what.owner) && is_part(what)) {
+        if (part.take_phrase(what) && (what.possessive || what.owner || what.count == "all") &&
+            is_part(what)) {
             c_.at = part.at;
             const auto pose = ahead.word().base + " " + what.typed;
             for (const auto& target : targets) d_.step(Operation::Pose, target, pose);
@@ -435,8 +300,10 @@ bool Reader::pose_text(const Targets& targets) {
 /// "a darker red", "bigger and blue".
 bool Reader::described_as(const Targets& targets) {
     Cursor adjectives = c_;
-    const bool article = adjectives.take(Class::article).length > 0;
+    const bool a_lot = adjectives.peek(Class::degree).length > 1;  // "a lot furrier"
+    const bool article = !a_lot && adjectives.take(Class::article).length > 0;
     const auto attributes = adjectives.take_attributes();
+    if (article && !attributes.empty() && adjectives.is(Class::word_one)) ++adjectives.at;  // "a blue one"
     const bool ends = adjectives.at_end_of_clause() || adjectives.ends_phrase(0, true) ||
                       adjectives.noun_length() == 0 || adjectives.peek(Class::colour_word);
     const bool model = std::any_of(attributes.begin(), attributes.end(),
@@ -510,13 +377,27 @@ bool Reader::faces(const Targets& targets) {
     return true;
 }
 
+/// "stand on cobblestones", "stand on its head".
+bool Reader::stands_so(const Targets& targets) {
+    ++c_.at;
+    const auto turned = c_.take(Class::flipping);
+    if (!turned) return targets.size() == 1 && related(targets.front());
+    for (const auto& target : targets) d_.step(Operation::Transform, target, std::string(turned.value));
+    return true;
+}
+
 bool Reader::complement_once(const Targets& targets) {
     const std::size_t start = c_.at;
-    if (looks_somewhere(targets)) return true;
+    if (looks_somewhere(targets) || swaps_places(targets)) return true;
     while (c_.take(Class::look_word) || c_.take(Class::copula) ||
            (c_.is(Class::word_to) && c_.take(Class::to)) || c_.take(Class::modal) ||
            c_.take(Class::verb_become)) {}
     if (!c_.is(Class::word_too)) c_.take(Class::as_well);
+    if (Cursor stays = c_; stays.is(Class::word_stay) || stays.is(Class::word_remain)) {
+        Attribute same;
+        ++stays.at;
+        if (stays.take_attribute(same, false)) ++c_.at;  // "let it stay red"
+    }
     if (c_.at_end_of_clause() && !c_.done() && c_.at == start) return false;
     if (const auto gone = c_.peek(Class::gone)) {
         Cursor behind = c_;
@@ -534,16 +415,17 @@ bool Reader::complement_once(const Targets& targets) {
         return remove_clause();  // "take off its hat"
     if (measure(targets) || as_much_as(targets) || compared(targets)) return true;
     if (c_.peek(Class::made_of) || c_.peek(Class::of)) return material_of(targets);
-    if (c_.is(Class::word_from) && c_.peek(Class::material, 1)) return material_of(targets);
+    if (c_.is(Class::word_from) && material_of(targets)) return true;
     if (c_.peek(Class::verb_make) && c_.is(Class::word_made)) ++c_.at;
     if (c_.peek(Class::verb_recolour) && c_.word().text.ends_with("ed") && !c_.at_end_of_clause())
-        ++c_.at;  // "have it painted pink"
-    if (const auto turned = c_.peek(Class::flipping)) {
+        c_.at += c_.is(Class::word_in, 1) ? 2 : 1;  // "have it painted pink", "painted in pink"
+    if (const auto turned = c_.peek(Class::flipping);
+        turned && !c_.is(Class::word_to, turned.length) && !c_.peek(Class::relation, turned.length)) {
         c_.at += turned.length;
         for (const auto& target : targets) d_.step(Operation::Transform, target, std::string(turned.value));
         return true;
     }
-    if (c_.take(Class::into)) {
+    if (c_.peek(Class::like).length < 2 && c_.take(Class::into)) {
         if (c_.peek(Class::made_of)) return material_of(targets);
     }
     if (!targets.empty() && (targets[0].is_scene()) && environment_clause()) return true;
@@ -552,7 +434,8 @@ bool Reader::complement_once(const Targets& targets) {
     if (faces(targets)) return true;
     if (c_.peek(Class::inverse_relation) && targets.size() == 1)  // "full of flowers"
         return inversely_related(targets.front());
-    if (described_as(targets)) return true;
+    if (empties(targets) || described_as(targets)) return true;
+    if (c_.word().base == "stand" && c_.peek(Class::relation, 1)) return stands_so(targets);
     if (pose_text(targets)) return true;
     Phrase phrase;
     if (c_.take_phrase(phrase) && become(targets, phrase)) return true;
@@ -575,6 +458,7 @@ bool Reader::complement(const Targets& targets) {
         const bool comma = ahead.take_mark(',');
         const bool joint = ahead.take(Class::conjunction).length > 0;
         if (!joint && (!comma || has(Class::ground, ahead.word().text))) break;  // "blue, snow"
+        if (ahead.peek(Class::correction)) break;                                // "green, actually brown"
         Attribute next;
         Cursor probe = ahead;
         ahead.take(Class::as_well);
@@ -589,10 +473,104 @@ bool Reader::complement(const Targets& targets) {
         const bool denied_more = ahead.peek(Class::negation) && targets.size() == 1;
         if (!adjective && !denied_more) break;
         if (adjective && starts_verb(ahead.at - c_.at)) break;
+        const std::size_t here = c_.at;
         c_.at = ahead.at;
-        if (!complement_once(targets)) return false;
+        if (complement_once(targets)) continue;
+        c_.at = here;  // "paint the bear green, not the hat"
+        if (!denied_more) return false;
+        break;
     }
     (void)before;
+    return true;
+}
+
+/// Verbs that name the change: "bleach the bear", "gild it", "age the man", "stripe the bear".
+bool Reader::shift_clause() {
+    constexpr std::pair<Class, Operation> Changes[] = {{Class::verb_shift, Operation::Recolour},
+                                                       {Class::verb_material, Operation::Material},
+                                                       {Class::verb_pattern, Operation::Pattern},
+                                                       {Class::verb_style, Operation::Style},
+                                                       {Class::verb_alter, Operation::Alter}};
+    for (const auto& [kind, operation] : Changes) {
+        const auto verb = c_.peek(kind);
+        if (!verb) continue;
+        c_.at += verb.length;
+        Targets targets;
+        Phrase backdrop;
+        Cursor ahead = c_;
+        if (ahead.take_phrase(backdrop) && has(Class::backdrop, backdrop.noun) &&
+            d_.things_named(backdrop).empty()) {
+            c_.at = ahead.at;
+            if (operation == Operation::Style)
+                d_.style(d_.scene_target(), std::string(verb.value) + " " + backdrop.noun);
+            else d_.environment(std::string(verb.value) + " " + backdrop.noun);
+            return true;
+        }
+        if (!objects(targets)) return false;
+        if (c_.is(Class::word_up) || c_.is(Class::word_down) || c_.is(Class::word_out)) ++c_.at;
+        while (c_.take(Class::degree) || c_.take(Class::pose_manner)) {}
+        if (c_.is(Class::word_by)) {
+            while (!c_.at_end_of_clause() && !c_.peek(Class::conjunction)) ++c_.at;
+        }
+        const bool whole = operation == Operation::Material && targets.front().is_scene();
+        for (const auto& target : targets)  // "pixelate everything"
+            d_.step(whole ? Operation::Style : operation, target, std::string(verb.value));
+        return true;
+    }
+    return false;
+}
+
+/// "open the door", "raise the left arm", "let it smile".
+bool Reader::pose_clause() {
+    const auto verb = c_.peek(Class::verb_pose);
+    const auto raise = c_.peek(Class::verb_raise);
+    if (!verb && !raise) return false;
+    if (verb.length > 2 && c_.is(Class::possessive, 1) && d_.focus().found()) {  // "raise its hand"
+        c_.at += verb.length;
+        d_.step(Operation::Pose, d_.pronoun(Naming::It, true), std::string(verb.value));
+        return true;
+    }
+    c_.at += std::max(verb.length, raise.length);
+    Targets targets;
+    if (!objects(targets)) {
+        if (c_.at_end_of_clause() && verb && d_.focus().found()) return false;
+        return false;
+    }
+    if (!verb && targets.front().thing && d_.is_animate(targets.front())) return false;  // "turn the bear"
+    const auto text = raise.length >= verb.length ? raise.value : verb.value;
+    if (c_.is(Class::word_up) || c_.is(Class::word_out) || c_.is(Class::word_down) || c_.is(Class::word_wide))
+        ++c_.at;
+    while (c_.take(Class::pose_manner)) {}
+    for (const auto& target : targets) d_.step(Operation::Pose, target, std::string(text));
+    return true;
+}
+
+/// "an ice sculpture of a bear": the bear of that material.
+bool Reader::describe_likeness(const Phrase& phrase) {
+    const auto focus = d_.focus();
+    const auto of = phrase.noun.find(" of ");
+    if (described_ || !focus.thing || of == std::string::npos ||
+        !has(Class::figure, phrase.noun.substr(0, of)) ||
+        phrase.noun.substr(of + 4) != focus.reference.root())
+        return false;
+    std::vector<Attribute> stuff;
+    for (const auto& each : phrase.attributes)
+        if (each.quality == Quality::Material) stuff.push_back(each);
+    if (stuff.empty() || stuff.size() != phrase.attributes.size()) return false;
+    described_ = focus;
+    apply_all({focus}, stuff);
+    posts(focus);
+    return true;
+}
+
+/// "anime girl" of a girl.
+bool Reader::describe_in_style(const Phrase& phrase, std::size_t thing) {
+    const auto first = phrase.noun.substr(0, phrase.noun.rfind(' '));
+    if (!has(Class::style, first)) return false;
+    described_ = d_.target_of_thing(thing);
+    d_.style(*described_, first);
+    apply_all({*described_}, phrase.attributes);
+    posts(*described_);
     return true;
 }
 

@@ -7,6 +7,8 @@
 namespace gse::language::plan {
 namespace {
 
+constexpr std::size_t LongestPlain = 14;  // words; in longer sentences "my sister" is who tells
+
 bool is_one_slip(const std::string& noun, const std::string& other) {
     const std::vector<std::string> needed{other};
     const auto near = slips_of(noun, needed, 100);
@@ -43,10 +45,17 @@ bool Reader::describe_part(const Phrase& phrase, const Target& found) {
     std::vector<Attribute> attributes;
     for (const auto& attribute : phrase.attributes)
         if (attribute.quality != Quality::Side) attributes.push_back(attribute);
-    const bool placed = phrase.plural && !phrase.has_determiner() && c_.peek(Class::relation);
+    Cursor colour = c_;  // "paw pads in pink"
+    const bool coloured = colour.take(Class::relation).value == "in" && !colour.take_attributes().empty() &&
+                          colour.at_end_of_clause();
+    const bool placed =
+        (phrase.plural && !phrase.has_determiner() && c_.peek(Class::relation) && !coloured) ||
+        c_.is(Class::word_for);  // "wings for the bear"
     if (attributes.empty() && (phrase.indefinite || placed) && !phrase.owner)
         return describe_new(phrase);  // "a chimney on the house", "leaves on the pavement"
-    const bool own_worn = is_worn(phrase) && !phrase.owner && (kinds_of(phrase.noun) & Body) == 0;
+    const bool own_worn = is_worn(phrase) && !phrase.owner &&
+                          ((kinds_of(phrase.noun) & Body) == 0 ||
+                           (attributes.empty() && !phrase.definite && c_.at_end_of_clause()));  // "beard"
     if (own_worn) {
         d_.add(phrase, "worn by", {d_.focus()});
         return describe_more();
@@ -78,23 +87,15 @@ std::optional<bool> Reader::describe_other_kind(const Phrase& phrase, const Targ
     return std::nullopt;
 }
 
-/// "anime girl" of a girl.
-bool Reader::describe_in_style(const Phrase& phrase, std::size_t thing) {
-    const auto first = phrase.noun.substr(0, phrase.noun.rfind(' '));
-    if (!has(Class::style, first)) return false;
-    described_ = d_.target_of_thing(thing);
-    d_.style(*described_, first);
-    apply_all({*described_}, phrase.attributes);
-    posts(*described_);
-    return true;
-}
-
 /// "the red one", "a darker red": a description without a noun.
 bool Reader::describe_nameless(const Phrase& phrase) {
     const auto last = phrase.attributes.empty() ? Quality::Other : phrase.attributes.back().quality;
     if (phrase.indefinite && !phrase.definite && phrase.attributes.size() > 1 &&
         (last == Quality::State || last == Quality::Other) && !described_)
         return fail(reason::NotASentence);  // "a blue bare": what is blue is not said
+    const bool bare = phrase.indefinite && !phrase.definite && !described_ && last == Quality::State &&
+                      (c_.peek(Class::wearing) || c_.peek(Class::holding) || c_.peek(Class::having));
+    if (bare) return fail(reason::NotASentence);  // "a bare wearing a hat"
     auto target = phrase.definite ? d_.resolve(phrase) : d_.focus();
     Cursor whose = c_;
     Phrase bearer;
@@ -107,20 +108,6 @@ bool Reader::describe_nameless(const Phrase& phrase) {
     return apply_all({target}, phrase.attributes);
 }
 
-/// "an empty lawn", "an empty table": what stands there goes.
-bool Reader::describe_empty(const Phrase& phrase, const Target& found) {
-    if (phrase.attributes.empty() || !has(Class::empty, phrase.attributes.front().typed)) return false;
-    const bool on_ground = found.thing && d_.scene().things[*found.thing].is_ground;
-    if (on_ground && d_.focus().found()) {
-        d_.remove(d_.focus());
-        return true;
-    }
-    const auto on = things_on(found);
-    if (on.empty() || !c_.at_end_of_clause()) return false;
-    remove_all(on);
-    return true;
-}
-
 /// "bear hat red", "golden bear grass": what stands behind it without a joint.
 void Reader::describe_telegraphic(const Target& found) {
     Cursor worn = c_;
@@ -130,11 +117,37 @@ void Reader::describe_telegraphic(const Target& found) {
         c_.at = worn.at;
         nested(d_.add(clothes, "worn by", {found}), found);
     }
+    Cursor none = c_;
+    Phrase lacking;
+    if (none.take_phrase(lacking) && lacking.none && !lacking.noun.empty()) {  // "bear no hat"
+        c_.at = none.at;
+        if (!lack(found, lacking)) c_.at = none.at;
+    }
     Cursor last = c_;
     Phrase ground;
     if (last.take_phrase(ground) && last.at_end_of_clause() && is_ground(ground) &&
         !ground.has_determiner() && d_.resolve(ground).found() && ground.attributes.empty())
         c_.at = last.at;
+}
+
+/// "a polar bear" of a bear: another thing, or the bear in a style or a pose.
+bool Reader::describe_kin(const Phrase& phrase, const Target& kin, std::size_t thing) {
+    const auto first = phrase.noun.substr(0, phrase.noun.find(' '));
+    const bool compound = has(Class::compound, phrase.noun);
+    if (first.ends_with("ing") && word_of(first).base != first && !compound) {
+        described_ = kin;  // "a hugging bear"
+        d_.step(Operation::Pose, kin, first);
+        posts(kin);
+        return describe_more();
+    }
+    const bool species =
+        (kinds_of(first) & (Concrete | Perhaps | Other | Adjective)) != 0 || kinds_of(first) == 0;
+    if (!species && !compound) return fail(reason::NotASentence);  // "a read bear"
+    if (describe_in_style(phrase, thing)) return describe_more();
+    const auto made = d_.replace(kin, phrase);
+    described_ = made;
+    posts(made);
+    return describe_more();
 }
 
 /// The first thing of a description: it is there, or stands in the place of what is.
@@ -155,13 +168,9 @@ bool Reader::describe(const Phrase& phrase) {
     const bool exact = std::any_of(named.begin(), named.end(),
                                    [&](std::size_t i) { return d_.scene().things[i].noun == phrase.noun; });
     if (const auto kin = d_.kin_of(phrase);
-        kin && !phrase.owner && (named.empty() || (phrase.indefinite && !exact))) {
-        if (describe_in_style(phrase, *kin)) return describe_more();
-        const auto made = d_.replace(d_.target_of_thing(*kin), phrase);
-        described_ = made;
-        posts(made);
-        return describe_more();
-    }
+        kin && !phrase.owner && (named.empty() || (phrase.indefinite && !exact)))
+        return describe_kin(phrase, d_.target_of_thing(*kin), *kin);
+    if (describe_likeness(phrase)) return describe_more();
     const auto found = d_.resolve(phrase);
     if (found.kind == Target::Kind::Ambiguous) return fail(reason::Ambiguous);
     if (!exact)
@@ -190,35 +199,6 @@ bool Reader::describe(const Phrase& phrase) {
     posts(found);
     describe_telegraphic(found);
     return describe_more();
-}
-
-/// A ground or a place: "snow instead of grass", "a forest"; nothing for things.
-std::optional<bool> Reader::describe_place(const Phrase& phrase, bool bare) {
-    Cursor instead = c_;
-    Phrase replaced;
-    if (is_ground(phrase) && instead.take(Class::rather_than) &&
-        instead.take_phrase(replaced)) {  // "snow instead of grass"
-        const auto old = d_.resolve(replaced);
-        if (!old.found()) return expect(replaced).found();
-        c_.at = instead.at;
-        return become({old}, phrase);
-    }
-    if (is_ground(phrase) && !is_worn(phrase) && phrase.count.empty() && (described_ || bare) &&
-        !has(Class::thing, phrase.noun)) {
-        d_.ground(phrase);
-        return true;
-    }
-    if (has(Class::place, phrase.noun) && bare) {
-        d_.environment(phrase.typed);
-        return true;
-    }
-    if (bare && has(Class::environment, phrase.noun)) {  // "golden sunlight"
-        std::string text;
-        for (const auto& attribute : phrase.attributes) text += attribute.typed + " ";
-        d_.environment(text + phrase.typed);
-        return true;
-    }
-    return std::nullopt;
 }
 
 /// A new thing, and the thing of the scene behind it: "a cat near a bear", "a tree and a bear".
@@ -256,7 +236,7 @@ bool Reader::describe_beside(const Phrase& phrase) {
 /// "a cat instead of the bear".
 std::optional<bool> Reader::describe_instead(const Phrase& phrase) {
     Cursor ahead = c_;
-    if (!ahead.take(Class::rather_than)) ahead.take(Class::than);
+    if (!ahead.take(Class::rather_than) && !ahead.take(Class::than)) ++ahead.at;  // "prefer ... over"
     Phrase old;
     if (ahead.take_phrase(old)) {
         const auto target = d_.resolve(old);
@@ -284,13 +264,22 @@ bool Reader::stands_by_other(const Phrase& phrase) const {
         return found.reference.root() != focus.reference.root();
     if (!found.thing || found.thing == focus.thing || d_.scene().things[*found.thing].is_ground) return false;
     if (relation.value == "above") return true;  // "a dragon above the castle"
+    const auto lives = [](const std::string& noun) {
+        return has(Class::animal, noun) || (kinds_of(noun) & (Animal | Person)) != 0;
+    };
+    const bool backdrop = has(Class::place, found.reference.root()) && relation.value == "in front of";
+    if (backdrop && lives(phrase.noun) && lives(focus.reference.root()))
+        return false;  // "a dragon in front of"
     return (kinds_of(phrase.noun) & kinds_of(d_.scene().things[*focus.thing].noun) & Concrete) == 0;
 }
 
 /// "a striped pattern on the bear".
 bool Reader::describe_pattern(const Phrase& phrase) {
     const auto focus = d_.focus();
-    if (!focus.found() || !own_pattern(focus, phrase)) return false;
+    const auto where_to = c_.peek(Class::relation);
+    const bool thing =
+        has(Class::thing, phrase.noun) && where_to && where_to.value != "on";  // "a rainbow over"
+    if (thing || !focus.found() || !own_pattern(focus, phrase)) return false;
     Cursor place = c_;
     Phrase where;
     if ((place.take(Class::relation) || place.take(Class::to)) && place.take_phrase(where) &&
@@ -348,16 +337,7 @@ bool Reader::is_slip_of_focus(const Phrase& phrase) const {
 /// "snow on the ground", "a tutu for the bear", "a lion out of the bear", "a moose where the bear is";
 /// nothing for other phrases.
 std::optional<bool> Reader::describe_elsewhere(const Phrase& phrase) {
-    if (Cursor below = c_; is_ground(phrase) && !phrase.has_determiner() && below.is(Class::word_on)) {
-        Phrase ground;  // "snow on the ground"
-        ++below.at;
-        const auto old = below.take_phrase(ground) ? d_.resolve(ground) : Target{};
-        if (old.thing && d_.scene().things[*old.thing].is_ground && below.at_end_of_clause()) {
-            c_.at = below.at;
-            d_.ground(phrase);
-            return true;
-        }
-    }
+    if (lies_on_ground(phrase)) return true;
     if (Cursor whom = c_; !described_ && whom.is(Class::word_for)) {
         Phrase bearer;  // "a pink tutu for the bear"
         ++whom.at;
@@ -382,6 +362,18 @@ std::optional<bool> Reader::describe_elsewhere(const Phrase& phrase) {
     return std::nullopt;
 }
 
+/// Further things stand beside the first, or are worn by it.
+bool Reader::describe_further(const Phrase& phrase, const Target& bearer) {
+    if (!bearer.found()) return fail(reason::Ambiguous);
+    const auto how =
+        is_worn(phrase) && d_.can_wear(bearer) ? std::string_view("worn by") : std::string_view("beside");
+    const auto made = d_.add(phrase, how, {bearer});
+    d_.mention(made);
+    nested(made, bearer);
+    posts(made);
+    return describe_more();
+}
+
 /// A thing that the scene does not show.
 bool Reader::describe_new(const Phrase& phrase) {
     const auto focus = d_.focus();
@@ -390,25 +382,21 @@ bool Reader::describe_new(const Phrase& phrase) {
         return fail(reason::NotInScene);
     }
     if (describe_pattern(phrase)) return true;
-    if (!is_thing(phrase)) return fail(reason::NotASentence);
+    const bool tells =
+        word_count_ > LongestPlain && phrase.possessive && (kinds_of(phrase.noun) & Person) != 0;
+    if (tells || !is_thing(phrase)) return fail(reason::NotASentence);
     if (const auto read = describe_one_of(phrase)) return *read;
     if (const auto read = describe_elsewhere(phrase)) return *read;
+    if (is_ground(phrase) && !phrase.has_determiner() && !c_.peek(Class::rather_than))
+        c_.take(Class::as_well);  // "snow everywhere"
     const bool bare = c_.at_end_of_clause();
     if (const auto placed = describe_on_top(phrase)) return *placed;
     if (const auto read = describe_place(phrase, bare)) return *read;
     const bool wears = is_worn(phrase) || (is_held(phrase) && described_);
     const auto bearer = described_ && described_->found() ? *described_ : focus;
-    if (described_) {  // further things stand beside the first, or are worn by it
-        if (!bearer.found()) return fail(reason::Ambiguous);
-        const auto how =
-            is_worn(phrase) && d_.can_wear(bearer) ? std::string_view("worn by") : std::string_view("beside");
-        const auto made = d_.add(phrase, how, {bearer});
-        d_.mention(made);
-        nested(made, bearer);
-        posts(made);
-        return describe_more();
-    }
-    if (c_.peek(Class::rather_than) || (c_.peek(Class::than) && requested_)) {
+    if (described_) return describe_further(phrase, bearer);
+    const bool over = prefers_ && (c_.is(Class::word_to) || c_.word().text == "over");
+    if (c_.peek(Class::rather_than) || (c_.peek(Class::than) && requested_) || over) {
         if (const auto read = describe_instead(phrase)) return *read;
     }
     const bool later = mentions_focus(c_.at);
@@ -545,8 +533,12 @@ bool Reader::attribute_clause() {
     const auto target = made ? *d_.last() : described_ && described_->found() ? *described_ : d_.focus();
     Attribute attribute;
     Cursor ahead = c_;
-    ahead.take(Class::article);
+    const auto degree = ahead.peek(Class::degree).length;  // "a little bit bluer"
+    const bool article = degree < 2 && ahead.take(Class::article).length > 0;
     const bool attributes = ahead.take_attribute(attribute, false);
+    const bool acts = ahead.peek(Class::wearing) || ahead.peek(Class::holding) || ahead.peek(Class::having);
+    if (article && acts && attribute.quality == Quality::State)
+        return fail(reason::NotASentence);  // "a bare wearing a hat"
     const bool begins = c_.peek(Class::relation) || c_.peek(Class::wearing) || c_.peek(Class::holding) ||
                         c_.peek(Class::having) || c_.peek(Class::made_of) ||
                         c_.peek(Class::inverse_relation) || c_.peek(Class::riding) || c_.peek(Class::like) ||

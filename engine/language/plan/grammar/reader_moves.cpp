@@ -5,13 +5,20 @@
 
 namespace gse::language::plan {
 
+static bool is_article(const Cursor& here, std::size_t ahead) {
+    return here.peek(Class::article, ahead).length > 0;
+}
+
 /// "2 meters", "by 50 cm": as a change has it, with a blank before; empty for none, and for other units.
 std::string Reader::take_amount() {
     std::string amount;
     Cursor ahead = c_;
     ahead.is(Class::word_by) ? void(++ahead.at) : void();
     Cursor number = ahead;
-    if (const auto named = number.peek(Class::number)) {
+    if (ahead.is(Class::word_half) && number.peek(Class::unit, 2) && is_article(number, 1)) {
+        amount = "0.5";  // "half a meter"
+        number.at += 2;
+    } else if (const auto named = number.peek(Class::number)) {
         amount = named.value;
         number.at += named.length;
     } else if (number.take(Class::article)) amount = "1";
@@ -53,14 +60,29 @@ void Reader::move_way(const Target& target, const Match& direction, std::string 
     d_.step(Operation::Transform, target, "move " + way + amount);
 }
 
+/// Steps over "from the table" where the way goes on.
+bool Reader::skip_origin() {
+    Cursor ahead = c_;
+    Phrase origin;
+    if (!ahead.take(Class::from) || !ahead.take_phrase(origin)) return false;
+    if (!d_.resolve(origin).found() || !(ahead.is(Class::word_to) || ahead.peek(Class::relation)))
+        return false;
+    c_.at = ahead.at;
+    return true;
+}
+
 /// "behind the statue", "in a cage", "on snow".
-bool Reader::move_to(const Target& target, const Match& relation) {
-    const auto name = relation ? relation.value : std::string_view("beside");
+bool Reader::move_to(const Target& target, const Match& relation, bool from) {
+    auto name = relation ? relation.value : std::string_view("beside");
     c_.at += relation ? relation.length : 1;
+    if (name == "in" && in_colour(target)) return true;  // "put the bear in camouflage"
     if (c_.is(Class::word_to) || c_.is(Class::word_of)) ++c_.at;
     Phrase where;
     if (!c_.take_phrase(where)) { return fail(reason::Incomplete); }
     auto place = where.naming == Naming::It ? d_.focus() : d_.resolve(where);
+    const bool flat = place.thing && (d_.scene().things[*place.thing].is_ground ||
+                                      has(Class::furniture_flat, place.reference.root()));
+    if (from && !relation && flat) name = "on";  // "from the table to the floor"
     Target body = d_.focus();
     if (where.possessive && !d_.is_animate(body)) body = d_.pronoun(Naming::Person);  // "in his hands"
     if (!place.found() && on_bearer(where, body)) place = body;
@@ -109,6 +131,14 @@ bool Reader::move_to(const Target& target, const Match& relation) {
     return true;
 }
 
+/// Steps over "over" and "down" before a place: "over to the statue", "down on the floor", "back on it".
+void Reader::skip_particle() {
+    const bool over = c_.word().text == "over" && (c_.is(Class::word_to, 1) || c_.peek(Class::relation, 1));
+    const bool down = (c_.is(Class::word_down) || c_.word().text == "back") && c_.peek(Class::relation, 1) &&
+                      !c_.is(Class::word_by, 1) && c_.peek(Class::relation).length < 2;
+    if (over || down) ++c_.at;
+}
+
 /// A thing that is there goes to another place.
 bool Reader::move_target(const Target& target) {
     c_.take(Class::degree);
@@ -116,6 +146,11 @@ bool Reader::move_target(const Target& target) {
         over.length > 1 && over.value == "flip") {  // "lay it on its back"
         c_.at += over.length;
         d_.step(Operation::Transform, target, std::string(over.value));
+        return true;
+    }
+    if (c_.is(Class::word_on) && c_.peek(Class::possessive, 1) && c_.word(2).text == "side") {
+        c_.at += 3;
+        d_.step(Operation::Pose, target, "lying on its side");
         return true;
     }
     const auto amount = take_amount();
@@ -128,6 +163,14 @@ bool Reader::move_target(const Target& target) {
         }
         c_.take(Class::degree);
         while (c_.take(Class::emerging)) {}
+        skip_particle();
+        Target whose;
+        if (const auto side = take_side(whose); !side.empty()) {
+            d_.move(target, "move " + std::string(side), whose);
+            moved = true;
+            continue;
+        }
+        const bool from = skip_origin();
         const auto relation = c_.peek(Class::relation);
         const auto direction = c_.peek(Class::direction);
         Cursor behind = c_;
@@ -144,7 +187,7 @@ bool Reader::move_target(const Target& target) {
             continue;
         }
         if (relation || c_.is(Class::word_to) || c_.is(Class::word_from)) {
-            if (!move_to(target, relation)) return false;
+            if (!move_to(target, relation, from)) return false;
             moved = true;
             continue;
         }
@@ -154,37 +197,54 @@ bool Reader::move_target(const Target& target) {
     return moved || fail(reason::Incomplete);
 }
 
+/// "(lay the bear) down": a pose.
+bool Reader::poses_so(std::string_view verb, const Targets& targets) {
+    const std::string_view pose = verb == "lay"     ? "lying"
+                                  : verb == "sit"   ? "sitting"
+                                  : verb == "stand" ? "standing"
+                                                    : "";
+    if (pose.empty() || !(c_.is(Class::word_down) || c_.is(Class::word_up))) return false;
+    ++c_.at;
+    for (const auto& target : targets) d_.step(Operation::Pose, target, std::string(pose));
+    return true;
+}
+
 bool Reader::move_clause() {
     const auto lift = c_.peek(Class::verb_lift);
     const auto verb = c_.peek(Class::verb_move);
     if (!verb && !lift) return false;
+    const auto base = c_.word().text;
     c_.at += std::max(verb.length, lift.length);
     Targets targets;
     Phrase first;
     Cursor ahead = c_;
     if (!ahead.take_phrase(first)) return false;
     const auto found = d_.resolve(first);
-    if (!found.found() || (first.indefinite && first.naming == Naming::Thing)) {
+    const bool one_of = first.single && d_.things_named(first).size() > 1;  // "move one chair"
+    if (!found.found() || (first.indefinite && !one_of && first.naming == Naming::Thing)) {
         if (found.kind == Target::Kind::Ambiguous && first.naming != Naming::Thing)
             return fail(reason::Ambiguous);
         return false;
     }
     if (found.kind == Target::Kind::There && !found.thing && found.reference.links.size() > 1)
-        return false;  // a part: a pose
+        return false;                 // a part: a pose
+    if (first.another) return false;  // "put another flower in the vase"
     if (!objects(targets)) return false;
+    if (poses_so(base, targets)) return ends_well();
     Cursor way = c_;
     while (way.take(Class::degree) || way.take(Class::emerging)) {}
     const bool goes =
         way.peek(Class::direction) || way.peek(Class::relation) || way.is(Class::word_to) ||
         way.is(Class::word_by) ||
         (!way.word().text.empty() && std::isdigit(static_cast<unsigned char>(way.word().text[0])) != 0) ||
-        way.peek(Class::number) || way.is(Class::word_from) ||
+        way.peek(Class::number) || way.is(Class::word_from) || way.is(Class::word_half) ||
         (way.peek(Class::article) && way.peek(Class::unit, 1));
     Cursor position = c_;
     const bool stands =
         (position.peek(Class::pose) && !position.peek(Class::direction)) || position.peek(Class::flipping);
     if (lift && (c_.at_end_of_clause() || !goes)) {
         for (const auto& target : targets) d_.step(Operation::Transform, target, std::string(lift.value));
+        while (c_.take(Class::degree)) {}
         return c_.at_end_of_clause() || ends_well();
     }
     if (lift && goes) {  // "lift the bear 1 meter"
@@ -275,8 +335,11 @@ bool Reader::size_clause() {
     if (up || down) ++c_.at, change = up ? "bigger" : "smaller";
     if (c_.peek(Class::dimension) && !c_.peek(Class::relation)) sizes = c_.take(Class::dimension).value;
     if (c_.is(Class::word_in) && c_.peek(Class::dimension, 1)) c_.at += 2;
-    if (c_.is(Class::word_vertically)) ++c_.at, change = "taller";
-    else if (c_.is(Class::word_horizontally) || c_.is(Class::word_sideways)) ++c_.at, change = "wider";
+    const bool less =
+        change == "smaller" || change == "narrower" || change == "shorter" || change == "thinner";
+    if (c_.is(Class::word_vertically)) ++c_.at, change = less ? "shorter" : "taller";
+    else if (c_.is(Class::word_horizontally) || c_.is(Class::word_sideways))
+        ++c_.at, change = less ? "narrower" : "wider";
     const bool by = c_.is(Class::word_by);
     if (by || c_.is(Class::word_to)) {
         ++c_.at;
@@ -367,9 +430,14 @@ bool Reader::rotate_clause() {
         c_.at += turned.length;
         change = turned.value;
     } else if (!flip) {
+        auto way = c_.peek(Class::clockwise);
+        const bool before =
+            way && (c_.is(Class::word_by, way.length) ||
+                    std::isdigit(static_cast<unsigned char>(c_.word(way.length).text[0])) != 0);
+        if (before) c_.at += way.length;  // "clockwise by 15 degrees"
         const auto told = take_degrees();
         const auto degrees = told.empty() && around && c_.at_end_of_clause() ? "180" : told;
-        const auto way = c_.peek(Class::clockwise);
+        if (!before) way = c_.peek(Class::clockwise);
         if (degrees.empty() && !way) {
             if (!c_.at_end_of_clause()) return false;
             const auto& text = verb.value;
@@ -380,7 +448,7 @@ bool Reader::rotate_clause() {
             if (way) {
                 const std::string_view value = way.value;
                 change += " " + std::string(value);
-                c_.at += way.length;
+                if (!before) c_.at += way.length;
             }
         }
     }
@@ -411,63 +479,119 @@ bool Reader::face_clause() {
     return true;
 }
 
-/// Verbs that name the change: "bleach the bear", "gild it", "age the man", "stripe the bear".
-bool Reader::shift_clause() {
-    constexpr std::pair<Class, Operation> Changes[] = {{Class::verb_shift, Operation::Recolour},
-                                                       {Class::verb_material, Operation::Material},
-                                                       {Class::verb_pattern, Operation::Pattern},
-                                                       {Class::verb_style, Operation::Style},
-                                                       {Class::verb_alter, Operation::Alter}};
-    for (const auto& [kind, operation] : Changes) {
-        const auto verb = c_.peek(kind);
-        if (!verb) continue;
-        c_.at += verb.length;
-        Targets targets;
-        Phrase backdrop;
-        Cursor ahead = c_;
-        if (ahead.take_phrase(backdrop) && has(Class::backdrop, backdrop.noun) &&
-            d_.things_named(backdrop).empty()) {
-            c_.at = ahead.at;
-            if (operation == Operation::Style)
-                d_.style(d_.scene_target(), std::string(verb.value) + " " + backdrop.noun);
-            else d_.environment(std::string(verb.value) + " " + backdrop.noun);
-            return true;
-        }
-        if (!objects(targets)) return false;
-        if (c_.is(Class::word_up) || c_.is(Class::word_down) || c_.is(Class::word_out)) ++c_.at;
-        while (c_.take(Class::degree) || c_.take(Class::pose_manner)) {}
-        if (c_.is(Class::word_by)) {
-            while (!c_.at_end_of_clause() && !c_.peek(Class::conjunction)) ++c_.at;
-        }
-        for (const auto& target : targets) d_.step(operation, target, std::string(verb.value));
-        return true;
-    }
-    return false;
+/// "50 % bigger".
+bool Reader::percent(const Targets& targets) {
+    Cursor ahead = c_;
+    const bool digits =
+        !ahead.word().text.empty() && std::isdigit(static_cast<unsigned char>(ahead.word().text[0])) != 0;
+    if (!digits || ahead.peek(Class::unit, 1).value != "%") return false;
+    Cursor size = ahead;
+    size.at += 1 + ahead.peek(Class::unit, 1).length;
+    const auto change = size.take(Class::size);
+    if (!change) return false;
+    std::string text(change.value);
+    if (text == "bigger" || text == "smaller") text = "scale " + take_factor(false, text == "smaller");
+    c_.at = size.at;
+    for (const auto& target : targets) d_.step(Operation::Transform, target, text);
+    return true;
 }
 
-/// "open the door", "raise the left arm", "let it smile".
-bool Reader::pose_clause() {
-    const auto verb = c_.peek(Class::verb_pose);
-    const auto raise = c_.peek(Class::verb_raise);
-    if (!verb && !raise) return false;
-    if (verb.length > 2 && c_.is(Class::possessive, 1) && d_.focus().found()) {  // "raise its hand"
-        c_.at += verb.length;
-        d_.step(Operation::Pose, d_.pronoun(Naming::It, true), std::string(verb.value));
+/// "twice as big", "half as wide", "two times taller", "half its size".
+bool Reader::measure(const Targets& targets) {
+    Cursor ahead = c_;
+    std::string factor;
+    if (const auto times = ahead.take(Class::times)) factor = times.value;
+    else if (!ahead.word().text.empty() &&
+             std::isdigit(static_cast<unsigned char>(ahead.word().text[0])) != 0 &&
+             (ahead.is(Class::word_times, 1) || ahead.is(Class::word_x, 1))) {
+        factor = ahead.word().text;
+        ahead.at += 2;
+    } else return percent(targets);
+    ahead.take(Class::like);
+    ahead.take(Class::of);
+    ahead.take(Class::possessive);
+    ahead.take(Class::definite);
+    Match dimension = ahead.take(Class::dimension);
+    std::string_view sizes = dimension.value;
+    if (!dimension) {
+        const auto size = ahead.take(Class::size);
+        const double times = std::atof(factor.c_str());
+        if (size.value == "smaller" && times > 1) {  // "3 times smaller"
+            const int hundredths = static_cast<int>(100 / times);
+            factor = "0." + std::string(hundredths < 10 ? "0" : "") + std::to_string(hundredths);
+            if (factor.ends_with('0')) factor.pop_back();
+        }
+        if (size)
+            sizes =
+                size.value == "bigger" || size.value == "smaller" ? std::string_view("scale") : size.value;
+        else return false;
+    }
+    ahead.take(Class::like);
+    while (ahead.is(Class::word_it) || ahead.is(Class::word_now) || ahead.word().text == "is" ||
+           ahead.word().text == "was" || ahead.word().text == "before")
+        ++ahead.at;  // "twice as tall as it is now"
+    const bool grows = factor[0] != '0';
+    std::string change = "scale " + factor;
+    if (sizes != "scale") {
+        const auto blank = sizes.find(' ');
+        change = blank == std::string_view::npos
+                     ? std::string(sizes)
+                     : std::string(grows ? sizes.substr(0, blank) : sizes.substr(blank + 1));
+    }
+    c_.at = ahead.at;
+    c_.take(Class::as_well);
+    for (const auto& target : targets) d_.step(Operation::Transform, target, change);
+    return true;
+}
+
+/// "as tall as the house", "the same size as the car", "the color of the chair", "bigger than the dog".
+bool Reader::compared(const Targets& targets) {
+    Cursor ahead = c_;
+    Phrase other;
+    ahead.take(Class::definite);
+    ahead.take(Class::article);
+    ahead.take(Class::like);
+    const bool same = ahead.is(Class::word_same);
+    if (same) ++ahead.at;
+    if (const auto size = ahead.peek(Class::size); size && !same) {
+        ahead.at += size.length;
+        if (!ahead.take(Class::like) && !ahead.take(Class::than)) return false;
+        const bool equal = ahead.word().text.empty() ? false : c_.is(Class::word_as);
+        if (!ahead.take_phrase(other)) return false;
+        c_.at = ahead.at;
+        const auto model = d_.resolve(other);
+        const bool whole = size.value == "bigger" || size.value == "smaller";
+        for (const auto& target : targets)
+            if (equal && whole && model.thing) d_.move(target, "same size as", model);
+            else d_.step(Operation::Transform, target, std::string(size.value));
         return true;
     }
-    c_.at += std::max(verb.length, raise.length);
-    Targets targets;
-    if (!objects(targets)) {
-        if (c_.at_end_of_clause() && verb && d_.focus().found()) return false;
-        return false;
+    const bool colour = ahead.peek(Class::colour_word).length > 0,
+               dimension = ahead.peek(Class::dimension).length > 0;
+    if (!colour && !dimension) return false;
+    ++ahead.at;
+    if (!ahead.take(Class::like) && !ahead.take(Class::of)) return false;
+    const std::size_t begin = ahead.at;
+    Attribute stuff;
+    if (Cursor plain = ahead; colour && plain.take_attribute(stuff, false) && plain.at_end_of_clause()) {
+        c_.at = plain.at;  // "the color of chocolate"
+        return apply_all(targets, {{Quality::Colour, stuff.value, stuff.typed, ""}});
     }
-    if (!verb && targets.front().thing && d_.is_animate(targets.front())) return false;  // "turn the bear"
-    const auto text = raise.length >= verb.length ? raise.value : verb.value;
-    if (c_.is(Class::word_up) || c_.is(Class::word_out) || c_.is(Class::word_down) || c_.is(Class::word_wide))
-        ++c_.at;
-    while (c_.take(Class::pose_manner)) {}
-    for (const auto& target : targets) d_.step(Operation::Pose, target, std::string(text));
-    return true;
+    if (!ahead.take_phrase(other)) return false;
+    const auto found = d_.resolve(other);
+    if (dimension) {
+        if (!found.found()) return false;
+        c_.at = ahead.at;
+        for (const auto& target : targets) d_.move(target, "same size as", found);
+        return true;
+    }
+    std::string told;
+    if (found.thing)
+        for (const auto& word : d_.scene().things[*found.thing].attributes)
+            if (has(Class::colour, word) || told.empty()) told = word;
+    if (told.empty()) told = c_.rest(begin - c_.at).front().text.empty() ? "" : other.noun + "-colored";
+    c_.at = ahead.at;
+    return apply_all(targets, {{Quality::Colour, told, told, ""}});
 }
 
 }  // namespace gse::language::plan

@@ -33,10 +33,14 @@ bool Reader::list_goes_on() {
     const bool comma = ahead.take_mark(',');
     const bool joint = ahead.take(Class::conjunction).length > 0 || ahead.take(Class::alternative).length > 0;
     if (!comma && !joint) return false;
-    while (ahead.take(Class::having) || ahead.take(Class::wearing) || ahead.take(Class::as_well)) {}
+    while (ahead.take(Class::having) || ahead.take(Class::as_well)) {}
+    if (ahead.peek(Class::wearing)) return false;
     const std::size_t distance = ahead.at - c_.at;
     if (comma && ahead.peek(Class::noise)) return false;
-    if (starts_verb(distance) || ahead.peek(Class::holding) || ahead.peek(Class::riding)) return false;
+    const bool clothes = ahead.peek(Class::worn) && !starts_object(distance + 1);  // "a suit and tie"
+    if ((starts_verb(distance) && !clothes) || ahead.peek(Class::holding) || ahead.peek(Class::riding))
+        return false;
+    if (ahead.peek(Class::sequence) && !ahead.peek(Class::another)) return false;  // "and finally remove"
     Phrase next;
     Cursor probe = ahead;
     if (!probe.take_phrase(next) || next.noun.empty() || next.naming != Naming::Thing) return false;
@@ -63,19 +67,31 @@ bool Reader::own_pattern(const Target& subject, const Phrase& phrase) {
             value = attribute.value, colour = attribute.colour.empty() ? colour : attribute.colour;
     }
     const bool named = has(Class::pattern_word, last);
+    if (Cursor of = c_; named && value.empty() && of.take(Class::of)) {  // "a pattern of hearts"
+        if (const auto motif = of.take(Class::pattern)) {
+            c_.at = of.at;
+            value = motif.value;
+        }
+    }
     if (named && first != last && has(Class::material, first) && !has(Class::pattern, first)) {
         const auto stuff = *meaning(Class::material, first);  // "a wood grain"
         d_.apply(subject, {Quality::Material, std::string(stuff), std::string(stuff), ""});
         return true;
     }
     if (named && first != last) value = meaning(Class::pattern, first).value_or(first);
+    const bool motif = last == "pattern" || last == "print" || last == "motif";
+    for (const auto& attribute : phrase.attributes)  // "a diamond pattern"
+        if (motif && value.empty() && attribute.quality == Quality::Material &&
+            has(Class::pattern, attribute.value))
+            value = *meaning(Class::pattern, attribute.value), colour.clear();
     if (named && value.empty()) {
         for (const auto& attribute : phrase.attributes)
-            if (attribute.quality == Quality::Material || attribute.quality == Quality::Surface) {
+            if (attribute.quality == Quality::Material || attribute.quality == Quality::Surface ||
+                (attribute.quality == Quality::Colour && !motif)) {
                 d_.apply(subject, attribute);
-                return true;
+                value = attribute.value;
             }
-        return false;
+        return !value.empty();
     }
     if (!named) {
         const auto plain = meaning(Class::pattern, phrase.typed);
@@ -111,7 +127,8 @@ bool Reader::own_part(const Target& subject, const Phrase& phrase) {
     ahead.take(Class::copula);
     const auto more = ahead.take_attributes();
     const bool ends = ahead.at_end_of_clause() || ahead.ends_phrase(0, true);
-    if (!more.empty() && ends) {
+    const bool stands = c_.peek(Class::where_pose) && ahead.peek(Class::relation);  // "a mane sitting on"
+    if (!more.empty() && ends && !stands) {
         c_.at = ahead.at;
         attributes.insert(attributes.end(), more.begin(), more.end());
     } else if (c_.peek(Class::made_of) && !is_worn(phrase)) {
@@ -171,7 +188,9 @@ bool Reader::own(const Target& subject, const Phrase& phrase, std::string_view r
     if (is_ground(phrase) && relation == "with" && !is_worn(phrase) && !is_held(phrase) &&
         !has(Class::floating, phrase.noun) && !has(Class::thing, phrase.noun))
         return relate(subject, "on", phrase);
-    if (is_part(phrase) && relation != "worn by" && own_part(subject, phrase)) return true;
+    const bool of_things = d_.can_wear(subject) && has(Class::part_made, word_of(phrase.noun).singular) &&
+                           phrase.indefinite;  // "a golden key around its neck"
+    if (is_part(phrase) && !of_things && relation != "worn by" && own_part(subject, phrase)) return true;
     if (is_part(phrase) && !is_worn(phrase) && relation == "with" && d_.can_wear(subject) &&
         ((kinds_of(phrase.noun) & Body) != 0 ||
          (has(Class::body_place, phrase.noun) && !phrase.count.empty()))) {
@@ -199,6 +218,7 @@ bool Reader::own(const Target& subject, const Phrase& phrase, std::string_view r
             return true;
         }
     }
+    if (phrase.possessive && is_part(phrase) && !is_worn(phrase)) return false;  // "its paw on a ball"
     const auto made = d_.add(phrase, how, {subject});
     d_.mention(made);
     nested(made, subject);
@@ -240,12 +260,22 @@ bool Reader::has_looks(const Target& subject, const std::vector<Attribute>& attr
     return true;
 }
 
+/// Removes all that is worn.
+void Reader::undress() {
+    const auto& things = d_.scene().things;
+    d_.already_so();
+    for (std::size_t i = 0; i < things.size(); ++i)
+        if (things[i].is_worn) d_.remove(d_.target_of_thing(i));
+}
+
 bool Reader::has_list(const Target& subject, std::string_view relation) {
     Phrase phrase;
     std::size_t behind = 0;        // position behind the thing before
     std::vector<Attribute> looks;  // of the part before
+    if (c_.is(Class::word_neither)) return lack_both(subject);
     do {
         const std::size_t start = c_.at;
+        if (c_.peek(Class::definite) && compared({subject})) continue;  // "the color of honey"
         if (Cursor look = c_; look.take(Class::article) && look.take(Class::style) &&
                               look.take(Class::style_word)) {  // "a vintage look"
             const auto subjects = Targets{subject};
@@ -262,10 +292,7 @@ bool Reader::has_list(const Target& subject, std::string_view relation) {
             c_.at += 2;                                             // "wearing nothing but a tie"
         if (c_.is(Class::word_nothing) && relation == "worn by") {  // "wears nothing"
             ++c_.at;
-            const auto& things = d_.scene().things;
-            d_.already_so();
-            for (std::size_t i = 0; i < things.size(); ++i)
-                if (things[i].is_worn) d_.remove(d_.target_of_thing(i));
+            undress();
             return true;
         }
         if (c_.is(Class::word_nothing)) return false;
@@ -301,63 +328,33 @@ bool Reader::has_list(const Target& subject, std::string_view relation) {
     return true;
 }
 
-bool Reader::lack(const Target& subject, const Phrase& phrase) {
-    Phrase what = phrase;
-    what.none = false;
-    Cursor on = c_;  // "with no hat on"
-    if (on.take(Class::relation) && on.at_end_of_clause()) c_.at = on.at;
-    if (what.naming != Naming::Thing || what.noun.empty()) return false;
-    if (const auto found = d_.things_named(what); !found.empty()) {
-        const auto target = d_.resolve(what);
-        if (!target.found()) return fail(reason::Ambiguous);
-        if (d_.replaces(target)) return true;  // "a panda, not a bear"
-        d_.remove(target);
+/// "(a hat) on its head", "next to him"; false where another place stands there, nothing where none does.
+std::optional<bool> Reader::nested_place(const Target& made, const Target& bearer, Cursor ahead) {
+    Phrase place;
+    const auto relation = ahead.take(Class::relation);
+    if (!relation) return std::nullopt;
+    if (!ahead.take_phrase(place)) {
+        if (!ahead.at_end_of_clause()) return false;
+        const bool put_on = relation.value == "on" && relation.length == 1;  // "with no hat on"
+        if (!put_on && (!made.step || relation.value == "in")) return false;
+        if (!put_on) d_.set_anchor(made, relation.value, bearer);
+        c_.at = ahead.at;
         return true;
     }
-    if (is_part(what) && !is_worn(what)) {
-        what.owner.reset();
-        Target part = subject;
-        part.thing.reset();
-        part.reference.links.insert(part.reference.links.begin(), Thing{what.typed, "", {}});
-        d_.remove(part);
+    Target whose = bearer;
+    if (on_bearer(place, whose)) {
+        c_.at = ahead.at;
+        const bool worn = has(Class::worn, made.reference.root()) || made.thing;
+        const bool held = relation.value == "in" && has(Class::hand, word_of(place.typed).singular);
+        if (made.step && held) d_.set_anchor(made, "held by", bearer);
+        else if (made.step && !worn) d_.set_anchor(made, relation.value, whose);
         return true;
     }
-    if ((kinds_of(what.noun) & Body) != 0 && is_part(what)) {
-        Target part = subject;
-        part.thing.reset();
-        part.reference.links.insert(part.reference.links.begin(), Thing{what.typed, "", {}});
-        d_.remove(part);
-        return true;
-    }
-    d_.already_so();
-    return true;
-}
-
-bool Reader::lack_list(const Target& subject) {
-    Phrase phrase;
-    do {
-        Cursor doing = c_;
-        if (doing.word().text.ends_with("ing") && doing.peek(Class::verb_keep).length == 0 &&
-            doing.noun_length() == 0) {
-            // "without touching the hat"
-            ++doing.at;
-            if (!doing.take_phrase(phrase)) return false;
-            c_.at = doing.at;
-            d_.nothing_asked();
-            continue;
-        }
-        if (doing.word().text == "touching" || doing.word().text == "changing" ||
-            doing.word().text == "altering") {
-            ++doing.at;
-            if (!doing.take_phrase(phrase)) return false;
-            c_.at = doing.at;
-            d_.nothing_asked();
-            continue;
-        }
-        if (!c_.take_phrase(phrase)) return false;
-        if (!lack(subject, phrase)) return false;
-
-    } while (list_goes_on());
+    const auto found = d_.resolve(place);
+    const bool bears = found.found() && found.reference == bearer.reference;
+    if (!bears && place.naming != Naming::It && place.naming != Naming::Person) return false;
+    c_.at = ahead.at;
+    if (made.step) d_.set_anchor(made, relation.value, bearer);
     return true;
 }
 
@@ -366,44 +363,23 @@ void Reader::nested(const Target& made, const Target& bearer) {
     while (true) {
         const std::size_t start = c_.at;
         Cursor ahead = c_;
+        Target owner;
+        if (const auto side = made.step ? take_side(owner) : std::string_view(); !side.empty()) {
+            d_.set_anchor(made, side, owner);
+            continue;
+        }
         if (made.step && ahead.peek(Class::copula) && ahead.peek(Class::emerging, 1)) ++ahead.at;
         while (ahead.take(Class::emerging)) {}
-        if (const auto relation = ahead.take(Class::relation)) {
-            Phrase place;
-            if (!ahead.take_phrase(place)) {
-                if (relation.value == "on" && ahead.at_end_of_clause()) {
-                    c_.at = ahead.at;
-                    continue;
-                }
-                if (made.step && ahead.at_end_of_clause() && relation.value != "in") {
-                    d_.set_anchor(made, relation.value, bearer);
-                    c_.at = ahead.at;
-                    continue;
-                }
-                return;
-            }
-            Target whose = bearer;
-            if (on_bearer(place, whose)) {
-                c_.at = ahead.at;
-                const bool worn = has(Class::worn, made.reference.root()) || made.thing;
-                const bool held = relation.value == "in" && has(Class::hand, word_of(place.typed).singular);
-                if (made.step && held) d_.set_anchor(made, "held by", bearer);
-                else if (made.step && !worn) d_.set_anchor(made, relation.value, whose);
-                continue;
-            }
-            const auto found = d_.resolve(place);
-            const bool bears = found.found() && found.reference == bearer.reference;
-            if (bears || place.naming == Naming::It || place.naming == Naming::Person) {
-                c_.at = ahead.at;
-                if (made.step) d_.set_anchor(made, relation.value, bearer);
-                continue;
-            }
+        if (const auto read = nested_place(made, bearer, ahead)) {
+            if (*read) continue;
             c_.at = start;
             return;
         }
         if (const auto side = c_.peek(Class::direction);
-            made.step && side.length == 3 && c_.is(Class::possessive, 1) && bearer.found()) {
-            c_.at += side.length;  // "to its left"
+            made.step && bearer.found() && !c_.peek(Class::of, side.length) &&
+            ((side.length == 3 && (side.value == "left" || side.value == "right")) ||
+             (side.length == 3 && c_.is(Class::possessive, 1)))) {
+            c_.at += side.length;  // "to its left", "to the right"
             d_.set_anchor(made, side.value == "left" ? "left of" : "right of", bearer);
             continue;
         }
@@ -518,17 +494,31 @@ bool Reader::burns(const Target& subject) {
 /// Steps over "standing" and "lying" before a place.
 void Reader::skip_where_pose() {
     if (const auto where = c_.peek(Class::emerging);
-        where && (c_.peek(Class::relation, where.length) || c_.peek(Class::direction, where.length)))
+        where && c_.peek(Class::relation).length <= where.length &&
+        (c_.peek(Class::relation, where.length) || c_.peek(Class::direction, where.length)))
         c_.at += where.length;
     Cursor place = c_;
+    if (c_.peek(Class::relation).length > 1) return;  // "leaning on"
     if (!place.take(Class::where_pose)) return;
     while (place.take(Class::as_well) || place.take(Class::degree)) {}
     if (place.peek(Class::relation)) c_.at = place.at;
 }
 
+/// "holding a flower", "playing on the grass".
+bool Reader::holds(const Target& subject) {
+    const auto verb = c_.word().text;
+    c_.take(Class::holding);
+    if (!c_.peek(Class::relation) && !c_.at_end_of_clause()) return has_list(subject, "held by");
+    const bool doing = verb.ends_with("ing");
+    if (doing && subject.kind == Target::Kind::There) d_.step(Operation::Pose, subject, verb);
+    return doing;
+}
+
 bool Reader::post(const Target& subject) {
     const std::size_t start = c_.at;
-    if (c_.peek(Class::rather_than)) return false;
+    const bool lacks = c_.peek(Class::negation) && (c_.peek(Class::wearing, 1) ||
+                                                    c_.peek(Class::holding, 1) || c_.peek(Class::having, 1));
+    if (c_.peek(Class::rather_than) && !lacks) return false;
     if (c_.peek(Class::subordinate)) {  // "while snow is falling"
         if (weather_clause()) return true;
     }
@@ -539,9 +529,10 @@ bool Reader::post(const Target& subject) {
         return false;
     };
     if (burns(subject) || looks_somewhere({subject}) || stands_on_part(subject)) return true;
+    if (c_.peek(Class::size) && compared({subject})) return true;  // "a bear bigger than a house"
     if (c_.is(Class::word_as) && (compared({subject}) || as_much_as({subject}))) return true;
-    if (Cursor lacking = c_; lacking.take(Class::negation) && lacking.take(Class::wearing)) {
-        c_.at = lacking.at;  // "not wearing a hat"
+    if (lacks) {  // "not wearing a hat"
+        c_.at += 2;
         return lack_list(subject) || back();
     }
     if (c_.peek(Class::verb_recolour) && c_.word().text.ends_with("ed") && !c_.at_end_of_clause() &&
@@ -564,12 +555,13 @@ bool Reader::post(const Target& subject) {
         d_.step(Operation::Alter, subject, role.typed);
         return true;
     }
-    if (c_.take(Class::wearing)) return has_list(subject, "worn by") || back();
-    if (const auto holding = c_.peek(Class::holding); holding && !c_.is(Class::word_like)) {
-        c_.at += holding.length;
-        if (has_list(subject, "held by")) return true;
-        return back();
+    if (const auto pose = doing(); !pose.empty()) {  // "scratching its back"
+        d_.step(Operation::Pose, subject, pose);
+        return true;
     }
+    if (c_.take(Class::wearing)) return has_list(subject, "worn by") || back();
+    const bool holds_more = c_.peek(Class::holding).length >= c_.peek(Class::relation).length;
+    if (c_.peek(Class::holding) && holds_more && !c_.is(Class::word_like)) return holds(subject) || back();
     if (c_.take(Class::riding)) return has_list(subject, "ridden by") || back();
     if (c_.peek(Class::having) && !c_.peek(Class::conjunction)) {
         c_.take(Class::having);

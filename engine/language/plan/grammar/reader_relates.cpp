@@ -95,15 +95,22 @@ bool Reader::surroundings(const Target& subject, std::string_view relation) {
             ahead.at = described.at;
         }
     }
+    if (const auto kind = ahead.peek(Class::environment); kind && ahead.peek(Class::place, kind.length)) {
+        text = std::string(kind.value) + " ";  // "in a dark forest"
+        ahead.at += kind.length;
+    }
     const auto weather = ahead.peek(Class::environment);
     Cursor time = ahead;
     time.at += weather.length;
-    if (weather && (relation != "on" || time.peek(Class::time_of_day))) {
+    const bool hour = time.at > ahead.at && has(Class::time_of_day, time.previous().text);  // "rainy evening"
+    if (weather && (relation != "on" || hour || time.peek(Class::time_of_day))) {
         Cursor behind = ahead;
         behind.at += weather.length;
+        const auto more = behind.take(Class::environment);  // "a winter evening"
         if (behind.at_end_of_clause() || behind.ends_phrase(0, true) || behind.peek(Class::time_word) ||
             behind.noun_length() == 0) {
             text += weather.value;
+            if (more) text.append(1, ' ').append(more.value);
             behind.take(Class::time_word);
             c_.at = behind.at;
             d_.environment(text);
@@ -153,9 +160,22 @@ bool Reader::related(const Target& subject) {
         d_.environment(std::string(weather.value));
         return true;
     }
+    Target other;
+    if (const auto side = take_side(other); !side.empty()) {
+        if (!subject.step) return false;
+        d_.set_anchor(subject, side, other);
+        return true;
+    }
+    const bool at = c_.is(Class::word_at);
     const auto relation = c_.take(Class::relation);
     if (surroundings(subject, relation.value)) return true;
     Phrase phrase;
+    if (Cursor place = c_; at && place.take_phrase(phrase) && phrase.definite && is_ground(phrase) &&
+                           d_.things_named(phrase).empty()) {
+        c_.at = place.at;  // "at the beach"
+        d_.ground(phrase);
+        return true;
+    }
     Attribute ignored;
     if (!c_.take_phrase(phrase)) {
         c_.at = start;
@@ -200,7 +220,10 @@ bool Reader::relate_there(const Target& subject, std::string_view relation, cons
                           const Target& found) {
     const bool of_focus = subject.step && !phrase.possessive && d_.focus().found();
     Target bearer = of_focus ? d_.focus() : subject;  // "flags on the towers"
+    const bool of_other = subject.step && found.kind == Target::Kind::There && !of_focus &&
+                          !phrase.possessive && found.reference.links.size() > 1;
     if (on_bearer(phrase, bearer) && subject.step) {
+        if (of_other) bearer = found;  // "snow on the roof"
         d_.set_anchor(subject, relation, bearer);
         return true;
     }
@@ -213,7 +236,9 @@ bool Reader::relate_there(const Target& subject, std::string_view relation, cons
     }
     if (subject.reference == found.reference) return true;
     const bool surface = !d_.is_animate(found) || (found.thing && d_.scene().things[*found.thing].is_ground);
-    const bool backdrop = relation == "in front of" && has(Class::backdrop, found.reference.root());
+    const auto& name = found.reference.root();
+    const bool backdrop =
+        relation == "in front of" && (has(Class::backdrop, name) || has(Class::place, name));
     const bool side = !backdrop && relation != "in" && relation != "beside" && relation != "under" &&
                       (relation != "on" || !surface || !usually_on(subject, found));
     if (found.thing && !phrase.attributes.empty()) apply_all({found}, phrase.attributes);
@@ -236,11 +261,24 @@ bool Reader::relate(const Target& subject, std::string_view relation, const Phra
     }
     if (place_of_thing && there && found.thing && d_.scene().things[*found.thing].is_ground) {
         d_.already_so();
+        if (phrase.definite && d_.stands_nowhere(subject)) {  // "lots of flowers in the grass"
+            d_.set_anchor(subject, "on", found);
+            return true;
+        }
         const bool named = phrase.noun == d_.scene().things[*found.thing].noun;
         if (!named && has(Class::ground, phrase.noun) &&
             !are_synonyms(d_.scene().things[*found.thing].noun, phrase.noun))
             d_.ground(phrase);
         else apply_all({found}, phrase.attributes);
+        return true;
+    }
+    const bool like = there && subject.thing && found.reference == subject.reference && phrase.indefinite;
+    const bool other = like && std::any_of(phrase.attributes.begin(), phrase.attributes.end(),
+                                           [&](const Attribute& each) { return !d_.is_so(subject, each); });
+    if (other) {  // "a red bear next to a blue bear"
+        Phrase second = phrase;
+        second.another = true;
+        nested(d_.add(second, inverse(relation), {subject}), subject);
         return true;
     }
     if (there) { return relate_there(subject, relation, phrase, found); }
@@ -252,7 +290,8 @@ bool Reader::relate(const Target& subject, std::string_view relation, const Phra
     if (!is_thing(phrase)) return false;
     auto how = inverse(relation);
     if (relation == "between") how = "beside";
-    if (relation == "in" && !has(Class::container, phrase.noun) &&
+    const auto vessel = phrase.noun.substr(phrase.noun.rfind(' ') + 1);
+    if (relation == "in" && !has(Class::container, phrase.noun) && !has(Class::container, vessel) &&
         (kinds_of(phrase.noun) & (Artifact | Object)) == 0) {
         if ((kinds_of(phrase.noun) & (Plant | Animal | Person)) == 0) {
             d_.environment(phrase.typed);
@@ -274,6 +313,19 @@ void Reader::skip_moon() {
         while (!also.at_end_of_clause()) ++also.at;
         c_.at = also.at;
     }
+}
+
+/// "(a storm) rages over the bear": says nothing more.
+void Reader::skip_weather_place(Cursor& behind, bool of_it) const {
+    Cursor over = behind;
+    Phrase place;
+    if (!of_it && over.take(Class::weather_goes)) behind.at = over.at;
+    if (!of_it && over.take(Class::relation) && over.take_phrase(place) && over.at_end_of_clause() &&
+        d_.resolve(place).found())
+        behind.at = over.at;
+    Cursor before = behind;  // "winter instead of summer"
+    if (before.take(Class::rather_than) && before.take(Class::environment) && before.at_end_of_clause())
+        behind.at = before.at;
 }
 
 /// "it is night", "make it snow", "at night", "let it rain".
@@ -322,6 +374,7 @@ bool Reader::environment_clause() {
     const bool adjacent = behind.at == ahead.at + weather.length;
     std::string text(weather.value);
     if (behind.take(Class::environment) && adjacent) text = ahead.text_to(behind.at);  // "a stormy night"
+    skip_weather_place(behind, subject);
     while (behind.take(Class::as_well)) {}
     const bool adds_thing = makes && !subject && ahead.noun_length() > weather.length;
     if (adds_thing || !(behind.at_end_of_clause() || behind.peek(Class::conjunction) ||
@@ -355,7 +408,7 @@ bool Reader::style_clause() {
         return false;
     }
     ahead = c_;
-    if (ahead.is(Class::word_in) || ahead.is(Class::word_as)) ++ahead.at;
+    if (ahead.is(Class::word_in) || ahead.is(Class::word_as) || ahead.is(Class::word_like)) ++ahead.at;
     c_.at = ahead.at;
     if (style_text({d_.scene_target()})) {
         Cursor whom = c_, last = c_;
@@ -417,11 +470,37 @@ bool Reader::stands_on_part(const Target& subject) {
     return true;
 }
 
+/// "scratching its back": what it does with a part of itself; empty for other words.
+std::string Reader::doing() {
+    const auto& verb = c_.word();
+    const bool participle = verb.text.ends_with("ing") && verb.base != verb.text &&
+                            ((kinds_of(verb.base) & Kind::Verb) != 0 || c_.peek(Class::holding));
+    if (!participle || c_.peek(Class::wearing) || c_.peek(Class::having) || c_.peek(Class::riding)) return {};
+    Cursor ahead = c_;
+    Phrase part;
+    ++ahead.at;
+    if (!ahead.take_phrase(part) || !part.possessive || !is_part(part) || !d_.things_named(part).empty())
+        return {};
+    const auto text = verb.text + " " + part.typed;
+    c_.at = ahead.at;
+    return text;
+}
+
 /// "surrounded by penguins", "covered with moss".
 bool Reader::inversely_related(const Target& subject) {
     if (c_.peek(Class::inverse_relation)) {
         const auto relation = c_.take(Class::inverse_relation).value;
         Phrase phrase;
+        if (Cursor rust = c_;
+            relation == "on" && subject.thing) {  // "covered in rust", which is a colour too
+            const auto covering = rust.take(Class::covering);
+            if (covering && !d_.scene().things[*subject.thing].is_ground &&
+                (rust.at_end_of_clause() || rust.peek(Class::conjunction))) {
+                c_.at = rust.at;
+                const std::string how(covering.value);
+                return apply_all({subject}, {{Quality::Material, how, how, ""}});
+            }
+        }
         if (!c_.take_phrase(phrase)) return false;
         const bool on_ground = subject.thing && d_.scene().things[*subject.thing].is_ground;
         if (relation == "on" && on_ground && is_ground(phrase)) {  // "the lawn is covered with snow"
@@ -468,6 +547,48 @@ bool Reader::skip_likeness() {
         !like.at_end_of_clause())
         return false;
     c_.at = like.at;
+    return true;
+}
+
+/// A ground or a place: "snow instead of grass", "a forest"; nothing for things.
+std::optional<bool> Reader::describe_place(const Phrase& phrase, bool bare) {
+    Cursor instead = c_;
+    Phrase replaced;
+    if (is_ground(phrase) && instead.take(Class::rather_than) &&
+        instead.take_phrase(replaced)) {  // "snow instead of grass"
+        const auto old = d_.resolve(replaced);
+        if (!old.found()) return expect(replaced).found();
+        c_.at = instead.at;
+        return become({old}, phrase);
+    }
+    if (is_ground(phrase) && !is_worn(phrase) && phrase.count.empty() && (described_ || bare) &&
+        !has(Class::thing, phrase.noun)) {
+        d_.ground(phrase);
+        return true;
+    }
+    if (has(Class::place, phrase.noun) && bare) {
+        d_.environment(phrase.typed);
+        return true;
+    }
+    if (bare && has(Class::environment, phrase.noun)) {  // "golden sunlight"
+        std::string text;
+        for (const auto& attribute : phrase.attributes) text += attribute.typed + " ";
+        d_.environment(text + phrase.typed);
+        return true;
+    }
+    return std::nullopt;
+}
+
+/// "snow on the ground": the ground becomes so.
+bool Reader::lies_on_ground(const Phrase& phrase) {
+    Cursor below = c_;
+    Phrase ground;
+    if (!is_ground(phrase) || phrase.has_determiner() || !below.is(Class::word_on)) return false;
+    ++below.at;
+    const auto old = below.take_phrase(ground) ? d_.resolve(ground) : Target{};
+    if (!old.thing || !d_.scene().things[*old.thing].is_ground || !below.at_end_of_clause()) return false;
+    c_.at = below.at;
+    d_.ground(phrase);
     return true;
 }
 

@@ -21,6 +21,13 @@ bool stays(Cursor& here) {
 
 /// "off the bear", "out of here", "from the table"; a part is of what is named there.
 void Reader::skip_from(Targets& targets) {
+    Cursor with = c_;  // "the vase with the flower"
+    Phrase along;
+    if (with.take(Class::having) && with.take_phrase(along) && along.definite && d_.resolve(along).thing &&
+        with.at_end_of_clause()) {
+        c_.at = with.at;
+        targets.push_back(d_.resolve(along));
+    }
     while (c_.take(Class::gone) || c_.is(Class::word_off) || c_.is(Class::word_out) ||
            c_.is(Class::word_down) || c_.is(Class::word_away)) {
         if (c_.is(Class::word_off) || c_.is(Class::word_out) || c_.is(Class::word_down) ||
@@ -29,7 +36,8 @@ void Reader::skip_from(Targets& targets) {
     }
     Cursor off = c_;
     Phrase bearer;
-    if (c_.at > 0 && off.take_phrase(bearer) && bearer.naming == Naming::Thing && d_.resolve(bearer).found())
+    if (c_.at > 0 && off.take_phrase(bearer) && d_.resolve(bearer).found() &&
+        (bearer.naming == Naming::Thing || bearer.naming == Naming::Person))
         c_.at = off.at;
     if (c_.take(Class::from) || c_.is(Class::word_of) || c_.peek(Class::relation)) {
         if (c_.is(Class::word_of)) ++c_.at;
@@ -72,7 +80,10 @@ bool Reader::take_things_there(Targets& targets) {
     if (!ahead.take_phrase(place) || place.naming != Naming::Thing) return true;
     const auto found = d_.resolve(place);
     if (!found.thing || d_.scene().things[*found.thing].is_ground) return true;
-    const auto on = things_on(found);
+    Targets worn;  // "everything off the bear"
+    for (std::size_t i = 0; d_.can_wear(found) && i < d_.scene().things.size(); ++i)
+        if (d_.scene().things[i].is_worn) worn.push_back(d_.target_of_thing(i));
+    const auto on = worn.empty() ? things_on(found) : worn;
     if (on.empty()) return fail(reason::Ambiguous);
     c_.at = ahead.at;
     targets = on;
@@ -87,7 +98,7 @@ bool Reader::pull_off() {
     if (!tossed && !pulled.take(Class::verb_off)) return false;
     if (!pulled.take_phrase(what)) return false;
     const bool away = tossed && (pulled.is(Class::word_away) || pulled.is(Class::word_out));
-    if (!away && !pulled.is(Class::word_off)) return false;
+    if (!away && !pulled.is(Class::word_off) && (tossed || !pulled.is(Class::word_from))) return false;
     const auto found = expect(what);
     if (!found.found()) return false;
     c_.at = pulled.at;
@@ -120,7 +131,7 @@ bool Reader::remove_clause() {
     std::vector<Phrase> phrases;
     Phrase first;
     Cursor ahead = c_;
-    if (!ahead.take_phrase(first)) return false;
+    if (!ahead.take_phrase(first) && !c_.peek(Class::what_stands) && !c_.is(Class::word_what)) return false;
     const auto alone = direct.length < 2 && (gets || takes);
     if (alone) {  // needs a particle: "take the hat off", "get the bear out of here"
         if (!takes_away(ahead, direct.length > 0, gets)) return false;
@@ -176,13 +187,26 @@ Reader::Targets Reader::things_on(const Target& target) const {
     if (!target.thing) return on;
     const auto& things = d_.scene().things;
     const auto& noun = things[*target.thing].noun;
-    const bool container = has(Class::container, noun) || has(Class::held, noun);
+    const bool container =
+        has(Class::container, noun) || (has(Class::held, noun) && !has(Class::furniture_flat, noun));
     for (std::size_t i = 0; i < things.size(); ++i) {
         const bool stays = things[i].is_ground || things[i].is_worn || has(Class::furniture, things[i].noun);
         if (i != *target.thing && !stays && (!container || i > *target.thing))
             on.push_back(d_.target_of_thing(i));
     }
     return on;
+}
+
+/// "the thing on the table": names what stands there.
+void Reader::narrow(Phrase& phrase) {
+    Cursor ahead = c_;
+    Phrase place;
+    if (!has(Class::thing_name, phrase.noun) || !phrase.definite || d_.focus().found()) return;
+    if (!ahead.take(Class::relation) || !ahead.take_phrase(place)) return;
+    const auto on = things_on(d_.resolve(place));
+    if (on.size() != 1 || !on.front().thing) return;
+    phrase.noun = phrase.typed = d_.scene().things[*on.front().thing].noun;
+    c_.at = ahead.at;
 }
 
 /// "empty the vase", "clear the table", "strip the bear of its hat", "rid the bear of its hat".
@@ -266,7 +290,9 @@ bool Reader::keep_coloured(const Phrase& phrase, Cursor behind) {
     const auto found = d_.resolve(phrase);
     const bool stuff = attribute.quality == Quality::Colour || attribute.quality == Quality::Material;
     if (!found.found() || !stuff) return false;
+    const auto steps = d_.size();
     d_.apply(found, attribute);
+    if (d_.size() < steps) d_.contradict();  // "paint it blue but leave it red"
     c_.at = behind.at;
     return true;
 }
@@ -283,6 +309,7 @@ bool Reader::keep_clause() {
     if (ahead.take(Class::verb_keep)) {
         Phrase phrase;
         Cursor object = ahead;
+        if (ahead.peek(Class::only)) return false;
         if (!object.take_phrase(phrase)) {
             if (!ahead.at_end_of_clause()) return false;
             c_.at = ahead.at;
@@ -290,6 +317,7 @@ bool Reader::keep_clause() {
             return true;
         }
         const Phrase kept = phrase;
+        if (c_.is(Class::word_leave) && object.is(Class::word_out)) return false;  // "leave the hat out"
         if (!kept.excepted.empty() && object.at_end_of_clause() && !c_.peek(Class::do_not)) {
             c_.at = object.at;
             return remove_excepted(kept);  // "keep everything but the hat"
@@ -312,8 +340,13 @@ bool Reader::keep_clause() {
         leave_as_it_is(kept);
         return true;
     }
+    return likes_clause();
+}
+
+/// "I like the hat, but make it yellow", "everything except the hat stays".
+bool Reader::likes_clause() {
     Phrase subject;
-    ahead = c_;
+    Cursor ahead = c_;
     if (ahead.take(Class::liked) && ahead.take_phrase(subject) && d_.resolve(subject).found() &&
         ahead.peek(Class::contrast)) {  // "I like the hat, but make it yellow"
         d_.mention(d_.resolve(subject));
@@ -348,6 +381,73 @@ bool Reader::fire_clause() {
     flames.noun = flames.typed = std::string(fire.value);
     d_.add(flames, "on", {target});
     return true;
+}
+
+/// "an empty lawn", "an empty table": what stands there goes.
+bool Reader::describe_empty(const Phrase& phrase, const Target& found) {
+    if (phrase.attributes.empty() || !has(Class::empty, phrase.attributes.front().typed)) return false;
+    const bool on_ground = found.thing && d_.scene().things[*found.thing].is_ground;
+    if (on_ground && d_.focus().found()) {
+        d_.remove(d_.focus());
+        return true;
+    }
+    const auto on = things_on(found);
+    const auto& noun = found.reference.root();
+    if (on.empty() && found.thing && (has(Class::container, noun) || has(Class::furniture, noun))) {
+        d_.already_so();  // "an empty vase" of one that is
+        described_ = found;
+        posts(found);
+        return describe_more();
+    }
+    if (on.empty() || !c_.at_end_of_clause()) return false;
+    remove_all(on);
+    return true;
+}
+
+/// "the car that is blue": what tells which of several.
+void Reader::tell_apart(Phrase& phrase) {
+    Cursor told = c_;
+    if (!phrase.definite || d_.things_named(phrase).size() < 2 || !told.take(Class::relative) ||
+        !told.take(Class::copula))
+        return;
+    const auto how = told.take_attributes();
+    if (how.empty() || !(ends_at(told) || told.peek(Class::conjunction))) return;
+    phrase.attributes.insert(phrase.attributes.end(), how.begin(), how.end());
+    c_.at = told.at;
+}
+
+/// "(make the lawn) empty": what stands there goes.
+bool Reader::empties(const Targets& targets) {
+    Cursor empty = c_;
+    if (targets.size() != 1 || !targets.front().thing || !empty.take(Class::empty) || !ends_at(empty))
+        return false;
+    const auto on = d_.scene().things[*targets.front().thing].is_ground && d_.focus().found()
+                        ? Targets{d_.focus()}
+                        : things_on(targets.front());
+    if (on.empty()) return false;
+    c_.at = empty.at;
+    remove_all(on);
+    return true;
+}
+
+/// "what the bear is wearing", "what it has on its head"; none where no such words stand.
+Reader::Targets Reader::what_is_worn() {
+    Cursor ahead = c_;
+    Phrase who, place;
+    Targets worn;
+    if (!ahead.is(Class::word_what)) return worn;
+    ++ahead.at;
+    if (!ahead.take_phrase(who) || !d_.resolve(who).found()) return worn;
+    ahead.take(Class::copula);
+    if (ahead.take(Class::having)) {
+        if (!ahead.is(Class::word_on)) return worn;
+        ++ahead.at;
+        if (Cursor part = ahead; part.take_phrase(place) && is_part(place)) ahead.at = part.at;
+    } else if (!ahead.take(Class::wearing)) return worn;
+    for (std::size_t i = 0; i < d_.scene().things.size(); ++i)
+        if (d_.scene().things[i].is_worn) worn.push_back(d_.target_of_thing(i));
+    if (!worn.empty()) c_.at = ahead.at;
+    return worn;
 }
 
 }  // namespace gse::language::plan

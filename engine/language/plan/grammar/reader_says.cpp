@@ -4,12 +4,38 @@
 #include "engine/language/plan/grammar/reader.h"
 
 namespace gse::language::plan {
+/// "the grass alone", to the end of the sentence.
+bool Reader::takes_alone(Cursor& ahead, Phrase& phrase) const {
+    Cursor alone = ahead;
+    const bool read = alone.take_phrase(phrase) && phrase.definite && alone.word().text == "alone" &&
+                      alone.at + 1 >= word_count_;
+    if (read) ahead.at = alone.at + 1;
+    return read;
+}
+
 /// "only grass": what else is there goes.
 bool Reader::only_clause() {
     Cursor ahead = c_;
     Phrase phrase;
     const bool keeps = ahead.take(Class::verb_keep).length > 0;
-    if (!ahead.take(Class::only) || !ahead.take_phrase(phrase)) return false;
+    if ((keeps || !takes_alone(ahead, phrase)) && !(ahead.take(Class::only) && ahead.take_phrase(phrase)))
+        return false;
+    std::vector<Phrase> kept{phrase};
+    Cursor more = ahead;
+    for (Phrase next; (more.take_mark(','), more.take(Class::conjunction), more.at > ahead.at) &&
+                      more.take_phrase(next) && !next.none && d_.resolve(next).thing;) {
+        kept.push_back(next);
+        ahead.at = more.at;
+    }
+    if (kept.size() > 1 && d_.resolve(phrase).thing && ahead.at_end_of_clause() && d_.size() == 0) {
+        Targets others;  // "leave only the bear and the grass"
+        c_.at = ahead.at;
+        if (!all_but(kept, others)) return false;
+        std::erase_if(others, [&](const Target& each) { return d_.scene().things[*each.thing].is_ground; });
+        d_.already_so();
+        remove_all(others);
+        return true;
+    }
     Cursor said = ahead;
     said.take(Class::modal);
     bool stays = said.is(Class::word_stay) || said.is(Class::word_stays) || said.is(Class::word_remain) ||
@@ -29,6 +55,10 @@ bool Reader::only_clause() {
         }
     }
     if (d_.size() > 0 || !phrase.attributes.empty() || phrase.naming != Naming::Thing) return false;
+    if (phrase.single && d_.things_named(phrase).size() > 1) {  // "keep only one chair"
+        c_.at = ahead.at;
+        return describe(phrase);
+    }
     const auto found = d_.resolve(phrase);
     const auto focus = d_.focus();
     if (!found.thing || !focus.found()) return false;
@@ -92,7 +122,7 @@ bool Reader::there_is_clause() {
             c_.at = start;
             return false;
         }
-        if (one_more(phrase)) continue;
+        if (one_more(phrase) || lies_on_ground(phrase)) continue;
         const auto found = d_.resolve(phrase);
         if (found.found() && phrase.count.empty() && !phrase.another) {
             apply_all({found}, phrase.attributes);
@@ -105,162 +135,11 @@ bool Reader::there_is_clause() {
     return true;
 }
 
-/// "no hat on the bear", "not a bear but a lion".
-bool Reader::no_thing_clause() {
-    Cursor ahead = c_;
-    Phrase phrase;
-    if (!ahead.take_phrase(phrase) || !phrase.none) return false;
-    if (phrase.noun.empty()) {  // "a silver crown, not a golden one"
-        if (phrase.attributes.empty() || !ahead.at_end_of_clause()) return false;
-        if (d_.size() == 0)  // "no green, make it purple"
-            for (const auto& attribute : phrase.attributes) d_.deny(d_.focus(), attribute);
-        c_.at = ahead.at;
-        return true;
-    }
-    c_.at = ahead.at;
-    phrase.none = false;
-    if (c_.peek(Class::relation)) {  // "no hat on the bear"
-        Cursor place = c_;
-        place.take(Class::relation);
-        Phrase where;
-        if (place.take_phrase(where)) c_.at = place.at;
-        else c_.take(Class::relation);
-    }
-    Phrase other;
-    Cursor but = c_;
-    but.take_mark(',');
-    if ((but.take(Class::contrast) || but.take(Class::only)) && but.take_phrase(other) && other.indefinite &&
-        other.naming == Naming::Thing && d_.resolve(phrase).found()) {
-        c_.at = but.at;  // "not a bear but a lion"
-        return become({d_.resolve(phrase)}, other);
-    }
-    if (const auto found = d_.resolve(phrase); d_.last_is(found) && found.kind == Target::Kind::Made) {
-        remove_all({found});  // "add a hat. no, no hat"
-        return true;
-    }
-    if (const auto found = d_.resolve(phrase); found.found() && d_.replaces(found)) return true;
-    if (!lack(d_.focus(), phrase)) return false;
-    return !c_.peek(Class::none) || c_.done() || no_thing_clause();
-}
-
-/// "do not touch the bear": nothing is asked.
-bool Reader::do_not_clause(Cursor ahead) {
-    if (starts_verb(ahead.at - c_.at) || ahead.is(Class::word_use) || ahead.word().text == "touch" ||
-        ahead.word().text == "forget") {
-        if (ahead.word().text == "forget") {
-            c_.at = ahead.at + 1;
-            c_.take(Class::to);
-            return clause();
-        }
-        while (!ahead.at_end_of_clause() && !ahead.peek(Class::contrast)) ++ahead.at;
-        c_.at = ahead.at;
-        d_.nothing_asked();
-        return true;
-    }
-    return false;
-}
-
-/// "I do not want to see a bear there", "I do not like red".
-bool Reader::unwanted_clause(Cursor ahead) {
-    Phrase phrase;
-    Attribute colour;
-    Cursor plain = ahead;
-    if (plain.take_attribute(colour, false) && plain.at_end_of_clause() && !plain.done()) {
-        c_.at = plain.at;  // "I do not like red, make it blue"
-        d_.deny(d_.focus(), colour);
-        return true;
-    }
-    if (!ahead.take_phrase(phrase) || phrase.naming != Naming::Thing || d_.things_named(phrase).empty())
-        return false;
-    c_.at = ahead.at;
-    while (c_.take(Class::as_well) || c_.is(Class::word_there)) {
-        if (c_.is(Class::word_there)) ++c_.at;
-    }
-    const auto unwanted = d_.resolve(phrase);
-    if (unwanted.found()) d_.mention(unwanted);
-    if (Cursor worn = c_; unwanted.found() && worn.is(Class::word_to) &&
-                          (worn.peek(Class::wearing, 1) || worn.peek(Class::having, 1))) {
-        c_.at += 2;  // "I do not want the bear to wear a hat"
-        return lack_list(unwanted);
-    }
-    return c_.at_end_of_clause() && lack(d_.focus(), phrase);
-}
-
-/// "neither a bear nor a cat", "neither the car nor the house should change".
-bool Reader::neither_clause() {
-    Cursor ahead = c_;
-    ++ahead.at;
-    Phrase phrase;
-    Cursor said = ahead;  // "neither the car nor the house should change"
-    while (said.take_phrase(phrase) && said.is(Class::word_nor)) ++said.at;
-    if (said.take(Class::modal)) {
-        said.take(Class::copula);
-        if (!said.take(Class::verb_become) && !said.take(Class::verb_turn)) return false;
-        c_.at = said.at;
-        d_.nothing_asked();
-        return true;
-    }
-    Attribute attribute;
-    Cursor denied = ahead;
-    if (denied.take_attribute(attribute, false) && (denied.done() || denied.is(Class::word_nor)))
-        return fail(reason::Incomplete);  // "neither red nor blue"
-    c_.at = ahead.at;
-    do {
-        if (!c_.take_phrase(phrase) || !lack(d_.focus(), phrase)) return false;
-    } while (c_.is(Class::word_nor) && ++c_.at);
-    return true;
-}
-
-/// "no hat", "neither a bear nor a cat", "without a hat", "not red but green".
-bool Reader::negative_clause() {
-    Cursor ahead = c_;
-    if (ahead.take(Class::do_not)) {  // "do not touch the bear": nothing is asked
-        return do_not_clause(ahead);
-    }
-    if (ahead.take(Class::unwanted)) return unwanted_clause(ahead);
-    if (c_.peek(Class::without)) {
-        c_.take(Class::without);
-        return lack_list(d_.last() ? *d_.last() : d_.focus());
-    }
-    if (ahead.is(Class::word_neither)) return neither_clause();
-    if (Cursor colour = ahead; d_.size() == 0 && colour.take(Class::none)) {
-        Attribute denied;  // "no green"
-        if (colour.take_attribute(denied, false) && denied.quality == Quality::Colour &&
-            (colour.at_end_of_clause() || colour.peek(Class::courtesy)) && d_.focus().found()) {
-            c_.at = colour.at;
-            d_.deny(d_.focus(), denied);
-            return true;
-        }
-    }
-    if (ahead.peek(Class::none) && !ahead.peek(Class::correction)) return no_thing_clause();
-    if (ahead.peek(Class::negation)) {
-        const std::size_t start = c_.at;
-        Cursor behind = ahead;
-        behind.take(Class::negation);
-        Phrase other;
-        Attribute attribute;
-        Cursor probe = behind;
-        if (!probe.take_attribute(attribute, false) && behind.take_phrase(other) &&
-            other.naming == Naming::Thing &&
-            (behind.at_end_of_clause() || (other.definite && behind.peek(Class::contrast))) &&
-            (d_.size() > 0 || !behind.done())) {
-            c_.at = behind.at;  // "not the hat, the bear should be yellow"
-            leave_as_it_is(other);
-            return true;
-        }
-        const auto focus = d_.last() ? *d_.last() : d_.focus();
-        if (!focus.found()) return fail(reason::Ambiguous);
-        if (denied({focus})) return true;
-        if (!reason_.empty()) return false;
-        c_.at = start;
-    }
-    return false;
-}
-
 /// "instead of a bear I want a cat".
 bool Reader::instead_clause() {
     Target there;
-    if (const std::size_t start = c_.at; stands_where(there)) {  // "where the bear is, put a fountain"
+    if (const std::size_t start = c_.at;
+        stands_where(there) || (c_.is(Class::word_in) && in_place_of(there))) {  // "where the bear is, put"
         skip_lead_in();
         while (c_.take(Class::verb_add) || c_.take(Class::there_is) || c_.take(Class::verb_make)) {}
         Phrase phrase;
@@ -271,6 +150,12 @@ bool Reader::instead_clause() {
     Cursor ahead = c_;
     if (!ahead.peek(Class::rather_than) || ahead.is(Class::word_not)) return false;
     ahead.take(Class::rather_than);
+    Attribute denied;
+    if (Cursor colour = ahead;
+        d_.focus().found() && colour.take_attribute(denied, false) && colour.take_mark(',')) {
+        c_.at = colour.at;  // "instead of red, blue"
+        return clause();
+    }
     Phrase old;
     if (!ahead.take_phrase(old)) return false;
     const auto target = d_.resolve(old);
@@ -291,6 +176,7 @@ bool Reader::instead_clause() {
 std::optional<bool> Reader::has_something(const Targets& subjects) {
     for (const auto kind : {Class::wearing, Class::holding, Class::riding, Class::having}) {
         if (!c_.peek(kind) || c_.peek(Class::conjunction)) continue;
+        if (c_.peek(Class::relation).length > c_.peek(kind).length) continue;  // "holding hands with"
         Cursor verb = c_;
         verb.take(kind);
         if (verb.peek(Class::copula) || verb.peek(Class::verb_become)) {  // "has turned blue"
@@ -315,7 +201,8 @@ std::optional<bool> Reader::has_something(const Targets& subjects) {
 }
 
 /// "is blue", "is painted blue", "is replaced by a cat", "is behind the statue".
-bool Reader::is_somehow(const Targets& subjects) {
+bool Reader::is_somehow(const Targets& subjects, bool modal) {
+    if (looks_somewhere(subjects)) return true;  // "should look to the right"
     if (c_.peek(Class::look_word).length > c_.peek(Class::copula).length) c_.take(Class::look_word);
     c_.take(Class::copula);
     if (!c_.is(Class::word_too)) c_.take(Class::as_well);
@@ -331,16 +218,16 @@ bool Reader::is_somehow(const Targets& subjects) {
     if (const auto stands = c_.peek(Class::emerging);                 // "is parked on the beach"
         stands && c_.peek(Class::relation, stands.length) && !c_.peek(Class::pose))
         c_.at += stands.length;
-    if (Cursor empty = c_; empty.take(Class::empty) && empty.at_end_of_clause() && subjects.size() == 1)
-        if (const auto on = things_on(subjects.front()); !on.empty()) {  // "the table should be empty"
-            c_.at = empty.at;
-            remove_all(on);
-            return true;
-        }
+    if (empties(subjects)) return true;  // "the table should be empty"
+    if (Cursor complains = c_; !modal && complains.take(Class::complaint) && complains.at_end_of_clause()) {
+        c_.at = complains.at;  // "bears are boring, use a giraffe"
+        d_.nothing_asked();
+        return true;
+    }
     if (c_.peek(Class::fire_words)) return post(subjects.front());
     if (!c_.peek(Class::like) && c_.peek(Class::relation) && !c_.peek(Class::flipping) &&
         !(c_.peek(Class::into) && c_.is(Class::word_into)))
-        return related(subjects.front());
+        return (modal && is_to_move(subjects.front())) || related(subjects.front());
     // "is replaced by a cat", "is painted blue", "is removed"
     if (c_.peek(Class::verb_replace) && c_.word().text.ends_with("ed")) {
         ++c_.at;
@@ -359,23 +246,15 @@ bool Reader::is_somehow(const Targets& subjects) {
     return complement(subjects);
 }
 
-/// "(should) not be here", "not be red but blue".
-bool Reader::should_not(const Targets& subjects) {
-    if (c_.peek(Class::copula)) c_.take(Class::copula);
-    if (c_.is(Class::word_here) || c_.is(Class::word_there)) {  // "should not be here"
-        ++c_.at;
-        for (const auto& subject : subjects) d_.remove(subject);
-        return true;
-    }
-    if (c_.take(Class::having) || c_.take(Class::wearing) || c_.take(Class::holding))
-        return lack_list(subjects.front());
-    const auto attributes = c_.take_attributes();
-    if (attributes.empty()) return false;
-    for (const auto& subject : subjects)
-        for (const auto& attribute : attributes) d_.deny(subject, attribute);
-    c_.take_mark(',');
-    if (c_.take(Class::contrast)) return complement(subjects);
-    return fail(reason::Incomplete);
+/// "stands on the grass wearing a hat", "leaning on", "hiding behind a bush"; nothing for other verbs.
+std::optional<bool> Reader::stands_somewhere(const Target& subject) {
+    const bool stands = c_.peek(Class::emerging) && c_.peek(Class::relation, c_.peek(Class::emerging).length);
+    const bool placed = c_.peek(Class::relation).length > 1 && c_.word().text.ends_with("ing");
+    if (!stands && !placed) return std::nullopt;
+    if (!placed) c_.take(Class::emerging);
+    if (!related(subject)) return false;
+    posts(subject);
+    return true;
 }
 
 bool Reader::predicate(const Targets& subjects) {
@@ -384,9 +263,20 @@ bool Reader::predicate(const Targets& subjects) {
         c_.at = start;
         return false;
     };
+    if (c_.take(Class::modal_not)) return should_not(subjects) || back();
+    if (c_.take(Class::past_be)) {  // "used to be red, now it is white"
+        d_.already_so();
+        return !c_.take_attributes().empty() || back();
+    }
+    if (gets_something() && subjects.size() == 1) {
+        if (c_.is(Class::word_has) || c_.is(Class::word_have)) ++c_.at;
+        ++c_.at;
+        return has_list(subjects.front(), "with") || back();
+    }
     const bool modal = c_.take(Class::modal).length > 0;
-    if (modal && (c_.peek(Class::article) || c_.peek(Class::number) || c_.peek(Class::some)) &&
-        subjects.size() == 1)
+    if (modal && subjects.size() == 1 && (c_.word().base == "lose" || gets_something()))
+        return loses_or_gets(subjects.front()) || back();
+    if (modal && subjects.size() == 1 && names_need())
         return has_list(subjects.front(), "with") || back();  // "the bear needs a hat"
     while (c_.take(Class::as_well)) {}
     if (c_.peek(Class::gone)) {
@@ -411,23 +301,20 @@ bool Reader::predicate(const Targets& subjects) {
     if (const auto off = c_.peek(Class::verb_remove);
         off.length > 1 && c_.peek(Class::possessive, off.length))
         return remove_clause() || back();  // "takes off its hat"
+    if (takes_off()) return take_off() || back();
     if (const auto read = has_something(subjects)) return *read || back();
     if (stands_on_part(subjects.front())) return true;
-    if (c_.peek(Class::emerging) && c_.peek(Class::relation, c_.peek(Class::emerging).length)) {
-        c_.take(Class::emerging);
-        if (!related(subjects.front())) return back();
-        posts(subjects.front());  // "stands on the grass wearing a hat"
-        return true;
-    }
+    if (const auto read = stands_somewhere(subjects.front())) return *read || back();
     if (c_.peek(Class::copula) || c_.peek(Class::look_word) || c_.peek(Class::verb_become) || modal) {
-        return is_somehow(subjects) || back();
+        return is_somehow(subjects, modal) || back();
     }
     if (c_.is_mark(":>")) {
         ++c_.at;
         if (c_.at_end_of_clause()) return back();
         return complement(subjects) || back();
     }
-    if (c_.peek(Class::verb_pose) && subjects.front().found()) return pose_text(subjects) || back();
+    if ((c_.peek(Class::verb_pose) || moves_part()) && subjects.front().found())
+        return pose_text(subjects) || back();
     return back();
 }
 
@@ -436,11 +323,23 @@ std::optional<bool> Reader::statement(const std::vector<Phrase>& phrases, bool s
     const auto& phrase = phrases.front();
     Targets subjects;
     bool all = true;
-    if (phrases.size() == 1 && phrase.indefinite && is_worn(phrase) && c_.peek(Class::emerging) &&
-        d_.things_named(phrase).empty()) {  // "a crown sits on its head"
+    const bool is_new = phrases.size() == 1 && phrase.indefinite && d_.things_named(phrase).empty();
+    if (is_new && is_worn(phrase) && c_.peek(Class::emerging)) {  // "a crown sits on its head"
         Targets made;
         return place_new(phrase, made);
     }
+    if (Cursor place = c_;
+        is_new && is_thing(phrase) && !d_.kin_of(phrase) &&
+        ((place.take(Class::modal) && place.peek(Class::emerging)) || place.take(Class::copula))) {
+        place.take(Class::emerging);
+        if (place.peek(Class::relation)) {  // "a sign should stand in front of the bear"
+            Targets made;
+            c_.at = place.at;
+            return place_new(phrase, made);
+        }
+    }
+    if (phrase.noun.empty() && phrase.indefinite && !phrase.definite)
+        return std::nullopt;  // "a bare wearing"
     const auto named = d_.things_named(phrase);
     const bool exact = std::any_of(named.begin(), named.end(),
                                    [&](std::size_t i) { return d_.scene().things[i].noun == phrase.noun; });
@@ -498,16 +397,90 @@ bool Reader::becomes_bare(const Phrase& phrase) {
     return become({found}, other);
 }
 
+/// "(the vase should be) under the table": moves it to what is there.
+bool Reader::is_to_move(const Target& subject) {
+    Cursor ahead = c_;
+    Phrase place;
+    const auto relation = ahead.take(Class::relation);
+    if (!subject.thing || !ahead.take_phrase(place) || !place.definite) return false;
+    const auto found = d_.resolve(place);
+    return found.thing && !d_.scene().things[*found.thing].is_ground && move_to(subject, relation);
+}
+
+/// "(should) lose its hat", "(should) get a hat".
+bool Reader::loses_or_gets(const Target& subject) {
+    const bool loses = c_.word().base == "lose";
+    ++c_.at;
+    return loses ? lack_list(subject) : has_list(subject, "with");
+}
+
+/// Tells whether a thing stands there that someone may need: "(needs) a hat", "(needs) wings".
+bool Reader::names_need() const {
+    Cursor needed = c_;
+    Phrase clothes;
+    return c_.peek(Class::article) || c_.peek(Class::number) || c_.peek(Class::some) ||
+           (needed.take_phrase(clothes) && (is_worn(clothes) || is_part(clothes)) && !clothes.definite);
+}
+
+/// "takes its hat off".
+bool Reader::takes_off() const {
+    Cursor ahead = c_;
+    Phrase worn;
+    if (ahead.word().base != "take" || !c_.peek(Class::possessive, 1)) return false;
+    ++ahead.at;
+    return ahead.take_phrase(worn) && ahead.is(Class::word_off);
+}
+
+bool Reader::take_off() {
+    Phrase worn;
+    ++c_.at;
+    const auto found = c_.take_phrase(worn) ? expect(worn) : Target{};
+    ++c_.at;
+    if (found.found()) remove_all({found});
+    return found.found();
+}
+
+/// "raises its arms".
+bool Reader::moves_part() const {
+    const auto raises = c_.peek(Class::verb_raise);
+    return raises && (c_.peek(Class::possessive, raises.length) || c_.is(Class::word_both, raises.length));
+}
+
+/// "gets a scarf", "receives two medals".
+bool Reader::gets_something() const {
+    const std::size_t at = c_.is(Class::word_has) || c_.is(Class::word_have) ? 1 : 0;  // "has grown a beard"
+    const auto& verb = c_.word(at).base;
+    if (verb == "grow" && c_.peek(Class::worn, at + 1)) return true;
+    return (verb == "get" || verb == "receive" || verb == "gain" || verb == "grow" || verb == "sprout") &&
+           (c_.peek(Class::article, at + 1) || c_.peek(Class::number, at + 1) ||
+            c_.peek(Class::some, at + 1));
+}
+
 /// Tells whether a predicate of the phrase follows: "is", "should", "wears", "takes off its".
 bool Reader::says_of(const Phrase& phrase) const {
     const auto off = c_.peek(Class::verb_remove);
-    return c_.peek(Class::copula) || (off.length > 1 && c_.peek(Class::possessive, off.length)) ||
+    return c_.peek(Class::copula) || takes_off() || c_.peek(Class::modal_not) || c_.peek(Class::past_be) ||
+           gets_something() || (off.length > 1 && c_.peek(Class::possessive, off.length)) ||
            (c_.is(Class::word_does) && c_.peek(Class::negation, 1)) || c_.peek(Class::modal) ||
            c_.peek(Class::gone) || c_.is_mark(":>") || c_.peek(Class::verb_become) ||
            c_.peek(Class::look_word) ||
            (phrase.has_determiner() &&
-            (c_.peek(Class::wearing) || c_.peek(Class::holding) ||
+            (c_.peek(Class::wearing) || c_.peek(Class::holding) || moves_part() ||
              (c_.is(Class::word_has) || c_.is(Class::word_have)) || c_.peek(Class::verb_pose)));
+}
+
+/// "hat: red": takes how a new thing is behind a colon.
+bool Reader::coloned(Phrase& phrase) {
+    Cursor colon = c_;
+    const bool is_new = phrase.naming == Naming::Thing && !phrase.noun.empty() && !phrase.definite &&
+                        d_.things_named(phrase).empty() && is_worn(phrase);
+    if (!is_new || !c_.is_mark(":>")) return false;
+    ++colon.at;
+    const auto how = colon.take_attributes();
+    if (how.empty() || !colon.at_end_of_clause()) return false;
+    c_.at = colon.at;
+    phrase.attributes.insert(phrase.attributes.end(), how.begin(), how.end());
+    return true;
 }
 
 bool Reader::noun_clause() {
@@ -518,6 +491,7 @@ bool Reader::noun_clause() {
     if (holds && d_.size() > 0) return fail(reason::NotASentence);  // who holds it was not said
     if (!c_.take_phrase(phrase)) return false;
     if (phrase.naming == Naming::Something) return false;
+    narrow(phrase);
     if (phrase.definite) c_.at = behind_modifiers(c_).at;
     if (phrase.owner && has(Class::colour_word, phrase.noun) && c_.peek(Class::modal))
         phrase = Phrase(*phrase.owner);  // "the color of the bear should be red"
@@ -546,6 +520,7 @@ bool Reader::noun_clause() {
         !said && adjective.take_attribute(behind, false) && adjective.at_end_of_clause();
     if (!said && d_.size() == 0 && becomes_bare(phrase)) return true;
     if (!reason_.empty()) return false;
+    if (coloned(phrase)) return describe(phrase);
     if (said || adjective_behind) {
         if (const auto read = statement(phrases, said, adjective_behind)) return *read;
     }

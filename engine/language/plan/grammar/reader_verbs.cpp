@@ -15,7 +15,7 @@ constexpr Class Verbs[] = {
     Class::verb_flip,     Class::verb_face,    Class::verb_duplicate, Class::verb_style,
     Class::verb_material, Class::verb_carve,   Class::verb_pattern,   Class::verb_alter,
     Class::verb_pose,     Class::verb_raise,   Class::verb_keep,      Class::fire_verb,
-    Class::verb_wear};
+    Class::verb_wear,     Class::verb_off};
 
 }  // namespace
 
@@ -104,6 +104,12 @@ bool Reader::all_but(const std::vector<Phrase>& excepted, Targets& targets) {
             });
         if (!stays) targets.push_back(target);
     }
+    for (std::size_t i = 0; i < things.size() && targets.empty(); ++i) {  // nothing but clothes is left
+        const auto target = d_.target_of_thing(i);
+        const bool stays = std::any_of(
+            kept.begin(), kept.end(), [&](const Target& each) { return each.reference == target.reference; });
+        if (things[i].is_worn && !stays) targets.push_back(target);
+    }
     return !targets.empty() || fail(reason::Incomplete);
 }
 
@@ -135,6 +141,19 @@ Reader::Targets Reader::collective(const Phrase& phrase) const {
 
 /// "what stands on the table", "both of them"; nothing where the object has a noun.
 std::optional<bool> Reader::untold_object(Targets& targets, Phrase& phrase) {
+    if (Cursor of = c_; of.take(Class::definite) && of.take(Class::colour) && of.take(Class::of)) {
+        Phrase whole;  // "the red of the bear"
+        const auto found = of.take_phrase(whole) ? d_.resolve(whole) : Target{};
+        if (found.found()) {
+            c_.at = of.at;
+            targets.push_back(found);
+            return true;
+        }
+    }
+    if (const auto worn = what_is_worn(); !worn.empty()) {
+        targets.insert(targets.end(), worn.begin(), worn.end());
+        return true;
+    }
     Cursor whatever = c_;
     Phrase carrier;
     if (whatever.take(Class::what_stands) && whatever.take(Class::relation) &&
@@ -160,6 +179,8 @@ std::optional<bool> Reader::untold_object(Targets& targets, Phrase& phrase) {
 bool Reader::object(Targets& targets, Phrase& phrase, bool split) {
     if (const auto read = untold_object(targets, phrase)) return *read;
     if (!c_.take_phrase(phrase, split)) return false;
+    narrow(phrase);
+    tell_apart(phrase);
     if (phrase.excepted.size() > 1) return all_but(phrase.excepted, targets);
     if (phrase.owner && has(Class::colour_word, phrase.noun))
         phrase = Phrase(*phrase.owner);  // "the colors of the bear"
@@ -229,6 +250,10 @@ bool Reader::objects(Targets& targets, std::vector<Phrase>* phrases, bool split)
         if (!probe.take_phrase(next) || next.naming != Naming::Thing || next.noun.empty() ||
             !d_.resolve(next).found())
             break;
+        Attribute how;  // "remove the chair, the vase is blue"
+        const bool told = probe.peek(Class::copula) || probe.peek(Class::modal) || probe.is_mark(":") ||
+                          (probe.take_attribute(how, false) && probe.at_end_of_clause());
+        if (told && !joint) break;
         c_.at = ahead.at;
     }
     d_.mention(targets.back());
@@ -268,8 +293,34 @@ bool Reader::try_verbs() {
     return false;
 }
 
+/// "(make it) three chairs" of two.
+bool Reader::makes_several(Cursor counted) {
+    Phrase several;
+    if (!counted.take_phrase(several) || several.count.empty() || d_.things_named(several).size() < 2)
+        return false;
+    c_.at = counted.at;
+    return one_more(several);
+}
+
+/// "make it look like a comic", "turn it into a painting": a style is of the whole scene.
+bool Reader::looks_as_a_whole() {
+    const std::size_t start = c_.at;
+    if (d_.size() > 0 || !c_.take(Class::pronoun_it)) return false;
+    const bool looks = c_.take(Class::look_word).length > 0;
+    while (c_.take(Class::like) || c_.take(Class::into)) {}
+    if (style_text({d_.scene_target()}) && ends_well()) return true;
+    Attribute state;  // "make it look abandoned", where several things are
+    const bool told = looks && d_.focus().kind == Target::Kind::Ambiguous &&
+                      c_.take_attribute(state, false) &&
+                      (state.quality == Quality::State || state.quality == Quality::Other) && ends_well();
+    if (told) d_.style(d_.scene_target(), state.typed);
+    else c_.at = start;
+    return told;
+}
+
 bool Reader::make_clause() {
     if (!c_.take(Class::verb_make)) return false;
+    if (looks_as_a_whole()) return true;
     Targets targets;
     const std::size_t start = c_.at;
     std::vector<Phrase> phrases;
@@ -279,11 +330,19 @@ bool Reader::make_clause() {
     if (ahead.take_phrase(first) && first.indefinite && first.naming == Naming::Thing &&
         !d_.resolve(first).found())
         return noun_clause();
-    if (ahead.at == c_.at) {
+    if (ahead.at == c_.at && !c_.peek(Class::what_stands)) {
         if (c_.done()) return fail(reason::Incomplete);
         return attribute_clause();
     }
+    if (first.naming == Naming::It && makes_several(ahead)) return true;
     if (first.naming == Naming::Something) return false;
+    const bool grows = first.naming == Naming::Thing && !first.noun.empty() && !first.definite &&
+                       !first.possessive && ahead.peek(Class::emerging) && is_thing(first);
+    if (grows && !d_.resolve(first).found()) {  // "let ivy grow on the bear"
+        Targets made;
+        c_.at = ahead.at;
+        return place_new(first, made);
+    }
     if (!first.attributes.empty() && first.noun.empty() && first.indefinite) return attribute_clause();
     const bool around = has(Class::time_word, first.noun) || has(Class::backdrop, first.noun);
     if (around && d_.things_named(first).empty()) {  // "make the light warmer"
@@ -293,6 +352,10 @@ bool Reader::make_clause() {
         return !how.empty();
     }
     if (!objects(targets, &phrases)) return false;
+    const bool poses = c_.peek(Class::verb_pose) || c_.peek(Class::pose);
+    if (first.naming == Naming::It && poses && targets.front().kind == Target::Kind::Made &&
+        !d_.is_animate(targets.front()))
+        targets.front() = d_.pronoun(Naming::It, true);  // "give it wings and let it fly"
     frame_ = Frame::Make;
     c_.take(Class::instead);
     if (c_.at_end_of_clause()) {
@@ -318,10 +381,11 @@ bool Reader::paint_clause() {
     Phrase first;
     Cursor ahead = c_;
     if (c_.done()) return fail(reason::Incomplete);
-    if (ahead.take_phrase(first) && (first.indefinite || !first.count.empty() || first.another) &&
+    if (ahead.take_phrase(first) &&
+        (first.indefinite || (!first.count.empty() && !first.definite) || first.another) &&
         first.naming == Naming::Thing && !first.noun.empty() && !d_.resolve(first).found())
         return false;  // a new thing
-    if (ahead.at == c_.at) return attribute_clause();
+    if (ahead.at == c_.at && !c_.peek(Class::what_stands)) return attribute_clause();
     if (!objects(targets)) return false;
     frame_ = Frame::Paint;
     if (c_.at_end_of_clause()) return fail(reason::Incomplete);
@@ -329,6 +393,8 @@ bool Reader::paint_clause() {
     Cursor how = c_;
     if (how.is(Class::word_in) || how.is(Class::word_with) || how.is(Class::word_to)) {
         ++how.at;
+        if (Cursor at = c_; how.peek(Class::definite) && (c_.at = how.at, compared(targets))) return true;
+        else c_.at = at.at;  // "in the color of the hat"
         how.take(Class::article);
         if (how.peek(Class::definite) && how.peek(Class::colour_word, 1)) how.at += 2;  // "in the color blue"
         const auto attributes = how.take_attributes();
@@ -353,11 +419,30 @@ bool Reader::paint_clause() {
     return complement(targets);
 }
 
+/// "(change) the background to a city": of the scene; nothing where the scene shows such a thing.
+std::optional<bool> Reader::changes_backdrop() {
+    Cursor whole = c_;
+    Phrase backdrop, place;
+    if (!whole.take_phrase(backdrop) || !has(Class::backdrop, backdrop.noun) ||
+        !d_.things_named(backdrop).empty())
+        return std::nullopt;
+    c_.at = whole.at;
+    while (c_.take(Class::to) || c_.take(Class::into) || c_.take(Class::copula)) {}
+    if (c_.is(Class::word_with) || c_.is(Class::word_by) || c_.is(Class::word_for)) ++c_.at;
+    if (c_.take_phrase(place) && !place.noun.empty()) {
+        d_.environment(place.typed + " " + backdrop.noun);
+        return true;
+    }
+    const auto attributes = c_.take_attributes();
+    for (const auto& attribute : attributes) d_.environment(attribute.typed + " " + backdrop.noun);
+    return !attributes.empty();
+}
+
 bool Reader::turn_clause() {
     const bool colour_first = c_.peek(Class::verb_turn).length > 0;
     if (!colour_first || !c_.take(Class::verb_turn)) return false;
     if (c_.done()) return fail(reason::Incomplete);
-    if (swaps_colours()) return true;
+    if (swaps_colours() || looks_as_a_whole()) return true;
     Targets targets;
     // "change the color of the bear to blue", "change bear color green"
     Cursor ahead = c_;
@@ -380,20 +465,7 @@ bool Reader::turn_clause() {
         return complement({target});
     }
     std::vector<Phrase> phrases;
-    const auto backdrop =
-        whole.at > c_.at && has(Class::backdrop, colour.noun) && d_.things_named(colour).empty();
-    if (backdrop) {
-        c_.at = whole.at;
-        while (c_.take(Class::to) || c_.take(Class::into) || c_.take(Class::copula)) {}
-        Phrase place;
-        if (c_.take_phrase(place) && !place.noun.empty()) {
-            d_.environment(place.typed + " " + colour.noun);
-            return true;
-        }
-        const auto attributes = c_.take_attributes();
-        for (const auto& attribute : attributes) d_.environment(attribute.typed + " " + colour.noun);
-        return !attributes.empty();
-    }
+    if (const auto read = changes_backdrop()) return *read;
     if (!objects(targets, &phrases)) return false;
     frame_ = Frame::Turn;
     c_.take(Class::colour_word);
@@ -423,30 +495,24 @@ std::optional<bool> Reader::use_clause(bool substitute) {
         c_.at = ahead.at;
         return become({target}, first);
     }
+    if (!substitute && first.indefinite && !first.noun.empty() && d_.focus().found() &&
+        !d_.resolve(first).found() && (ahead.at_end_of_clause() || ahead.peek(Class::instead))) {
+        ahead.take(Class::instead);  // "use a giraffe"
+        c_.at = ahead.at;
+        return become({d_.focus()}, first);
+    }
     return std::nullopt;
 }
 
-/// "replace red with yellow": of what is red.
-bool Reader::swaps_colours() {
-    Cursor ahead = c_;
-    Attribute old, made;
-    if (!ahead.take_attribute(old, false) || old.quality != Quality::Colour) return false;
-    const bool joint = ahead.is(Class::word_with) || ahead.is(Class::word_by) || ahead.is(Class::word_for) ||
-                       ahead.is(Class::word_to);
-    if (!joint && !ahead.peek(Class::into)) return false;
-    ++ahead.at;
-    ahead.take(Class::article);
-    if (!ahead.take_attribute(made, false) || made.quality != Quality::Colour || !ahead.at_end_of_clause())
-        return false;
-    Targets coloured;
-    const auto& things = d_.scene().things;
-    for (std::size_t i = 0; i < things.size(); ++i)
-        if (std::find(things[i].attributes.begin(), things[i].attributes.end(), old.value) !=
-            things[i].attributes.end())
-            coloured.push_back(d_.target_of_thing(i));
-    if (coloured.empty()) return false;
-    c_.at = ahead.at;
-    return apply_all(coloured, {made});
+/// Steps over "with", "for", "in for" between what goes and what comes.
+bool Reader::takes_exchange() {
+    if ((c_.is(Class::word_in) || c_.is(Class::word_out)) &&
+        (c_.is(Class::word_for, 1) || c_.is(Class::word_with, 1)))
+        ++c_.at;  // "trade the bear in for a cat"
+    const bool joint = c_.is(Class::word_with) || c_.is(Class::word_by) || c_.is(Class::word_for) ||
+                       c_.is(Class::word_to) || c_.is(Class::word_against);
+    if (joint) ++c_.at;
+    return joint || c_.take(Class::into);
 }
 
 bool Reader::replace_clause() {
@@ -464,10 +530,12 @@ bool Reader::replace_clause() {
         }
     }
     if (use || substitute) {  // "use a cat instead of the bear", "substitute a cat for the bear"
+        if (use && attributes_for()) return true;  // "use a lighter shade of red for the bear"
         if (const auto read = use_clause(substitute)) return *read;
         if (use) return false;
     }
     if (swaps_colours()) return true;
+    if (const auto read = changes_backdrop()) return *read;
     Targets targets;
     Cursor whole = c_;
     Phrase owned;
@@ -480,10 +548,7 @@ bool Reader::replace_clause() {
         targets.push_back(d_.focus());
     } else if (!objects(targets)) return false;
     frame_ = Frame::Replace;
-    const bool joint = c_.is(Class::word_with) || c_.is(Class::word_by) || c_.is(Class::word_for) ||
-                       c_.is(Class::word_to) || c_.is(Class::word_against);
-    if (joint) ++c_.at;
-    else if (!c_.take(Class::into)) return fail(reason::Incomplete);
+    if (!takes_exchange()) return fail(reason::Incomplete);
     if (c_.at_end_of_clause()) return fail(reason::Incomplete);
     Cursor paint = c_;  // "replace its color with blue"
     if (const auto how = paint.take_attributes(); of_colour && !how.empty() && paint.at_end_of_clause()) {
@@ -502,54 +567,10 @@ bool Reader::replace_clause() {
         d_.move(targets[0], "swap with", other);
         return true;
     }
-    return become(targets, phrase);
-}
-
-bool Reader::swap_clause() {
-    if (!c_.take(Class::verb_swap)) return false;
-    if (swaps_colours()) return true;
-    Cursor positions = c_;
-    positions.take(Class::definite);
-    if (positions.is(Class::word_positions) || positions.is(Class::word_places) ||
-        positions.is(Class::word_position) || positions.is(Class::word_place)) {
-        ++positions.at;
-        if (positions.take(Class::of)) c_.at = positions.at;
-    }
-    Targets targets;
-    const std::size_t start = c_.at;
-    Phrase quality;
-    Cursor of = c_;
-    if (of.take_phrase(quality) && quality.owner && !is_part(quality))
-        return fail(reason::NotASentence);  // "the colors of"
-    if (!objects(targets)) return false;
-    if (targets.size() == 2 && c_.at_end_of_clause()) {
-        d_.move(targets[0], "swap with", targets[1]);
-        return true;
-    }
-    if (targets.size() == 1 && c_.at_end_of_clause() && targets[0].reference.links[0].count == "all") {
-        Targets both;  // "swap the cars"
-        for (std::size_t i = 0; i < d_.scene().things.size(); ++i)
-            if (d_.scene().things[i].noun == targets[0].reference.root())
-                both.push_back(d_.target_of_thing(i));
-        if (both.size() != 2 || both[0].reference == both[1].reference) return fail(reason::Ambiguous);
-        d_.move(both[0], "swap with", both[1]);
-        return true;
-    }
-    if (targets.size() == 1 && (c_.is(Class::word_with) || c_.is(Class::word_and))) {
-        Cursor ahead = c_;
-        ++ahead.at;
-        Phrase other;
-        if (ahead.take_phrase(other)) {
-            const auto found = d_.resolve(other);
-            if (found.thing && !(found.reference == targets[0].reference) && !other.indefinite) {
-                c_.at = ahead.at;
-                d_.move(targets[0], "swap with", found);
-                return true;
-            }
-        }
-    }
-    c_.at = start;
-    return false;
+    if (targets.size() > 1) return become_each(targets, phrase);
+    if (!become(targets, phrase)) return false;
+    if (targets.front().thing) add_beside();
+    return true;
 }
 
 }  // namespace gse::language::plan

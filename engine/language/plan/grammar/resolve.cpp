@@ -59,6 +59,7 @@ bool tells_apart(const Attribute& attribute) {
 
 bool is_part(const Phrase& phrase) {
     const auto head = head_of(phrase.noun);
+    if (has(Class::compound, phrase.noun) && !has(Class::part, phrase.noun)) return false;  // "a lily pad"
     return has(Class::part, phrase.noun) || has(Class::part, head) ||
            has(Class::part, word_of(head).singular);
 }
@@ -167,6 +168,7 @@ bool Draft::may_have(const Target& owner, const Phrase& phrase) const {
     Phrase whole;  // "the cage door"
     whole.noun = whole.typed = phrase.noun.substr(0, std::min(phrase.noun.rfind(' '), phrase.noun.size()));
     if (whole.noun.size() < phrase.noun.size() && things_named(whole).size() == 1) return true;
+    if (is_being(root) && has(Class::worn, head) && has(Class::part_made, head)) return false;  // a crown
     return !lives || is_kind(root, Plant) ||
            !(has(Class::part_made, head) || has(Class::part_made, phrase.noun));
 }
@@ -283,10 +285,10 @@ std::optional<Target> Draft::ordinal(const Phrase& phrase) const {
         return Target{Target::Kind::Missing, {}, std::nullopt, std::nullopt, "second " + phrase.noun};
     if (side != phrase.attributes.end() && !phrase.owner && !is_part(phrase)) {  // "the other one"
         std::vector<std::size_t> others;
+        const auto first = focus_ ? focus_ : last_ ? last_->thing : std::nullopt;
         for (std::size_t i = 0; i < scene_->things.size(); ++i)
-            if (!scene_->things[i].is_ground && !scene_->things[i].is_worn && focus_ != i)
-                others.push_back(i);
-        if (side->value == "other" && focus_ && others.size() == 1 &&
+            if (!scene_->things[i].is_ground && !scene_->things[i].is_worn && first != i) others.push_back(i);
+        if (side->value == "other" && first && others.size() == 1 &&
             (phrase.noun.empty() || names(scene_->things[others.front()], phrase)))
             return target_of_thing(others.front());
         if (things_named(phrase).size() == 1)
@@ -309,6 +311,17 @@ Target Draft::owned(const Phrase& phrase) const {
     return is_worn(phrase) && !is_part(phrase) && !(kinds_of(phrase.noun) & Body)
                ? missing
                : part_target(owner, phrase);
+}
+
+/// "the blue thing": the only one that is so.
+std::optional<Target> Draft::told_thing(const Phrase& phrase) const {
+    if (!has(Class::thing_name, phrase.noun) || !phrase.definite || phrase.attributes.empty())
+        return std::nullopt;
+    std::vector<std::size_t> told;
+    for (std::size_t i = 0; i < scene_->things.size(); ++i)
+        if (!scene_->things[i].is_ground && told_of(scene_->things[i], phrase.attributes.front()))
+            told.push_back(i);
+    return told.size() == 1 ? std::optional(target_of_thing(told.front())) : std::nullopt;
 }
 
 Target Draft::resolve(const Phrase& phrase) const {
@@ -352,6 +365,7 @@ Target Draft::resolve(const Phrase& phrase) const {
         return of_several(phrase, found);
     }
     if (found.size() > 1) return of_several(phrase, found);
+    if (const auto told = told_thing(phrase)) return *told;
     if (has(Class::thing_name, phrase.noun) && phrase.definite)  // "every item on the desk" is not one thing
         return phrase.count == "all" ? pronoun(Naming::They) : focus();
     const bool new_thing = phrase.indefinite && !phrase.possessive && has(Class::thing, phrase.noun) &&

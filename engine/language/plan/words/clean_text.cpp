@@ -94,13 +94,13 @@ struct Rule {
 /// Marks of programs: what has them is no sentence of an artist.
 const std::regex& code_pattern() {
     static const std::regex Pattern(R"(\$\(|%[snxd]%|\.\./|https?://|www\.|</?[a-z]+>|;\s*drop |)"
-                                    R"(\{\s*'?[a-z_]+'?\s*:|\\x|<\?|\[\[|\w\(\)|&&|\|\||==)");
+                                    R"(\{\s*'?[a-z_]+'?\s*:|\\x|<\?|\[\[(?![a-z ]+\]\])|\w\(\)|&&|\|\||==)");
     return Pattern;
 }
 
 /// Marks that a prompt has for programs that draw, and their plain form.
-const std::array<Rule, 23>& noise_rules() {
-    static const std::array<Rule, 23> Rules = {{
+const std::array<Rule, 24>& noise_rules() {
+    static const std::array<Rule, 24> Rules = {{
         {std::regex(R"(<(lora|lyco|hypernet|embedding|ti)[^>]*>)"), " "},
         {std::regex(R"(\bembedding:\S+)"), " "},
         {std::regex(R"(\bf/[0-9.]+|\b[0-9]+ ?mm\b|\biso ?[0-9]+\b)"), " "},
@@ -110,10 +110,12 @@ const std::array<Rule, 23>& noise_rules() {
         {std::regex(R"(([a-z])::?[0-9]+(\.[0-9]+)?(?![a-z]))"), "$1"},
         {std::regex(R"((^|\n)\s*(\(?[0-9]{1,2}[.)]|[-*])\s+)"), "\n"},
         {std::regex(R"((\w)(\+{1,4}|-{2,4})(?=\s|$|,))"), "$1"},
+        {std::regex(R"(\)[0-9]+(\.[0-9]+)?(?=\s|$|,))"), ")"},
         {std::regex(R"([()\[\]])"), " "},
         {std::regex(R"(-+>|=+>|=|>)"), " > "},
         {std::regex("\xe2\x80\x94|(^|\\s)-{1,3}(?=\\s)"), " , "},
         {std::regex(R"(\.{2,}|\xe2\x80\xa6)"), " . "},
+        {std::regex(R"((!+)1+(?=\s|$))"), "$1"},
         {std::regex(R"(\s\+\s|&)"), " and "},
         {std::regex(R"(\bw/o\b)"), " without "},
         {std::regex(R"(\bw/)"), " with "},
@@ -122,7 +124,6 @@ const std::array<Rule, 23>& noise_rules() {
         {std::regex(R"((^|\s)[SsVv]\*)"), " "},
         {std::regex(R"(<?\b(sks|ohwx|zwx)\b>?)"), " "},
         {std::regex(R"(\bscore_[0-9]+(_up)?\b)"), " "},
-        {std::regex(R"(\)[0-9]+(\.[0-9]+)?(?=\s|$|,))"), ")"},
         {std::regex(R"([*#~]|\xe2\x98\x86)"), " "},
     }};
     return Rules;
@@ -156,6 +157,9 @@ CleanText clean_text(std::string_view raw) {
     if (std::regex_search(std::regex_replace(clean.text, Lora, ""), code_pattern()))
         clean.refused = reason::NotASentence;
     if (!clean.refused.empty()) return clean;
+    static const std::regex Listed(R"(^\s*\(?[1a][.)]\s)"), Number(R"(\s\(?([0-9]{1,2}[.)]|[a-e]\))\s+)");
+    if (std::regex_search(clean.text, Listed))  // "1) blue bear 2) red hat"
+        clean.text = std::regex_replace(clean.text, Number, "\n");
     for (const auto& rule : noise_rules()) clean.text = std::regex_replace(clean.text, rule.pattern, rule.by);
     return clean;
 }

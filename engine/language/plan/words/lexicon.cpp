@@ -54,7 +54,10 @@ constexpr std::string_view ClassNames[] = {
     "time_of_day", "said_by", "where_is", "style_kind", "word_where", "word_colored", "part_made",
     "verb_wear", "word_across", "hand", "elision", "adverb", "praise", "verb_off", "word_whose",
     "plain_verb", "word_about", "furniture_flat", "word_into", "word_years", "word_both", "ordinal",
-    "word_does", "verb_need", "quality", "heap", "facial_hair", "liked", "verb_toss",
+    "word_does", "verb_need", "quality", "heap", "facial_hair", "liked", "verb_toss", "copy_name",
+    "modal_not", "weather_goes", "complaint", "word_what", "cloth", "before_place",
+    "stuff_of", "place_word", "stuff_noun", "quality_word", "swap_places",
+    "past_be", "wholly", "aside", "present",
     "vessel", "potted_plant"};
 // clang-format on
 static_assert(std::size(ClassNames) == ClassCount);
@@ -226,7 +229,13 @@ bool takes_ending(std::string_view word, bool verb) {
     const auto found = data.kinds.find(word);
     const auto kinds = found == data.kinds.end() ? 0u : found->second;
     if (verb) return (kinds & Kind::Verb) != 0 || data.verbs.contains(word);
-    return (kinds & (Concrete | Perhaps | Other)) != 0 || (data.english.contains(word) && kinds == 0);
+    if ((kinds & (Concrete | Perhaps | Other)) != 0) return true;
+    constexpr Class Nouns[] = {Class::animal,     Class::person,      Class::thing,      Class::worn,
+                               Class::held,       Class::part,        Class::place,      Class::container,
+                               Class::plant_name, Class::animal_name, Class::person_name};
+    return data.english.contains(word) &&
+           (kinds == 0 ||
+            std::any_of(std::begin(Nouns), std::end(Nouns), [&](Class kind) { return has(kind, word); }));
 }
 
 bool in_tables(std::string_view word) {

@@ -45,7 +45,9 @@ enum class Class : std::uint16_t {
     time_of_day, said_by, where_is, style_kind, word_where, word_colored, part_made, verb_wear,
     word_across, hand, elision, adverb, praise, verb_off, word_whose, plain_verb, word_about,
     furniture_flat, word_into, word_years, word_both, ordinal, word_does, verb_need, quality, heap,
-    facial_hair, liked, verb_toss, vessel, potted_plant,
+    facial_hair, liked, verb_toss, copy_name, modal_not, weather_goes, complaint, word_what,
+    cloth, before_place, stuff_of, place_word, stuff_noun, quality_word, swap_places,
+    past_be, wholly, aside, present, vessel, potted_plant,
     Count
     // clang-format on
 };

@@ -154,6 +154,7 @@ std::vector<std::string> slips_of(std::string_view typed, std::span<const std::s
         // what sentences are made of, before parts of rare names ("bale" of "hay bale")
         if (has(Class::colour, word) || has(Class::worn, word) || is_grammatical(word)) cost -= 1;
         if (has(Class::worn, word) && !has(Class::colour, word)) cost -= 1;
+        if (has(Class::modal, word) || has(Class::copula, word)) cost -= 1;
         if (std::none_of(found.begin(), found.end(), [&](const auto& each) { return each.second == word; }))
             found.emplace_back(cost, word);
     });
@@ -209,10 +210,31 @@ bool is_foreign(const std::vector<std::string>& pieces) {
 
 }  // namespace
 
+/// "right behind the vase", "i just need a hat": says as much without the adverb.
+void drop_degrees(std::vector<Word>& words) {
+    for (std::size_t i = 1; i + 2 < words.size(); ++i) {  // "right behind the vase"
+        const auto before = match(Class::before_place, std::span(words).subspan(i, 1)).length > 0;
+        const bool side = match(Class::definite, std::span(words).subspan(i - 1)).length > 0 ||
+                          match(Class::possessive, std::span(words).subspan(i - 1)).length > 0 ||
+                          match(Class::to, std::span(words).subspan(i - 1)).length > 0 ||
+                          match(Class::article, std::span(words).subspan(i - 1)).length > 0;
+        if (before && !side && match(Class::place_word, std::span(words).subspan(i + 1)))
+            words.erase(words.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+    for (std::size_t i = 0; i + 2 < words.size(); ++i) {  // "i just need"
+        const bool person = words[i].text == "i" || words[i].text == "we";
+        if (person && !match(Class::only, std::span(words).subspan(i)) &&
+            has(Class::adverb, words[i + 1].text))
+            words.erase(words.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+    }
+}
+
 /// "paint only its nose", "make just the hat blue": says as much without the adverb.
 void drop_adverbs(std::vector<Word>& words, std::span<const std::string> needed) {
-    const bool ordered = words.size() > 2 && has(Class::plain_verb, words[0].text) && words[1].text == ":";
-    if (ordered) words.erase(words.begin() + 1);        // "remove: bear"
+    for (std::size_t i = 0; i + 2 < words.size(); ++i)  // "remove: bear"
+        if ((i == 0 || words[i - 1].mark) && has(Class::plain_verb, words[i].text) &&
+            words[i + 1].text == ":")
+            words.erase(words.begin() + static_cast<std::ptrdiff_t>(i) + 1);
     for (std::size_t i = 0; i + 1 < words.size(); ++i)  // "a blue blue bear"
         if (words.size() > 3 && words[i].text.size() > 1 && !words[i].mark &&
             words[i].text == words[i + 1].text &&
@@ -251,19 +273,8 @@ bool is_predicate(const std::vector<std::string>& pieces, std::size_t at) {
     return participle || (describes && last);
 }
 
-SentenceWords sentence_words(std::string_view clean, std::span<const std::string> needed) {
-    SentenceWords found;
-    const auto pieces = pieces_of(with_commas(clean));
-    if (is_foreign(pieces)) {
-        found.refused = reason::Language;
-        return found;
-    }
-    std::vector<std::string> words;
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-        const auto piece = without_accents(pieces[i]);
-        if (piece == "it's" && i + 1 < pieces.size() && is_predicate(pieces, i + 1)) append(words, "it is");
-        else spell(words, piece);
-    }
+/// "sun glasses", "a t shirt": one word each.
+void join_compounds(std::vector<std::string>& words) {
     for (std::size_t i = 0; i + 1 < words.size(); ++i) {  // "sun glasses"
         const auto joined = words[i] + words[i + 1];
         const bool apart = has(Class::worn, words[i] + " " + words[i + 1]) ||
@@ -279,6 +290,32 @@ SentenceWords sentence_words(std::string_view clean, std::span<const std::string
         words[i] = joined;
         words.erase(words.begin() + static_cast<std::ptrdiff_t>(i) + 1);
     }
+}
+
+/// "squeeze it so that it gets narrower": a comma in the place of the joint.
+void join_clauses(std::vector<std::string>& words) {
+    for (std::size_t i = 2; i + 2 < words.size(); ++i)
+        if ((words[i] == "so" || words[i] == "such") && words[i + 1] == "that") {
+            words[i] = ",";
+            words.erase(words.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+        }
+}
+
+SentenceWords sentence_words(std::string_view clean, std::span<const std::string> needed) {
+    SentenceWords found;
+    const auto pieces = pieces_of(with_commas(clean));
+    if (is_foreign(pieces)) {
+        found.refused = reason::Language;
+        return found;
+    }
+    std::vector<std::string> words;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        const auto piece = without_accents(pieces[i]);
+        if (piece == "it's" && i + 1 < pieces.size() && is_predicate(pieces, i + 1)) append(words, "it is");
+        else spell(words, piece);
+    }
+    join_compounds(words);
+    join_clauses(words);
     for (auto& word : words) {
         const bool letters = std::isalpha(static_cast<unsigned char>(word[0])) != 0;
         const bool is_needed = std::find(needed.begin(), needed.end(), word) != needed.end();
@@ -288,7 +325,8 @@ SentenceWords sentence_words(std::string_view clean, std::span<const std::string
                 return has(Class::plain_verb, other);  // the first word is mostly an order: "mak it blue"
             });
             if (verb != others.end()) word = *verb;
-            else if (!others.empty()) word = others.front();
+            else if (!others.empty())
+                word = meaning(Class::spelling, others.front()).value_or(others.front());
             else found.unknown.push_back(word);
         }
         auto made = word_of(word);
@@ -296,6 +334,7 @@ SentenceWords sentence_words(std::string_view clean, std::span<const std::string
                     word != "%" && static_cast<unsigned char>(word[0]) < 0x80;
         found.words.push_back(std::move(made));
     }
+    drop_degrees(found.words);
     drop_adverbs(found.words, needed);
     const auto letters = static_cast<std::size_t>(
         std::count_if(found.words.begin(), found.words.end(), [](const Word& word) { return !word.mark; }));

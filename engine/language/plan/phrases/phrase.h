@@ -106,6 +106,7 @@ private:
     void take_determiners(Phrase& phrase);
     void take_nouns(Phrase& phrase, bool split, std::size_t length);
     bool take_body(Phrase& phrase, bool split);
+    void take_maker(Phrase& phrase);
     void take_owner_behind(Phrase& phrase, bool split = false);
     void take_whole_behind(Phrase& phrase);
     bool describes_to_the_end() const;
@@ -115,6 +116,8 @@ private:
     const SceneWords* scene_;
 };
 
+/// Makes the attribute ask for less of itself: "too long" asks for shorter.
+void temper(Attribute& attribute);
 /// A new thing as the phrase says it.
 Thing thing_of(const Phrase& phrase);
 /// Text of an attribute in the braces of a new thing.

@@ -1,7 +1,7 @@
 // Reading descriptions: colours, materials, patterns, sizes, looks and poses.
 #include <algorithm>
 
-#include "engine/language/plan/grammar/phrase.h"
+#include "engine/language/plan/phrases/phrase.h"
 
 namespace gse::language::plan {
 namespace {
@@ -25,7 +25,70 @@ std::string less_of(const std::string& change) {
     return change;
 }
 
-/// "too red", "too dark": what is asked for is less of it.
+/// "riper", "floppier": no word of the lists, made of an adjective.
+bool is_comparative(const std::string& word) {
+    if (word.size() < 5 || !word.ends_with("er")) return false;
+    const auto stem = word.substr(0, word.size() - 2);
+    const auto describes = [](const std::string& text) {
+        return (kinds_of(text) & Kind::Adjective) != 0 || has(Class::state, text) || has(Class::pose, text) ||
+               has(Class::material_surface, text);
+    };
+    const bool doubled = stem[stem.size() - 1] == stem[stem.size() - 2];
+    const auto vowel = [&](std::size_t back) {
+        return std::string_view("aeiouy").find(stem[stem.size() - back]) != std::string_view::npos;
+    };
+    const bool once = stem.size() == 3 && !vowel(1) && vowel(2) && !vowel(3) && stem[2] != 'w' &&
+                      stem[2] != 'x';  // "biger" lacks a letter
+    return (describes(stem) && !once) || describes(stem + "e") ||
+           (stem.ends_with('i') && describes(stem.substr(0, stem.size() - 1) + "y")) ||
+           (doubled && describes(stem.substr(0, stem.size() - 1)));
+}
+
+/// Length and name of the colour that the words begin with, shades before it ("dark blue"); 0 for none.
+std::size_t colour_length(std::span<const Word> words, std::string& name) {
+    std::size_t at = 0;
+    while (at < words.size() && has(Class::shade, words[at].text) &&
+           match(Class::colour, words.subspan(at)).length < 2)
+        ++at;
+    const auto found = match(Class::colour, words.subspan(std::min(at, words.size())));
+    if (found) {
+        const std::size_t length = at + found.length;
+        name = text_of(words.first(length));
+        const bool colored = length < words.size() && words[length].text == "colored";
+        return length + (colored ? 1 : 0);  // "salmon colored"
+    }
+    if (words.empty()) return 0;
+    if (has(Class::colour_noun, words[0].text) && match(Class::pattern_plain, words.subspan(1))) {
+        name = *meaning(Class::colour_noun, words[0].text);  // "red and gold striped"
+        return 1;
+    }
+    if (const auto shade =
+            match(Class::shade_of, words.subspan(std::min(at, words.size())))) {  // "a deeper shade of red"
+        const auto colour = match(Class::colour, words.subspan(at + shade.length));
+        if (colour) {
+            name = text_of(words.first(at)) + (at > 0 ? " " : "") + std::string(colour.value);
+            return at + shade.length + colour.length;
+        }
+    }
+    const auto& word = words[0].text;
+    if (has(Class::pattern_plain, word)) return 0;  // "rainbow-colored"
+    if (word.ends_with("-colored") && word.size() > 8) {
+        name = word;
+        return 1;
+    }
+    // "gold colored"
+    const bool named = words.size() > 1 && words[1].text == "colored" && !words[0].mark &&
+                       match(Class::pattern_plain, words).length < 2;  // "rainbow colored"
+    if (named) {
+        const auto metal = meaning(Class::material, word);
+        name = metal && is_colour(word) ? word : metal ? std::string(*metal) : word;
+        return 2;
+    }
+    return 0;
+}
+
+}  // namespace
+
 void temper(Attribute& attribute) {
     constexpr std::pair<std::string_view, std::string_view> Opposites[] = {
         {"dark", "lighter"},         {"darker", "lighter"},
@@ -48,60 +111,6 @@ void temper(Attribute& attribute) {
         attribute.quality = Quality::State;
     attribute.typed = attribute.value;
 }
-
-/// "riper", "floppier": no word of the lists, made of an adjective.
-bool is_comparative(const std::string& word) {
-    if (word.size() < 5 || !word.ends_with("er")) return false;
-    const auto stem = word.substr(0, word.size() - 2);
-    const auto describes = [](const std::string& text) {
-        return (kinds_of(text) & Kind::Adjective) != 0 || has(Class::state, text) || has(Class::pose, text) ||
-               has(Class::material_surface, text);
-    };
-    const bool doubled = stem[stem.size() - 1] == stem[stem.size() - 2];
-    return describes(stem) || describes(stem + "e") ||
-           (stem.ends_with('i') && describes(stem.substr(0, stem.size() - 1) + "y")) ||
-           (doubled && describes(stem.substr(0, stem.size() - 1)));
-}
-
-/// Length and name of the colour that the words begin with, shades before it ("dark blue"); 0 for none.
-std::size_t colour_length(std::span<const Word> words, std::string& name) {
-    std::size_t at = 0;
-    while (at < words.size() && has(Class::shade, words[at].text) &&
-           match(Class::colour, words.subspan(at)).length < 2)
-        ++at;
-    const auto found = match(Class::colour, words.subspan(std::min(at, words.size())));
-    if (found) {
-        const std::size_t length = at + found.length;
-        name = text_of(words.first(length));
-        const bool colored = length < words.size() && words[length].text == "colored";
-        return length + (colored ? 1 : 0);  // "salmon colored"
-    }
-    if (words.empty()) return 0;
-    if (const auto shade =
-            match(Class::shade_of, words.subspan(std::min(at, words.size())))) {  // "a deeper shade of red"
-        const auto colour = match(Class::colour, words.subspan(at + shade.length));
-        if (colour) {
-            name = text_of(words.first(at)) + (at > 0 ? " " : "") + std::string(colour.value);
-            return at + shade.length + colour.length;
-        }
-    }
-    const auto& word = words[0].text;
-    if (word.ends_with("-colored") && word.size() > 8) {
-        name = word;
-        return 1;
-    }
-    // "gold colored"
-    const bool named = words.size() > 1 && words[1].text == "colored" && !words[0].mark &&
-                       match(Class::pattern_plain, words).length < 2;  // "rainbow colored"
-    if (named) {
-        const auto metal = meaning(Class::material, word);
-        name = metal && is_colour(word) ? word : metal ? std::string(*metal) : word;
-        return 2;
-    }
-    return 0;
-}
-
-}  // namespace
 
 bool Cursor::take_colour(Attribute& attribute, bool in_phrase) {
     std::string name;
@@ -179,6 +188,9 @@ bool Cursor::take_graded(Attribute& attribute) {
 
 /// Adjectives that are in no class: "grumpy", "thatched".
 bool Cursor::take_other_attribute(Attribute& attribute, bool in_phrase) {
+    for (const auto kind : {Class::courtesy, Class::correction, Class::wearing, Class::holding, Class::having,
+                            Class::riding, Class::degree, Class::all})
+        if (peek(kind)) return false;
     if (peek(Class::thing_name) || peek(Class::number) || peek(Class::direction) || peek(Class::like) ||
         peek(Class::sequence))
         return false;
@@ -207,9 +219,10 @@ bool Cursor::take_other_attribute(Attribute& attribute, bool in_phrase) {
 /// "zebra stripes", "spotted", "striped red and white".
 bool Cursor::take_pattern(Attribute& attribute, bool in_phrase) {
     if (const auto animal = peek(Class::pattern_animal);
-        animal && match(Class::pattern_plain, rest(animal.length)) && !is(Class::word_rainbow, 1)) {
+        animal && !is(Class::word_rainbow, 1) &&
+        (match(Class::pattern_plain, rest(animal.length)) || word(animal.length).text == "patterned")) {
         at += animal.length;
-        take(Class::pattern_plain);
+        if (!take(Class::pattern_plain)) ++at;  // "giraffe-patterned"
         attribute = {Quality::Pattern, std::string(animal.value), std::string(animal.value), ""};
         return true;
     }
@@ -217,6 +230,7 @@ bool Cursor::take_pattern(Attribute& attribute, bool in_phrase) {
     if (!found) return false;
     const std::string value(meaning(Class::pattern, found.value).value_or(found.value));
     attribute = {Quality::Pattern, value, value, ""};
+    if (value == "rainbow") take(Class::pattern_plain);  // "rainbow-striped"
     Attribute colour;
     Cursor behind = *this;
     if (!in_phrase && behind.take_colour(colour, false) && colour.quality == Quality::Colour &&
@@ -358,6 +372,8 @@ std::string brace_text(const Attribute& attribute) {
 Thing thing_of(const Phrase& phrase) {
     Thing thing{phrase.noun, phrase.count == "all" ? "some" : phrase.count, {}};
     if (thing.count == "2" && has(Class::pair_noun, phrase.noun)) thing.count.clear();  // "a pair of glasses"
+    if (thing.count == "some" && has(Class::pair_noun, phrase.noun) && has(Class::worn, phrase.noun))
+        thing.count.clear();  // "some wings"
     if (!thing.count.empty() && phrase.plural && has(Class::pair_noun, phrase.noun) &&
         phrase.noun.find(' ') == std::string::npos)
         thing.noun = word_of(phrase.noun).singular;                    // "some leaves"

@@ -1,5 +1,5 @@
 // Reading noun phrases.
-#include "engine/language/plan/grammar/phrase.h"
+#include "engine/language/plan/phrases/phrase.h"
 
 #include <algorithm>
 #include <cctype>
@@ -26,12 +26,12 @@ constexpr Class EndingClasses[] = {Class::relation,    Class::inverse_relation,
 
 /// Classes that end a phrase when its noun is there already: "the bear smile", "the bear upside down".
 constexpr Class EndingAfterNoun[] = {
-    Class::copula,  Class::pose,        Class::verb_pose,  Class::look_word, Class::emerging,
-    Class::gone,    Class::direction,   Class::flipping,   Class::turning,   Class::degree,
-    Class::as_well, Class::holding,     Class::riding,     Class::times,     Class::more,
-    Class::less,    Class::verb_become, Class::verb_keep,  Class::instead,   Class::courtesy,
-    Class::number,  Class::another,     Class::fire_words, Class::clockwise, Class::verb_face,
-    Class::none,    Class::sequence};
+    Class::copula,  Class::pose,        Class::verb_pose,   Class::look_word,  Class::emerging,
+    Class::gone,    Class::direction,   Class::flipping,    Class::turning,    Class::degree,
+    Class::as_well, Class::holding,     Class::riding,      Class::times,      Class::more,
+    Class::less,    Class::verb_become, Class::verb_keep,   Class::instead,    Class::courtesy,
+    Class::number,  Class::another,     Class::fire_words,  Class::clockwise,  Class::verb_face,
+    Class::none,    Class::sequence,    Class::subordinate, Class::word_there, Class::word_does};
 
 constexpr Class NounClasses[] = {
     Class::compound,    Class::worn,         Class::held,         Class::part,        Class::ground,
@@ -137,8 +137,10 @@ bool Cursor::ends_phrase(std::size_t ahead, bool after_noun) const {
     if (!after_noun && peek(Class::compound, ahead).length > 1) return false;  // "a red sports car"
     const bool describes = peek(Class::relation, ahead).length == 1 && peek(Class::state, ahead) &&
                            noun_length(ahead + 1) > 0 && !after_noun;  // "round window"
+    const bool part = !after_noun && at + ahead > 0 && has(Class::definite, words_[at + ahead - 1].text) &&
+                      peek(Class::part, ahead) && peek(Class::of, ahead + 1);  // "the inside of its ears"
     for (const auto kind : EndingClasses)
-        if (peek(kind, ahead) && !describes) return true;
+        if (peek(kind, ahead) && !describes && !part) return true;
     if (!after_noun) return peek(Class::copula, ahead).length > 0 && noun_length(ahead) == 0;
     const bool thing = (kinds_of(word(ahead).text) & Concrete) != 0;
     const bool owner = at + ahead > 0 && is_scene_noun(words_[at + ahead - 1].singular);  // "the bear fly"
@@ -165,7 +167,10 @@ bool Cursor::take_pronoun(Phrase& phrase) {
             Attribute ignored;
             Cursor ahead = *this;
             ahead.at += found.length;
-            if (determines && !ahead.ends_phrase(0, true) &&
+            Cursor how = ahead;  // "make this blue"
+            const bool alone = kind == Class::pronoun_it && how.take_attribute(ignored, false) &&
+                               how.at_end_of_clause() && ignored.quality == Quality::Colour;
+            if (determines && !alone && !ahead.ends_phrase(0, true) &&
                 (ahead.noun_length() > 0 || ahead.take_attribute(ignored, true)) &&
                 (kind != Class::pronoun_person || ahead.noun_length() > 0))
                 continue;
@@ -207,6 +212,9 @@ bool Cursor::take_pronoun(Phrase& phrase) {
 
 void Cursor::take_determiners(Phrase& phrase) {
     while (!done()) {
+        const bool graded =
+            (phrase.indefinite && !phrase.single) || (peek(Class::colour, 1) && noun_length(2) == 0);
+        if (peek(Class::more) && graded && phrase.count.empty()) break;  // "more red", "a more colorful bear"
         if (const auto found = peek(Class::number); found && found.length >= peek(Class::some).length &&
                                                     !(found.length == 1 && word(1).text.empty())) {
             at += found.length;
@@ -221,6 +229,9 @@ void Cursor::take_determiners(Phrase& phrase) {
         else if (take(Class::all)) phrase.count = "all", phrase.definite = true;
         else if (take(Class::none)) phrase.none = true;
         else if (take(Class::some)) phrase.count = "some";
+        else if (const auto degree = peek(Class::degree);
+                 is(Class::word_a) && (degree.length > 2 || (degree.length == 2 && !is(Class::size, 1))))
+            at += degree.length;  // "a little bit bluer"
         else if (take(Class::article)) phrase.indefinite = true;
         else if (peek(Class::definite)) take(Class::definite), phrase.definite = true;
         else if (take(Class::possessive)) phrase.possessive = true;
@@ -231,6 +242,9 @@ void Cursor::take_determiners(Phrase& phrase) {
             phrase.some_of = true;
             phrase.indefinite = false;
         } else if (take(Class::caption)) {
+        } else if (phrase.indefinite && !noun_length() && peek(Class::quality_word) &&
+                   !ends_phrase(peek(Class::quality_word).length, false)) {
+            take(Class::quality_word);  // "a hyperrealistic golden bear"
         } else break;
     }
 }
@@ -256,11 +270,16 @@ void Cursor::close_noun(Phrase& phrase, std::size_t begin, std::size_t end) cons
 }
 
 bool Cursor::reads_as_noun(const Phrase& phrase) const {
+    if (peek(Class::colour).length > 1) return false;  // "a grass green bear"
     if (is_scene_noun(word().singular)) return true;
     if (peek(Class::colour) && is(Class::colour_word, 1)) return false;  // "a violet color"
     bool last = ends_phrase(1, true);
     const std::size_t length = noun_length();
     if (length > 1) return true;
+    if (Cursor colours = *this; peek(Class::colour) && is(Class::word_and, 1) && peek(Class::colour, 2)) {
+        Attribute both;  // "an orange and black bear"
+        if (colours.take_colour(both, true) && colours.at > at + 2 && colours.noun_length() > 0) return false;
+    }
     const bool compound = has(Class::held, word(1).singular) || has(Class::thing, word(1).singular);
     if (!last && length == 1 && !compound) {  // "the animal blue": what follows describes and ends the clause
         Cursor ahead = *this, whole = *this;
@@ -307,7 +326,9 @@ bool Cursor::describes_to_the_end() const {
         return true;
     for (const auto kind : {Class::colour, Class::ground, Class::material, Class::pattern}) {
         Cursor behind = *this;
-        if (behind.take(kind) && (behind.at_end_of_clause() || behind.peek(Class::conjunction))) return true;
+        if (behind.take(kind) && (behind.at_end_of_clause() || behind.peek(Class::conjunction) ||
+                                  (kind == Class::colour && behind.peek(Class::having))))
+            return true;
     }
     return false;
 }
@@ -319,6 +340,10 @@ void Cursor::take_nouns(Phrase& phrase, bool split, std::size_t length) {
     while (!done() && !ends_phrase(0, true)) {
         const auto so_far = joined_texts(words_.subspan(begin, at - begin));
         const bool owner = is_scene_noun(words_[at - 1].singular);
+        if (owner && word().text.ends_with("ing") && peek(Class::possessive, 1))
+            break;  // "scratching its back"
+        const bool raises = peek(Class::verb_raise).length == 1 && peek(Class::possessive, 1);
+        if (owner && (raises || peek(Class::swap_places))) break;  // "the bear raises its arms"
         if (owner && peek(Class::verb_face) && (peek(Class::direction, 1) || peek(Class::definite, 1))) break;
         const bool telegraphic =  // "bear hat": it wears one
             owner && at == begin + 1 && !phrase.has_determiner() && phrase.attributes.empty() &&
@@ -384,7 +409,12 @@ bool Cursor::take_body(Phrase& phrase, bool split) {
                 ++at;
                 continue;
             }
-            break;
+            const bool tows = phrase.indefinite && phrase.attributes.empty() && !ends_phrase(0, false) &&
+                              (kinds_of(word().text) & Kind::Verb) != 0 && noun_length(1) == 1 &&
+                              (kinds_of(word(1).singular) & Concrete) != 0 && ends_phrase(2, true);
+            if (!tows) break;
+            take_nouns(phrase, split, 2);  // "a tow truck"
+            return true;
         }
         take_nouns(phrase, split, length);
         return true;
@@ -393,6 +423,22 @@ bool Cursor::take_body(Phrase& phrase, bool split) {
     if (at > start && (phrase.attributes.size() > 0) && (phrase.definite || phrase.has_determiner()))
         return true;  // "the red one", "the red"
     return false;
+}
+
+/// "a witch's hat": a kind of hat, of no witch.
+void Cursor::take_maker(Phrase& phrase) {
+    const bool kind = phrase.indefinite && phrase.attributes.empty() && !is_scene_noun(phrase.noun) &&
+                      (kinds_of(phrase.noun) & (Person | Animal)) != 0;
+    if (!kind || !is_owner_mark()) return;
+    Cursor ahead = *this;
+    ++ahead.at;
+    Phrase made;
+    if (!ahead.take_body(made, false) || made.noun.empty() || !made.attributes.empty()) return;
+    phrase.noun += "'s " + made.noun;
+    phrase.typed += "'s " + made.typed;
+    phrase.plural = made.plural;
+    at = ahead.at;
+    phrase.end = at;
 }
 
 void Cursor::take_owner_behind(Phrase& phrase, bool split) {
@@ -445,7 +491,7 @@ void Cursor::take_whole_behind(Phrase& phrase) {
     Phrase whole;
     const bool holds = has(Class::container, phrase.noun) || has(Class::held, phrase.noun);
     const bool many = ahead.word().text != ahead.word().singular && !is_scene_noun(phrase.noun) &&
-                      !has(Class::part, phrase.noun);
+                      (!has(Class::part, phrase.noun) || has(Class::worn, phrase.noun));
     if (!ahead.take_phrase(whole) && (holds || many) && ahead.noun_length() > 0) {  // "a bowl of honey"
         whole.noun = whole.typed = ahead.word().text;
         ++ahead.at;
@@ -477,8 +523,8 @@ void Cursor::take_whole_behind(Phrase& phrase) {
     } else if (!whole.definite && whole.naming == Naming::Thing && !whole.noun.empty() &&
                (!has(Class::material, whole.noun) ||
                 (whole.plural && (has(Class::heap, phrase.noun) || has(Class::worn, phrase.noun)))) &&
-               !part &&
-               ((kinds_of(phrase.noun) & (Artifact | Perhaps | Other | Object)) != 0 ||
+               (!part || has(Class::worn, phrase.noun)) &&
+               ((kinds_of(words_[phrase.end - 1].singular) & (Artifact | Perhaps | Other | Object)) != 0 ||
                 has(Class::thing, phrase.noun)) &&
                (!is_scene_noun(phrase.noun) || whole.indefinite)) {
         phrase.noun += " of " + (whole.typed.empty() ? whole.noun : whole.typed);  // "bowl of fruit"
@@ -505,6 +551,7 @@ bool Cursor::take_phrase(Phrase& phrase, bool split) {
     } else if (has(Class::thing_name, phrase.noun) && (phrase.noun == "one" || phrase.noun == "ones"))
         phrase.noun.clear();
     if (phrase.some_of && phrase.single) phrase.plural = false;
+    take_maker(phrase);
     take_owner_behind(phrase, split);
     if (phrase.definite && !phrase.owner) {  // "the car on the left"
         const auto side = peek(Class::direction);
