@@ -117,6 +117,7 @@ void add_transform_command(CLI::App& app, CommandContext& context);    // transf
 void add_plan_command(CLI::App& app, CommandContext& context);         // plan
 void add_project_command(CLI::App& app, CommandContext& context);      // project
 void add_server_command(CLI::App& app, CommandContext& context);       // server
+void add_models_command(CLI::App& app, CommandContext& context);       // models
 void add_laboratory_pointers(CLI::App& app, CommandContext& context);  // commands that gseditpro-lab has
 
 }  // namespace gse::app

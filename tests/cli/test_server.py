@@ -132,6 +132,30 @@ class Servers(ProgramTest):
         self.assertEqual(taken.returncode, 0, taken.stderr)
         self.assertGreater(len(server.drawings()), 0)
 
+    def test_a_word_that_the_model_lacks_is_found_by_what_the_server_changes(self):
+        server = self.server(model="flux1-kontext-dev", edits="red", noise=6)
+        words = ["--source", "gizmo", "--prompt", "a golden gizmo", "--target", "golden"]
+        out = self.folder / "out"
+        process = run("-q", "edit", SCENE, *words, "--out", out, *QUICK, "--server", server.url)
+        self.assertEqual(process.returncode, 0, process.stderr)
+        report = json.loads((out / "report.json").read_text())
+        self.assertIn("differences", report["found_by"])
+        self.assertEqual(report["changed_outside_label"], 0)
+        bear = self.edit(self.folder / "bear", "--server", server.url)
+        self.assertEqual(bear.returncode, 0, bear.stderr)
+        truth = json.loads((self.folder / "bear/report.json").read_text())
+        self.assertNotIn("found_by", truth)
+        self.assertLess(abs(report["labelled"] / truth["labelled"] - 1), 0.1)
+        asked = len(server.drawings())
+        refused = run("edit", SCENE, *words, "--out", self.folder / "no", "--server", server.url,
+                      "--server-search", "none")
+        self.assertEqual(refused.returncode, 2)
+        self.assert_one_sentence(refused, "gizmo", "cannot find it")
+        added = run("edit", SCENE, "--source", "gizmo", "--prompt", "a gizmo with a hat", "--target", "hat",
+                    "--out", self.folder / "no", "--server", server.url)
+        self.assert_one_sentence(added, "gizmo", "cannot find it")
+        self.assertEqual(len(server.drawings()), asked)
+
     def test_an_edit_that_was_refused_goes_on_where_it_ended(self):
         server = self.server(fault="failed", at="poll", after=6)
         self.set("GSE_CACHE_DIR", self.folder / "cache")

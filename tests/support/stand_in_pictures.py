@@ -137,8 +137,17 @@ def block_means(picture):
     return {key: [value / cell[3] for value in cell[:3]] for key, cell in sums.items()}
 
 
-def draw(picture, mask, prompt, seed, noise=0, drift=0, exact_outside=False):
+def red_parts(picture):
+    """Mask of what is red."""
+    colour = picture.colour().data
+    red = [colour[i] - max(colour[i + 1], colour[i + 2]) for i in range(0, len(colour), 3)]
+    return [255 if value > 30 else 0 for value in red]
+
+
+def draw(picture, mask, prompt, seed, noise=0, drift=0, exact_outside=False, edits=""):
     """The answer to a request: a pure function of what it holds. `mask` is a list of 0 to 255, or None."""
+    if mask is None and edits == "red":
+        mask = red_parts(picture)
     kept = None if mask is None else bytes(255 if value > 127 else 0 for value in mask)
     return drawn(picture, kept, prompt, seed, noise, drift, exact_outside)
 

@@ -44,6 +44,7 @@ class World:
         self.fault, self.at, self.after, self.times = "", "draw", 0, -1
         self.rate, self.target, self.status, self.words, self.retry_after = 20, "", 0, "", ""
         self.draw_s, self.noise, self.drift = 0.0, 0, 0
+        self.edits = ""   # "red": what is red is edited where no mask says what
         self.password, self.model, self.prefix = "", "stand-in", ""
         self.queue_limit, self.new_comfy = 64, 0
         self.jobs, self.log, self.uploads, self.tasks = {}, [], {}, {}
@@ -255,7 +256,7 @@ class Handler(BaseHTTPRequestHandler):
             while time.monotonic() < end and not world.interrupted:
                 time.sleep(.005)
             exact = world.flavour in ("a1111", "forge", "sdnext")
-            made = pictures.draw(picture, mask, prompt, seed, world.noise, world.drift, exact)
+            made = pictures.draw(picture, mask, prompt, seed, world.noise, world.drift, exact, world.edits)
             if task is not None:
                 world.tasks[task] = "completed"
         make = pictures.FILES.get(self.fault, pictures.encode_png)
@@ -452,7 +453,8 @@ class Handler(BaseHTTPRequestHandler):
             if picture is None:
                 made = pictures.unrelated(value.get("width", 512), value.get("height", 512), seed)
             else:
-                made = pictures.draw(picture, mask, value.get("prompt", ""), seed, world.noise, world.drift)
+                made = pictures.draw(picture, mask, value.get("prompt", ""), seed, world.noise, world.drift,
+                                     edits=world.edits)
             job["file"] = lambda fault: pictures.FILES.get(fault, pictures.encode_png)(made)
             job["status"] = "completed"
 

@@ -14,6 +14,7 @@
 #include "engine/base/memory.h"
 #include "engine/base/safetensors_header.h"
 #include "engine/neural/api/checkpoint.h"
+#include "engine/neural/api/files/weight_use.h"
 #include "engine/neural/layers/precision.h"
 #include "engine/neural/layers/torch_errors.h"
 #include "engine/neural/weights/key_map.h"
@@ -228,6 +229,7 @@ Parts find_parts(const fs::path& path) {
     auto parts = [&] {
         if (fs::is_directory(path)) return folder_parts(path);
         if (is_pickle_name(path)) refuse_pickle(path);
+        refuse_foreign_model(path);
         if (!is_safetensors_name(path))
             throw Error(ErrorCode::Unsupported, "this is not a model",
                         "name a diffusers folder or a .safetensors checkpoint", path);

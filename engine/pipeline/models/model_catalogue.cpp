@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -13,7 +12,9 @@
 #include "engine/base/error.h"
 #include "engine/base/safetensors_header.h"
 #include "engine/neural/api/checkpoint.h"
+#include "engine/neural/api/files/weight_use.h"
 #include "engine/pipeline/models/installed.h"
+#include "engine/pipeline/models/model_places.h"
 #include "engine/pipeline/models/model_words.h"
 
 namespace gse::pipeline {
@@ -22,13 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t MostModels = 200;
-
-std::uint64_t shape_at(const nlohmann::json& header, const char* key, std::size_t from_end,
-                       std::uint64_t fallback) {
-    if (!header.contains(key) || !header[key].contains("shape") || header[key]["shape"].size() <= from_end)
-        return fallback;
-    return header[key]["shape"][header[key]["shape"].size() - 1 - from_end].get<std::uint64_t>();
-}
 
 /// Inputs of a UNet beside the four channels of the latents.
 void describe_channels(std::uint64_t channels, FoundModel& model) {
@@ -69,33 +63,29 @@ std::string checkpoint_prediction_text(const fs::path& path, const nlohmann::jso
     return prediction_text(found.velocity, found.zero_terminal_snr, found.source);
 }
 
-/// Kind of a model, told by its keys and by the width of the cross-attention.
+/// Kind of a model, told by its header.
 void describe_checkpoint(const fs::path& path, FoundModel& model) {
-    const nlohmann::json header = safetensors_header(path);
-    if (!header.is_object()) {
-        model.problem = "this is not a safetensors file";
+    neural::WeightKind kind;
+    try {
+        kind = neural::weight_kind(neural::read_weight_header(path));
+    } catch (const Error& error) {
+        model.problem = error.message();
         return;
     }
-    const auto has_prefix = [&](const char* prefix) {
-        return std::any_of(header.items().begin(), header.items().end(),
-                           [&](const auto& item) { return item.key().rfind(prefix, 0) == 0; });
-    };
-    if (has_prefix("conditioner.embedders.1")) {
-        model.structure = "Stable Diffusion XL";
-        model.problem = "SDXL is not supported; use a Stable Diffusion 1.x or 2.x checkpoint";
+    const auto use = neural::weight_use(kind);
+    const bool whole =
+        kind.role == neural::WeightRole::Checkpoint || kind.role == neural::WeightRole::DiffusionModel;
+    model.structure = whole ? kind.family : neural::kind_text(kind);
+    if (whole && !kind.variant.empty())
+        model.structure += (kind.variant == "InstructPix2Pix" ? ", " : " ") + kind.variant;
+    if (use.how != "--model") {
+        model.problem = whole ? use.why : "this is no whole model (" + neural::kind_text(kind) + ")";
+        if (use.place == neural::WeightPlace::Server) model.problem += "; a server can use it";
         return;
     }
-    if (!header.contains("model.diffusion_model.input_blocks.0.0.weight")) {
-        model.structure = has_prefix("lora_") ? "LoRA" : "unknown";
-        model.problem = "this is no whole model (a LoRA, a VAE or a text encoder alone cannot edit)";
-        return;
-    }
-    const auto width = shape_at(
-        header, "model.diffusion_model.input_blocks.2.1.transformer_blocks.0.attn2.to_k.weight", 0, 0);
-    model.structure = width == 1024 ? "Stable Diffusion 2.x" : "Stable Diffusion 1.x";
-    model.prediction = checkpoint_prediction_text(path, header, width == 1024);
-    describe_channels(shape_at(header, "model.diffusion_model.input_blocks.0.0.weight", 2, 4), model);
-    if (model.problem.empty() && !neural::has_own_vae(header) && neural::vae_beside(path).empty())
+    const auto header = safetensors_header(path);
+    model.prediction = checkpoint_prediction_text(path, header, kind.family == "Stable Diffusion 2.x");
+    if (!neural::has_own_vae(header) && neural::vae_beside(path).empty())
         model.problem = "it has no VAE; " + neural::vae_hint(path);
     model.usable = model.problem.empty();
 }
@@ -139,7 +129,7 @@ FoundModel describe_model(const fs::path& path) {
             describe_folder(path, model);
         } else {
             model.bytes = fs::file_size(path, failure);
-            if (is_safetensors_name(path)) describe_checkpoint(path, model);
+            if (is_safetensors_name(path) || neural::is_gguf_name(path)) describe_checkpoint(path, model);
             else model.problem = "pickled checkpoints are not opened; convert it to .safetensors";
         }
     } catch (const std::exception& error) {
@@ -150,22 +140,12 @@ FoundModel describe_model(const fs::path& path) {
 
 namespace {
 
-/// Folders of other programs and the user's own list (GSE_MODELS, separated by colons).
+/// Folders that hold whole models.
 std::vector<fs::path> model_folders() {
     std::vector<fs::path> folders;
-    if (const char* own = std::getenv("GSE_MODELS")) {
-        std::string text(own);
-        for (std::size_t at = 0; at <= text.size();) {
-            const auto end = std::min(text.find(':', at), text.size());
-            if (end > at) folders.emplace_back(text.substr(at, end - at));
-            at = end + 1;
-        }
-    }
-    if (const char* home = std::getenv("HOME"))
-        for (const char* place :
-             {"ComfyUI/models/checkpoints", "ComfyUI/models/diffusers",
-              "stable-diffusion-webui/models/Stable-diffusion", ".local/share/gseditpro/models"})
-            folders.push_back(fs::path(home) / place);
+    for (const auto& place : model_places())
+        for (const char* folder : {"", "checkpoints", "diffusers", "Stable-diffusion"})
+            folders.push_back(place.folder / folder);
     return folders;
 }
 

@@ -13,6 +13,7 @@
 #include "engine/pipeline/models/server_instruction.h"
 #include "engine/remote/api/server_kind.h"
 #include "engine/remote/api/server_url.h"
+#include "engine/remote/views/difference_source.h"
 #include "engine/remote/views/remote_view_editor.h"
 #include "engine/remote/views/view_frame.h"
 
@@ -69,9 +70,25 @@ const remote::ServerUse& ViewServer::use() const { return source_->use(); }
 std::unique_ptr<edit::MultiViewEditor> ViewServer::editor(const edit::CheckedRequest& request,
                                                           edit::EditMode mode,
                                                           const std::string& negative_prompt) {
+    return std::make_unique<remote::RemoteViewEditor>(*source_, told(request, mode, negative_prompt));
+}
+
+std::unique_ptr<edit::AttentionSource> ViewServer::differences(const edit::CheckedRequest& request,
+                                                               edit::EditMode mode,
+                                                               const std::string& negative_prompt,
+                                                               bool paints, const JobControl& job) {
+    return std::make_unique<remote::DifferenceSource>(
+        *source_,
+        remote::DifferenceEdit{told(request, mode, negative_prompt), request.sentence().before(),
+                               request.source(), paints},
+        job);
+}
+
+remote::RemoteDrawing ViewServer::told(const edit::CheckedRequest& request, edit::EditMode mode,
+                                       const std::string& negative_prompt) const {
     auto drawing = *drawing_;
     drawing.text = {request.sentence().prompt(), server_instruction(request, mode), negative_prompt};
-    return std::make_unique<remote::RemoteViewEditor>(*source_, std::move(drawing));
+    return drawing;
 }
 
 std::string ViewServer::key() const {

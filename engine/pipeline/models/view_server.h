@@ -43,12 +43,22 @@ public:
     /// Draws the views of a request in that mode. The server stays alive.
     std::unique_ptr<edit::MultiViewEditor> editor(const edit::CheckedRequest& request, edit::EditMode mode,
                                                   const std::string& negative_prompt);
+    /// Finds the thing of a request in pictures by what the server changes in them: the edit, or (`paints`)
+    /// the thing's colour. The server stays alive. Throws Error as remote::DifferenceSource.
+    std::unique_ptr<edit::AttentionSource> differences(const edit::CheckedRequest& request,
+                                                       edit::EditMode mode,
+                                                       const std::string& negative_prompt, bool paints,
+                                                       const JobControl& job);
     /// Key of all that the pictures follow from beside the request; no address.
     std::string key() const;
     /// Facts and counts for a report; no address.
     nlohmann::ordered_json to_json() const;
 
 private:
+    /// Settings of what is drawn, with the words of a request.
+    remote::RemoteDrawing told(const edit::CheckedRequest& request, edit::EditMode mode,
+                               const std::string& negative_prompt) const;
+
     std::shared_ptr<remote::ImageServer> server_;
     std::shared_ptr<AnswerCache> cache_;
     std::unique_ptr<remote::PictureSource> source_;

@@ -181,6 +181,7 @@ void add_search(nlohmann::ordered_json& report, const EditJob& job) {
     report["mode"] = edit::mode_name(located.mode);
     report["mode_reason"] = located.reason;
     report["word"] = located.word;
+    if (job.found_by_differences()) report["found_by"] = "differences of the server's pictures";
     report["segmenter"] = job.segmenter_name();
     report["views"] = job.views().size();
     if (job.front_read()) report["front_read"] = *job.front_read() / Degree;

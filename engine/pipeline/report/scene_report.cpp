@@ -14,6 +14,7 @@
 #include "engine/io/image/image_file.h"
 #include "engine/io/project/load_scene.h"
 #include "engine/io/project/project_file.h"
+#include "engine/neural/api/files/weight_header.h"
 #include "engine/pipeline/models/model_catalogue.h"
 #include "engine/pipeline/scene/scene_loading.h"
 #include "engine/scene/origin/world_offset.h"
@@ -122,7 +123,8 @@ std::string picture_report_text(const Json& json) {
 
 bool is_model(const std::filesystem::path& path) {
     std::error_code ignored;
-    return is_checkpoint_name(path) || std::filesystem::exists(path / "model_index.json", ignored);
+    return is_checkpoint_name(path) || neural::is_gguf_name(path) ||
+           std::filesystem::exists(path / "model_index.json", ignored);
 }
 
 /// Facts of a model by its headers.

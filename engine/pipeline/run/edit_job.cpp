@@ -156,6 +156,8 @@ EditJob::EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCach
     : recipe_(check(std::move(recipe))), control_(std::move(control)) {
     check_recipe();
     require_one_label(recipe_.job);
+    server_searches_ = true;
+    hints_.by_differences = searches_by_differences(recipe_, model_words(model_path(recipe_.job)));
     if (!keeps_labels(recipe_.job.scene)) check_words(nullptr, {});  // before any work
     times_.begin("load_scene");
     recipe_.job.scene = std::filesystem::absolute(recipe_.job.scene).lexically_normal().string();
@@ -206,6 +208,8 @@ EditJob::EditJob(EditRecipe recipe, EditJobInput input, JobControl control)
         recipe_.server = {};
     }
     check_recipe();
+    server_searches_ = input.server && input.server_searches;
+    if (server_searches_) hints_.by_differences = searches_by_differences(recipe_, model->known_words());
     check_words(model.get(), input.scene.labels);
     GSE_CHECK(input.view_words.empty() || input.view_words.size() == input.cameras.size());
     GivenCameras given;
@@ -251,7 +255,7 @@ void EditJob::check_words(const neural::TextToImage* model, const LabelSet& labe
         else if (label_named(labels, source) != nullptr)
             log::info("\"{}\" is looked for by its word; --use-label takes the label of that name", source);
     }
-    const bool labelled = recipe_.job.brings_label() || !hints_.label.empty();
+    const bool labelled = recipe_.job.brings_label() || !hints_.label.empty() || hints_.by_differences;
     const auto require = recipe_.server.used() ? edit::require_findable_words : edit::require_known_words;
     require(recipe_.request, known, drawn, labelled, label_names(labels));
 }
@@ -388,7 +392,11 @@ std::vector<std::uint8_t> EditJob::source_in_result() const {
 void EditJob::locate() {
     if (recipe_.use_dreambooth && !tuning_ && !recipe_.request.is_rearranged()) tune();
     times_.begin("locate");
-    take(pipeline::locate(*context_, recipe_, *views_, hints_, control_));
+    auto found = pipeline::locate(*context_, recipe_, *views_, hints_, control_);
+    if (!found.found() && server_searches_ && context_->server() != nullptr && !found.by_differences &&
+        found.result.mode != edit::EditMode::Add)
+        found.result.remedy += ", or let the server look for it (--server-search differences)";
+    take(std::move(found));
     plan();
     times_.end();
     const auto& result = located();

@@ -35,6 +35,7 @@ struct EditJobInput {
     std::vector<std::uint8_t> found = {};  // [N] the source, see Hints::found
     // Draws the views in place of the model. Without it, a server that the recipe names is not asked.
     std::shared_ptr<ViewServer> server = {};
+    bool server_searches = false;  // searches may have pictures drawn by it, as the recipe says
 };
 
 /// A run from stage to stage (views.h, search.h, loop.h): keeps what each came to and how long it took.
@@ -135,6 +136,8 @@ public:
     bool automatic_views() const { return views_->automatic; }
     /// True where the source was known beforehand (EditJobInput::found).
     bool knew_source() const { return !hints_.found.empty(); }
+    /// True when the server's changes told where the thing is.
+    bool found_by_differences() const { return located_->by_differences; }
     /// The edit's source in the result, [rows] 0 or 1; empty where nothing of it is left, or it has not run.
     std::vector<std::uint8_t> source_in_result() const;
     /// Orbit around what was edited, for films.
@@ -166,6 +169,7 @@ private:
     CheckedRecipe recipe_;
     JobControl control_;
     Hints hints_;
+    bool server_searches_ = false;  // the server may be asked where a thing is
     StageTimes times_;
     std::unique_ptr<RunContext> context_;
     // What the stages came to; replaced, never changed.

@@ -8,9 +8,11 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/base/check.h"
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/edit/interfaces/stage_timer.h"
+#include "engine/edit/request/decide_mode.h"
 #include "engine/edit/search/grabcut_segmenter.h"
 #include "engine/language/vocabulary.h"
 #include "engine/pipeline/models/neural_loader.h"
@@ -100,15 +102,25 @@ void RunContext::take_model(std::shared_ptr<neural::TextToImage> model) {
     model_ = std::move(model);
     attention_ = nullptr;
     recognition_ = nullptr;
+    differences_ = nullptr;
 }
 
 void RunContext::ask_anew(const neural::AttentionParameters& attention) {
     attention_ = std::make_unique<edit::CachedAttention>(model_->attention(attention));
     recognition_ =
         std::make_unique<edit::VocabularyRanker>(model_->image_text_encoder(), model_->known_words());
+    differences_ = nullptr;
     renders_.asked_again.clear();
     renders_.drawn.clear();
     place_cost_ = {};
+}
+
+void RunContext::ask_server(const CheckedRecipe& recipe, const JobControl& control) {
+    GSE_CHECK(server_ != nullptr);
+    const auto mode = edit::decide_mode(recipe.request, std::nullopt).first;
+    const bool paints = remote::server_search_of(recipe.server.search) == remote::ServerSearch::Paint;
+    differences_ = std::make_unique<edit::CachedAttention>(
+        server_->differences(recipe.request, mode, recipe.guidance.negative_prompt, paints, control));
 }
 
 std::unique_ptr<edit::MultiViewEditor> RunContext::place_drawing(const CheckedRecipe& recipe) {
@@ -144,11 +156,12 @@ edit::LocateTools RunContext::tools(const Views& views, const std::optional<edit
     const std::string key = ground ? fmt::format("{} on {}", views.key, ground->ground) : views.key;
     if (renders_key_ != key) renders_ = {};
     renders_key_ = key;
-    edit::LocateTools tools{painter_.rasterizer(), *attention_, segmenters_.clicks.get(),
+    edit::AttentionSource& attention = differences_ ? *differences_ : *attention_;
+    edit::LocateTools tools{painter_.rasterizer(), attention, segmenters_.clicks.get(),
                             segmenters_.words.get(), control};
     tools.cache = &renders_;
     tools.threads = &threads_;
-    tools.recognition = recognition_.get();
+    tools.recognition = differences_ ? nullptr : recognition_.get();  // it may not know the word
     if (watch_)
         tools.seen = [watch = watch_, list = &views.views](std::size_t view,
                                                            const edit::ViewEvidence& evidence) {

@@ -61,6 +61,11 @@ public:
     void take_model(std::shared_ptr<neural::TextToImage> model);
     /// Forgets what networks answered and asks with these settings from here on.
     void ask_anew(const neural::AttentionParameters& attention);
+    /// Searches take what the server changes for attention until ask_anew(). Needs a server. Throws Error as
+    /// ViewServer::differences().
+    void ask_server(const CheckedRecipe& recipe, const JobControl& control);
+    /// True while they do.
+    bool asks_server() const { return differences_ != nullptr; }
     /// Context of this scene without answers.
     void ask(const neural::AttentionParameters& attention);
     /// Who is told of the views of searches from here on; empty = nobody.
@@ -77,7 +82,9 @@ public:
     edit::LocateTools tools(const Views& views, const std::optional<edit::StudioBackground>& ground,
                             const JobControl& control);
     /// Tools of edit::second_look(). Needs ask() or ask_anew().
-    edit::SecondLookTools second_look() { return {painter_.rasterizer(), recognition_.get(), &threads_}; }
+    edit::SecondLookTools second_look() {
+        return {painter_.rasterizer(), asks_server() ? nullptr : recognition_.get(), &threads_};
+    }
     /// Editor that draws the place of an addition, if the model can
     /// (TextToImage::supports_scene_conditioning()), else null. Its cost is counted. It is not the artist's
     /// guidance, which belongs to the loop. A server draws what the model has no word for.
@@ -92,7 +99,9 @@ public:
     /// Pictures that the networks were asked about so far.
     std::size_t questions() const { return attention_ ? attention_->asked() : 0; }
     /// The threshold the model states for its attention; 0 before it was asked anything.
-    double stated_threshold() const { return attention_ ? attention_->threshold() : 0; }
+    double stated_threshold() const {
+        return differences_ ? differences_->threshold() : attention_ ? attention_->threshold() : 0;
+    }
 
 private:
     Scene scene_;
@@ -106,6 +115,7 @@ private:
     Painter painter_;
     ThreadPool threads_;
     std::unique_ptr<edit::CachedAttention> attention_;
+    std::unique_ptr<edit::CachedAttention> differences_;  // that stand in for it; null = the model is asked
     std::unique_ptr<edit::VocabularyRanker> recognition_;
     Segmenters segmenters_;
     edit::LocateCache renders_;  // of the views with this key

@@ -164,6 +164,7 @@ private:
 
     Located searched() {
         if (!hints_.found.empty()) return from_found();
+        if (hints_.by_differences && hints_.label.empty()) return from_differences();
         const bool by_label =
             !hints_.label.empty() &&
             (recipe_.job.brings_label() ||
@@ -208,6 +209,13 @@ private:
 
     std::optional<edit::StudioBackground> ground() {
         return hints_.label.empty() ? ground_shown(context_, recipe_, views_) : std::nullopt;
+    }
+
+    Located from_differences() {
+        read_scene(false);
+        Located located = moved_in(difference_views(context_, recipe_, views_), {});
+        located.by_differences = true;
+        return located;
     }
 
     Located from_label() { return moved_in(views_, hints_.label); }
@@ -543,6 +551,7 @@ Located locate(RunContext& context, const CheckedRecipe& recipe, const Views& vi
         edit::require_views(edit::excluded_views_of(recipe.request.excluded_views),
                             views.views.size());  // before any work
     context.ask_anew(recipe.attention);
+    if (hints.by_differences && hints.label.empty()) context.ask_server(recipe, control);
     CheckedRecipe all = recipe;  // from all views; what is left out is a matter of those that it ends with
     all.request.excluded_views.clear();
     Located located = finished(context, Search(context, all, views, hints, control).run());
@@ -556,6 +565,7 @@ Located locate_again(RunContext& context, const Located& located, const CheckedR
                      const JobControl& control) {
     context.ask(recipe.attention);
     Located again{located.views, recipe, located.label, {}, located.target_read, {}};
+    again.by_differences = located.by_differences;
     if (recipe.request.whole_scene())
         return finished(context, located_everywhere(context, recipe, located.views, control));
     if (!located.within.empty() && !again.by_label()) {

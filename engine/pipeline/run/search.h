@@ -18,7 +18,12 @@ struct Hints {
     std::vector<std::string> said;    // words that the scene is known to show: no news
     // [N] the source, as an earlier search found it: it is not looked for again. Empty = it is.
     std::vector<std::uint8_t> found = {};
+    bool by_differences = false;  // the server of the run is asked where the thing is, and not the model here
 };
+
+/// Tells whether a recipe has its thing looked for by what its server changes; `known`: words of the model,
+/// empty = any. Throws Error (InvalidArgument) where that is asked for an edit whose change is not the thing.
+bool searches_by_differences(const CheckedRecipe& recipe, const std::vector<std::string>& known);
 
 /// Result of a search. A value: another threshold or a corrected label makes another one.
 struct Located {
@@ -29,6 +34,7 @@ struct Located {
     bool target_read = false;               // the pictures said which word is new, and not the recipe
     std::string key;                        // of all that it follows from, beside the scene and the model
     std::vector<std::uint8_t> within = {};  // [N] the thing, where a part of it was looked for
+    bool by_differences = false;            // the server's changes told where it is
 
     bool found() const { return result.problem == edit::SearchProblem::None; }
     bool by_label() const { return !label.empty(); }

@@ -5,11 +5,19 @@
 
 #include <algorithm>
 
+#include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/edit/placement/body_part.h"
+#include "engine/edit/request/decide_mode.h"
 #include "engine/language/vocabulary.h"
+#include "engine/remote/api/server_settings.h"
 
 namespace gse::pipeline {
+namespace {
+
+constexpr int DifferenceViews = 8, DifferenceSide = 512;  // of a search by what a server changes; px at most
+
+}  // namespace
 
 edit::LocateInput question(const RunContext& context, const CheckedRecipe& recipe, const Views& views,
                            const std::vector<std::uint8_t>* label) {
@@ -38,6 +46,35 @@ std::optional<edit::StudioBackground> ground_shown(RunContext& context, const Ch
                                                    const Views& views) {
     look_for_ground(context, recipe, views);
     return recipe.guidance.plain_ground ? context.ground(recipe.request.sentence().before()) : std::nullopt;
+}
+
+bool searches_by_differences(const CheckedRecipe& recipe, const std::vector<std::string>& known) {
+    const auto search = remote::server_search_of(recipe.server.search);
+    const auto& request = recipe.request;
+    if (!recipe.server.used() || search == remote::ServerSearch::None) return false;
+    if (request.whole_scene() || !request.part_of().empty() || request.is_rearranged() ||
+        recipe.job.brings_label())
+        return false;
+    const bool asked = search != remote::ServerSearch::Auto;
+    if (edit::decide_mode(request, std::nullopt).first == edit::EditMode::Add) {
+        if (!asked) return false;
+        throw Error(ErrorCode::InvalidArgument,
+                    "an addition does not show where the thing is that it goes to",
+                    "leave --server-search out, or label the thing (--at, --cut-out)");
+    }
+    return asked || !language::unknown_word(known, request.source()).empty();
+}
+
+Views difference_views(const RunContext& context, CheckedRecipe& recipe, const Views& views) {
+    auto& request = recipe.request;
+    request.views = std::min(request.views, DifferenceViews);
+    request.image_size = std::min(context.server()->side(), DifferenceSide);
+    request.retry_passes = 0;
+    const bool paints = remote::server_search_of(recipe.server.search) == remote::ServerSearch::Paint;
+    log::info("\"{}\" is looked for by what the server {}: it is asked for {} of each of {} views",
+              request.source(), paints ? "paints" : "changes", paints ? "a picture" : "two pictures",
+              request.views);
+    return views.automatic ? views_on(views.orbit, recipe) : some_views(views, recipe);
 }
 
 void add_to(std::vector<std::uint8_t>& rows, const std::vector<std::uint8_t>& more) {

@@ -19,6 +19,10 @@ std::optional<edit::StudioBackground> ground_shown(RunContext& context, const Ch
 /// Adds rows [N] to others; an empty list holds none.
 void add_to(std::vector<std::uint8_t>& rows, const std::vector<std::uint8_t>& more);
 
+/// Settings and views of a search by what the server of the context changes: few views, at the size that it
+/// draws. The recipe is changed, since the edit goes on from them.
+Views difference_views(const RunContext& context, CheckedRecipe& recipe, const Views& views);
+
 /// One search. `label`: made by hand, or null. `within`, `beside`: as in LocateInput.
 edit::LocateResult search_from(RunContext& context, const Views& views, const CheckedRecipe& recipe,
                                const std::vector<std::uint8_t>* label, const JobControl& control,

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 
 #include "engine/base/content_hash.h"
@@ -188,6 +189,20 @@ Views choose_views(const Scene& scene, const CheckedRecipe& recipe, const GivenC
     views.views = farthest_views(given.cameras, static_cast<std::size_t>(recipe.request.views));
     for (auto& view : views.views) view.camera = square_camera(view.camera, recipe.request.image_size);
     return finished(std::move(views), recipe, given.words);
+}
+
+Views some_views(const Views& views, const CheckedRecipe& recipe) {
+    const int side = recipe.request.image_size;
+    const auto count = std::min(views.views.size(), static_cast<std::size_t>(recipe.request.views));
+    std::map<std::string, std::string> words;
+    for (std::size_t v = 0; v < views.words.size(); ++v) words[views.views[v].name] = views.words[v];
+    Views some;
+    some.orbit = views.orbit;
+    for (std::size_t i = 0; i < count; ++i) {
+        some.views.push_back(views.views[i * views.views.size() / count]);
+        some.views.back().camera = some.views.back().camera.resized(side, side);
+    }
+    return finished(std::move(some), recipe, words);
 }
 
 Views views_on(const OrbitParameters& orbit, const CheckedRecipe& recipe) {

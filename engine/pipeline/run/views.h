@@ -41,6 +41,9 @@ Views choose_views(const Scene& scene, const CheckedRecipe& recipe, const GivenC
 /// Views on another orbit, as many as the request asks for.
 Views views_on(const OrbitParameters& orbit, const CheckedRecipe& recipe);
 
+/// Views spread over these, as many and as large as the request asks for.
+Views some_views(const Views& views, const CheckedRecipe& recipe);
+
 /// "front view" and so on of every view. The front is the direction of `views.front`; `sided` as in
 /// edit::view_words.
 std::vector<std::string> words_around(const Views& views, bool sided);

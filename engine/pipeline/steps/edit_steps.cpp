@@ -8,6 +8,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/log.h"
+#include "engine/edit/request/decide_mode.h"
 #include "engine/edit/request/edit_method.h"
 #include "engine/edit/request/vocabulary.h"
 #include "engine/io/project/load_scene.h"
@@ -19,6 +20,7 @@
 #include "engine/pipeline/models/model_words.h"
 #include "engine/pipeline/models/recipe_model.h"
 #include "engine/pipeline/scene/label_names.h"
+#include "engine/remote/api/server_settings.h"
 #include "engine/scene/row_values.h"
 
 namespace gse::pipeline {
@@ -112,10 +114,13 @@ EditSteps steps_of_sentence(const EditRecipe& recipe, const plan::SceneWords& sc
     if (const auto refused = edit::refusal_of(result.plan, recipe.request.source)) throw *refused;
     const auto model = model_path(recipe.job);
     result.model = model_ability(model);
-    const bool any_word = recipe.server.used();  // is drawn; only known ones are found
+    const bool any_word = recipe.server.used();  // is drawn
+    // The server finds the thing of a single step, but for what is added.
+    const bool finds = any_word && result.plan.steps.size() == 1 &&
+                       remote::server_search_of(recipe.server.search) != remote::ServerSearch::None;
     result.model.open_vocabulary = result.model.open_vocabulary || any_word;
     result.steps = known_to_model(edit::planned_steps(result.plan, scene, result.model), recipe.request,
-                                  model, labels, any_word);
+                                  model, labels, any_word, finds);
     const bool any = std::any_of(result.steps.begin(), result.steps.end(),
                                  [](const auto& step) { return step.words.has_value(); });
     if (!partly || !any) require_all(result);
@@ -127,7 +132,8 @@ EditSteps steps_of_sentence(const EditRecipe& recipe, const plan::SceneWords& sc
 std::vector<edit::PlannedStep> known_to_model(std::vector<edit::PlannedStep> steps,
                                               const edit::EditRequest& request,
                                               const std::filesystem::path& folder,
-                                              const std::vector<std::string>& labels, bool draws_any_word) {
+                                              const std::vector<std::string>& labels, bool draws_any_word,
+                                              bool finds_any_word) {
     const auto known = model_words(folder), drawn = generated_vocabulary(folder);
     if (known.empty()) return steps;
     for (auto& step : steps) try {
@@ -135,7 +141,9 @@ std::vector<edit::PlannedStep> known_to_model(std::vector<edit::PlannedStep> ste
             const auto valid = edit::check(edit::request_of(request, *step.words));
             const bool draws = edit::method_of(valid).draws_views();
             const auto require = draws_any_word ? edit::require_findable_words : edit::require_known_words;
-            require(valid, known, draws ? drawn : std::vector<std::string>{}, false, labels);
+            const bool adds = edit::decide_mode(valid, std::nullopt).first == edit::EditMode::Add;
+            require(valid, known, draws ? drawn : std::vector<std::string>{}, finds_any_word && !adds,
+                    labels);
         } catch (const Error& error) {
             step.words.reset();
             step.problem = {error.message(), error.hint()};

@@ -1,7 +1,22 @@
 // Addresses that may be written down.
 #include "engine/remote/api/server_settings.h"
 
+#include <fmt/format.h>
+
+#include "engine/base/error.h"
+#include "engine/base/printable.h"
+
 namespace gse::remote {
+
+ServerSearch server_search_of(const std::string& name) {
+    if (name == "auto") return ServerSearch::Auto;
+    if (name == "differences") return ServerSearch::Differences;
+    if (name == "none") return ServerSearch::None;
+    if (name == "paint") return ServerSearch::Paint;
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("\"{}\" is no way to search with a server", printable(name)),
+                "name auto, differences, paint or none");
+}
 
 std::string without_secrets(std::string_view url) {
     url = url.substr(0, url.find_first_of("?#"));

@@ -16,6 +16,7 @@ struct ServerSettings {
     std::string workflow;
     std::string family = "auto";
     std::string agreement = "auto";
+    std::string search = "auto";
     int side = 0;
     int steps = 0;
     double guidance = 0;
@@ -40,6 +41,12 @@ struct ServerSettings {
           "Way to make views agree: none, sheet, reference, warp, or auto, as it suits the family. Sheet: "
           "several views in one picture. Reference: the first is shown beside the others. Warp: the first is "
           "carried over by depth.");
+        f("search", self.search,
+          "Search for the thing by what the server changes: differences, paint, none, or auto: differences "
+          "for "
+          "a word that the model here does not know. Differences take two pictures of each of 8 views. Paint "
+          "takes one, for models that follow instructions: they are told to paint the thing in a flat "
+          "colour.");
         f("side", self.side, "Side of the pictures that are sent, pixels; 0 = the family's.", Range{0, 2048});
         f("steps", self.steps, "Denoising steps at the server; 0 = the family's.", Range{0, 200});
         f("guidance", self.guidance, "Guidance scale at the server; 0 = the family's.", Range{0, 50});
@@ -51,6 +58,12 @@ struct ServerSettings {
 
     bool used() const { return !url.empty(); }
 };
+
+/// Searches for a thing by what a server changes.
+enum class ServerSearch { Auto, Differences, None, Paint };
+
+/// Search of that name. Throws Error (InvalidArgument) that lists the names.
+ServerSearch server_search_of(const std::string& name);
 
 /// Address without user name, password, query and fragment.
 std::string without_secrets(std::string_view url);

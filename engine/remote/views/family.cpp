@@ -166,6 +166,12 @@ constexpr std::array<NamePattern, 31> Patterns{{{"kontext", "kontext"},
                                                 {"inpaint", "sd15-inpainting"},
                                                 {"gpt*image", "editor"}}};
 
+/// Servers that edit by pictures beside the one to redraw have to be sent that one, too.
+bool picture_is_reference(const ServerFacts& facts, const ModelFamily& family) {
+    const bool by_references = facts.kind == ServerKind::SdCpp || facts.kind == ServerKind::Webui;
+    return family.instructed() && by_references && facts.references > 0;
+}
+
 bool fits(std::string_view name, std::string_view pattern) {
     for (;;) {
         const auto star = pattern.find('*');
@@ -198,6 +204,12 @@ RedrawOrder order_of(const ModelFamily& family) {
     order.strength = family.strength;
     order.sampler = family.sampler;
     return order;
+}
+
+void suit_to_server(RedrawOrder& order, const ServerFacts& facts, const ModelFamily& family) {
+    if (!facts.takes_mask) order.mask = {};
+    if (picture_is_reference(facts, family)) order.references.insert(order.references.begin(), order.picture);
+    if (order.references.size() > facts.references) order.references.resize(facts.references);
 }
 
 const ModelFamily& family_named(std::string_view name) {

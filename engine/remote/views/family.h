@@ -43,6 +43,10 @@ const ModelFamily& family_of(std::string_view model, std::string_view otherwise 
 /// Order with the settings of a family for a first round; it lacks pictures and prompts.
 RedrawOrder order_of(const ModelFamily& family);
 
+/// Suits an order to what a server takes. Masks and references that it does not take are dropped. The picture
+/// itself is among the references where its models edit by those.
+void suit_to_server(RedrawOrder& order, const ServerFacts& facts, const ModelFamily& family);
+
 /// Family of that name. Throws Error (InvalidArgument) that lists the names.
 const ModelFamily& family_named(std::string_view name);
 

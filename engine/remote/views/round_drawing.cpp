@@ -27,12 +27,6 @@ constexpr double FrontWeight = 0.5;          // by which a view from behind coun
 
 std::uint32_t server_seed(std::uint64_t seed) { return static_cast<std::uint32_t>(seed & 0x7fffffff); }
 
-/// Servers that edit by pictures beside the one to redraw have to be sent that one, too.
-bool picture_is_reference(const ServerFacts& facts, const ModelFamily& family) {
-    const bool by_references = facts.kind == ServerKind::SdCpp || facts.kind == ServerKind::Webui;
-    return family.instructed() && by_references && facts.references > 0;
-}
-
 bool is_square(const Image& picture) {
     return std::abs(picture.width - picture.height) <= SameAspect * picture.width;
 }
@@ -239,11 +233,7 @@ CheckedPicture RoundDrawing::ask(const ViewFrame& frame, RedrawOrder order, bool
 
 Image RoundDrawing::ask_server(RedrawOrder order) {
     if (job_.stop_requested()) throw Error(ErrorCode::Cancelled, "redrawing the views was stopped");
-    const auto& facts = source_.facts();
-    if (!facts.takes_mask) order.mask = {};
-    if (picture_is_reference(facts, drawing_.family))
-        order.references.insert(order.references.begin(), order.picture);
-    if (order.references.size() > facts.references) order.references.resize(facts.references);
+    suit_to_server(order, source_.facts(), drawing_.family);
     const int total = static_cast<int>(views_.size()),
               now = static_cast<int>(std::min(done_, views_.size() - 1));
     const auto stage = fmt::format("view {} of {} at the server", now + 1, total);

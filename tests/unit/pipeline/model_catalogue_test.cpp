@@ -37,6 +37,7 @@ void write_checkpoint(const fs::path& path,
 std::vector<std::pair<std::string, std::vector<int>>> whole_model(int channels, int width) {
     return {{"model.diffusion_model.input_blocks.0.0.weight", {320, channels, 3, 3}},
             {"model.diffusion_model.input_blocks.2.1.transformer_blocks.0.attn2.to_k.weight", {320, width}},
+            {"cond_stage_model.model.token_embedding.weight", {49408, width}},
             {"first_stage_model.decoder.conv_in.weight", {512, 4, 3, 3}}};
 }
 
@@ -58,7 +59,7 @@ DOCTEST_TEST_CASE(
     write_checkpoint(file("told.safetensors"), whole_model(8, 768));
     write_checkpoint(file("inpaint.safetensors"), whole_model(9, 768));
     write_checkpoint(file("lora.safetensors"), {{"lora_unet_mid.lora_up.weight", {4, 4}}});
-    write_checkpoint(file("xl.safetensors"), {{"conditioner.embedders.1.model.x", {4, 4}}});
+    write_checkpoint(file("xl.safetensors"), whole_model(4, 2048));
     auto without_vae = whole_model(4, 768);
     without_vae.pop_back();
     write_checkpoint(file("no_vae.safetensors"), without_vae);
@@ -86,12 +87,12 @@ DOCTEST_TEST_CASE(
           Expected{"told.safetensors", "Stable Diffusion 1.x, InstructPix2Pix", ""},
           Expected{"inpaint.safetensors", "Stable Diffusion 1.x inpainting",
                    "inpainting models are not supported"},
-          Expected{"lora.safetensors", "LoRA", "no whole model"},
-          Expected{"xl.safetensors", "Stable Diffusion XL", "SDXL is not"},
+          Expected{"lora.safetensors", "LoRA, fp16", "no whole model"},
+          Expected{"xl.safetensors", "SDXL", "only Stable Diffusion 1.x and 2.x are loaded here"},
           Expected{"no_vae.safetensors", "Stable Diffusion 1.x", "no_vae.vae.safetensors"},
           Expected{"SHOUTED.SAFETENSORS", "Stable Diffusion 1.x", ""},
           Expected{"short.sft", "Stable Diffusion 1.x", ""},
-          Expected{"noise.safetensors", "", "not a safetensors file"}, Expected{"old.ckpt", "", "pickled"},
+          Expected{"noise.safetensors", "", "not a file of weights"}, Expected{"old.ckpt", "", "pickled"},
           Expected{"OLD.CKPT", "", "pickled"}, Expected{"gone", "", "not there any more"}}) {
         const FoundModel model = found_at(models, file(name));
         const std::string wanted = problem;

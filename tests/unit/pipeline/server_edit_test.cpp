@@ -9,6 +9,7 @@
 
 #include "engine/base/error.h"
 #include "engine/io/project/load_scene.h"
+#include "engine/laboratory/synth/synth.h"
 #include "engine/math/sh.h"
 #include "engine/pipeline/models/installed.h"
 #include "engine/pipeline/models/neural_loader.h"
@@ -110,6 +111,108 @@ DOCTEST_TEST_CASE("server edit: a server that edits is told what to do, in words
     DOCTEST_CHECK(edit.server->orders[0].prompt.find("exactly the same") != std::string::npos);
     DOCTEST_CHECK(edit.server->orders[0].strength == 1);
     DOCTEST_CHECK(psnr_to_truth(*job, *edit.server) >= 25);
+}
+
+namespace {
+
+/// A red thing on snow, and a server that recolours what is red where no mask says what.
+struct UnknownWord {
+    synth::SynthScene world =
+        synth::generate({.object = "dog", .material = "red", .ground = "snow", .seed = 5});
+    ServerEdit edit{"a golden gizmo", "golden"};
+
+    UnknownWord() {
+        edit.recipe.request.source = "gizmo";
+        edit.recipe.server.agreement = "none";
+        edit.server->facts.model = "flux1-kontext-dev";
+        edit.server->draws = [this](const remote::RedrawOrder& order, std::size_t) {
+            Image mask = order.mask;
+            if (mask.data.empty()) {
+                mask = Image(order.picture.width, order.picture.height, 1);
+                for (std::size_t i = 0; i < mask.data.size(); ++i) {
+                    const float* pixel = order.picture.data.data() + i * 3;
+                    mask.data[i] = pixel[0] - std::max(pixel[1], pixel[2]) > 0.12f ? 1.0f : 0.0f;
+                }
+            }
+            return test::where(mask, drawn(order), order.picture);
+        };
+    }
+    /// The picture in the server's colour, or all in the one that it is told to paint with.
+    Image drawn(const remote::RedrawOrder& order) const {
+        const auto at = order.prompt.find("(#");
+        if (at == std::string::npos) return test::in_colour(order.picture, edit.server->colour);
+        const auto rgb = std::stoul(order.prompt.substr(at + 2, 6), nullptr, 16);
+        Image picture = order.picture;
+        for (std::size_t i = 0; i < picture.data.size(); ++i)
+            picture.data[i] = static_cast<float>(rgb >> (16 - 8 * (i % 3)) & 255) / 255;
+        return picture;
+    }
+    std::unique_ptr<EditJob> job(bool server_searches) {
+        EditJobInput input;
+        input.scene = world.scene;
+        input.model = load_recipe_model({});
+        input.server = std::make_shared<ViewServer>(edit.server, edit.recipe.server, nullptr, JobControl{});
+        input.server_searches = server_searches;
+        return std::make_unique<EditJob>(edit.recipe, std::move(input), JobControl{});
+    }
+    double iou_of(const std::vector<std::uint8_t>& bits) const {
+        double both = 0, either = 0;
+        for (std::size_t row = 0; row < bits.size(); ++row) {
+            const bool thing = world.parts[row] == synth::Part::Object;
+            both += thing && bits[row] != 0 ? 1 : 0;
+            either += thing || bits[row] != 0 ? 1 : 0;
+        }
+        return both / either;
+    }
+};
+
+}  // namespace
+
+DOCTEST_TEST_CASE("server edit: a word that the model lacks is found by what the server changes") {
+    if (!can_run()) return;
+    UnknownWord unknown;
+    auto job = unknown.job(true);
+    job->locate();
+    DOCTEST_REQUIRE_MESSAGE(job->found(), job->located().message);
+    DOCTEST_CHECK(job->found_by_differences());
+    DOCTEST_CHECK(unknown.iou_of(*job->located().label.bits) >= 0.9);
+    DOCTEST_CHECK(job->views().size() == 8);
+    const auto asked = unknown.edit.server->orders.size();
+    DOCTEST_CHECK((asked == 16 || asked == 32));  // from nearer, too, where it is small
+    job->locate_again(0.4, "");                   // another threshold asks nobody
+    DOCTEST_CHECK(unknown.edit.server->orders.size() == asked);
+    DOCTEST_CHECK(unknown.iou_of(*job->located().label.bits) >= 0.9);
+    job->run();
+    DOCTEST_CHECK(job->result().changed_outside_label == 0);
+    DOCTEST_CHECK(psnr_to_truth(*job, *unknown.edit.server) >= 23);
+}
+
+DOCTEST_TEST_CASE(
+    "server edit: a thing that the server is told to paint is found for one picture of a view") {
+    if (!can_run()) return;
+    UnknownWord unknown;
+    unknown.edit.recipe.server.search = "paint";
+    auto job = unknown.job(true);
+    job->locate();
+    DOCTEST_REQUIRE_MESSAGE(job->found(), job->located().message);
+    DOCTEST_CHECK(unknown.iou_of(*job->located().label.bits) >= 0.9);
+    const auto asked = unknown.edit.server->orders.size();
+    DOCTEST_CHECK((asked == 8 || asked == 16));
+}
+
+DOCTEST_TEST_CASE("server edit: a server is asked for a place only where that is allowed, and makes sense") {
+    if (!can_run()) return;
+    UnknownWord unknown;
+    DOCTEST_CHECK_THROWS_AS(unknown.job(false), Error);  // as in the window
+    unknown.edit.recipe.server.search = "none";
+    DOCTEST_CHECK_THROWS_AS(unknown.job(true), Error);
+    unknown.edit.recipe.server.search = "differences";
+    unknown.edit.recipe.request.prompt = "a gizmo with a hat";
+    unknown.edit.recipe.request.target = "hat";
+    DOCTEST_CHECK_THROWS_AS(unknown.job(true), Error);
+    unknown.edit.recipe.server.search = "guess";
+    DOCTEST_CHECK_THROWS_AS(unknown.job(true), Error);
+    DOCTEST_CHECK(unknown.edit.server->orders.empty());
 }
 
 DOCTEST_TEST_CASE("server edit: a view that the server gets wrong is left out of the fit") {

@@ -369,10 +369,10 @@ DOCTEST_TEST_CASE("training lowers every loss on the toy world") {
     const ToySource source;
     const gse::test::ScratchFolder scratch;
     auto parameters = toy_parameters();
-    parameters.vae_steps = 100;
-    parameters.unet_steps = 150;
+    parameters.vae_steps = 40;
+    parameters.unet_steps = 80;
     parameters.vae_batch = parameters.unet_batch = 4;
-    parameters.clip_steps = 100;
+    parameters.clip_steps = 70;
     parameters.clip_batch = 8;
     train_starter(parameters, source, scratch.path() / "work", scratch.path() / "model", {});
     const auto vae = column(scratch.path() / "work/vae.tsv", 4);
