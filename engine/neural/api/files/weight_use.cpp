@@ -89,7 +89,7 @@ void refuse_foreign_model(const std::filesystem::path& path) {
     try {
         kind = weight_kind(read_weight_header(path));
     } catch (const Error&) { return; }  // the reader of the model says better what is wrong
-    // What is wrong with a UNet of this structure, its reader knows in detail.
+    // The reader of a UNet of this structure says in detail what is wrong with it.
     const bool ours = is_stable_diffusion(kind) &&
                       (kind.role == WeightRole::Checkpoint || kind.role == WeightRole::DiffusionModel);
     if (kind.readable && (ours || kind.role == WeightRole::Unknown)) return;
