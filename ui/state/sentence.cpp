@@ -127,6 +127,7 @@ std::string problem_of(const edit::EditRequest& request, const SentenceGround& g
         return "Describe the scene after the edit in one sentence";
     if (request.source.empty() && request.target.empty())
         return "Type what in the scene the edit is about, or click the word of the sentence that is new";
+    facts.missing = edit::missing_thing(request, edit::assumed_scene(request, ground.made));
     if (facts.follows_plan) {
         const auto problem = problem_of_steps(facts);
         const auto source = language::normalised_prompt(request.source);
@@ -135,7 +136,6 @@ std::string problem_of(const edit::EditRequest& request, const SentenceGround& g
     }
     if (const auto problem = edit::single_edit_problem(request, {ground.said, ground.read_target})) {
         facts.refused = true;
-        facts.missing = edit::missing_thing(request, edit::assumed_scene(request, ground.made));
         return fmt::format("{}: {}", first_letter_up(problem->message()), problem->hint());
     }
     std::optional<edit::CheckedRequest> valid;

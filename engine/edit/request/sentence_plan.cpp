@@ -313,9 +313,11 @@ std::optional<Error> single_edit_problem(const EditRequest& request, const News&
 std::string missing_thing(const EditRequest& request, const plan::SceneWords& scene) {
     if (!is_planned(request)) return {};
     const auto plan = plan_of(request, scene);
-    const bool missing = plan.is_refusal() && !is_told_as_typed(request, plan) &&
-                         plan.steps.front().text == plan::reason::NotInScene;
-    return missing ? plan.steps.front().text2 : std::string();
+    if (plan.is_refusal() && is_told_as_typed(request, plan)) return {};
+    const auto missing = std::find_if(plan.steps.begin(), plan.steps.end(), [](const plan::Step& step) {
+        return step.operation == plan::Operation::Refuse && step.text == plan::reason::NotInScene;
+    });
+    return missing != plan.steps.end() ? missing->text2 : std::string();
 }
 
 std::optional<Error> refusal_of(const plan::Plan& plan, const std::string& source) {

@@ -87,8 +87,8 @@ std::optional<Error> single_edit_problem(const EditRequest& request, const News&
 /// ("give it a hat"). Else as it is.
 EditRequest in_plan_words(const EditRequest& request, const News& news);
 
-/// Noun of the sentence that nothing in the scene of these words is called, which the plan is refused for.
-/// Empty for other plans, and where target, mode or instruction were chosen.
+/// Noun of the sentence that nothing in the scene of these words is called: the first for which the plan, or
+/// a step of it, is refused. Empty for other plans, and where target, mode or instruction were chosen.
 std::string missing_thing(const EditRequest& request, const language::plan::SceneWords& scene);
 
 /// Sentence for a plan that changes nothing, or refuses. Nothing for another plan.

@@ -152,7 +152,8 @@ void draw_remarks(Context& context) {
         coloured_text(palette::Warning,
                       fmt::format("The model reads {} words of a sentence: from \"{}\" on nothing counts.",
                                   context.model.words_read, prompt.cut_at));
-    if (prompt.refused) return draw_missing(context);  // words alone would not help
+    draw_missing(context);
+    if (prompt.refused) return;  // words alone would not help
     const bool unknown =
         std::any_of(prompt.chips.begin(), prompt.chips.end(), [](const Chip& chip) { return !chip.known; });
     if (unknown) coloured_text(palette::Warning, "Words the model does not know have no effect.");
