@@ -369,7 +369,7 @@ DOCTEST_TEST_CASE("training lowers every loss on the toy world") {
     const ToySource source;
     const gse::test::ScratchFolder scratch;
     auto parameters = toy_parameters();
-    parameters.vae_steps = 40;
+    parameters.vae_steps = 100;
     parameters.unet_steps = 80;
     parameters.vae_batch = parameters.unet_batch = 4;
     parameters.clip_steps = 70;
