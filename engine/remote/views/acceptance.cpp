@@ -70,6 +70,10 @@ void undo_drift(const ViewFrame& frame, CheckedPicture& checked) {
 
 }  // namespace
 
+bool is_square(const Image& picture) {
+    return std::abs(picture.width - picture.height) <= SameAspect * picture.width;
+}
+
 double psnr_outside(const Image& sent, const Image& drawn, const Mask& mask) {
     GSE_CHECK_EQ(sent.data.size(), drawn.data.size());
     GSE_CHECK_EQ(mask.data.size(), sent.pixel_count());

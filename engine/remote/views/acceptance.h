@@ -18,6 +18,9 @@ inline constexpr double MostScale = 0.02;               // difference from 1
 inline constexpr double LeastChange = 4.0 / 255;        // mean inside the mask
 inline constexpr double SameAspect = 0.01;              // relative difference
 
+/// Tells whether a picture's sides are the same, up to SameAspect.
+bool is_square(const Image& picture);
+
 /// Picture that came, as it can be used, and what was found about it.
 struct CheckedPicture {
     Image picture;  // [S,S,3] moved back onto what was sent; empty where the size is of no use

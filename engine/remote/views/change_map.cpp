@@ -21,7 +21,7 @@ constexpr double LeastPart = 0.001, MostPart = 0.6;  // of the pixels
 constexpr double PartBlur = 2.0 / 512;               // of the picture's side
 constexpr double MeansOfDiffEdit = 3;                // multiple of the mean that is the level
 // Differences are of two kinds where Otsu's classes explain so much of their variance, and their means differ
-// by this factor. Noise alone reaches 0.64 and 3.
+// by this factor.
 constexpr double TwoKinds = 0.7, KindsApart = 4;
 constexpr double PartMargin = 8.0 / 512;  // of the side: width of the rim between inside and outside
 constexpr double OutsideShare = 0.95,

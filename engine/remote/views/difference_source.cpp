@@ -22,8 +22,6 @@ constexpr std::uint64_t SecondSeed = 72000;
 // Share of the noise levels at which two sentences are compared, as in DiffEdit: less keeps the picture.
 constexpr double ComparedStrength = 0.5;
 
-std::uint32_t seed_of(std::uint64_t seed) { return static_cast<std::uint32_t>(seed & 0x7fffffff); }
-
 bool has_side(const Image& picture, int side) { return picture.width == side && picture.height == side; }
 
 }  // namespace
@@ -90,13 +88,12 @@ Image DifferenceSource::ask(const Image& picture, const std::string& prompt, std
     order.picture = picture;
     order.prompt = prompt;
     if (edit_.drawing.family.negative) order.negative_prompt = edit_.drawing.text.negative;
-    order.seed = seed_of(seed);
+    order.seed = server_seed(seed);
     order.strength = strength;
     suit_to_server(order, source_.facts(), edit_.drawing.family);
     const Image drawn = source_.ask(order, {[](std::string_view, int, int) {}, job_.stop});
     if (has_side(drawn, picture.width)) return drawn;
-    const bool square = std::abs(drawn.width - drawn.height) <= SameAspect * drawn.width;
-    if (square) return at_side(drawn, picture.width);
+    if (is_square(drawn)) return at_side(drawn, picture.width);
     log::info("the server sent a picture of another shape, which does not count");
     return picture;
 }

@@ -196,6 +196,8 @@ const ModelFamily& family_of(std::string_view model, std::string_view otherwise)
     return family_named(found != Patterns.end() ? found->family : otherwise);
 }
 
+std::uint32_t server_seed(std::uint64_t seed) { return static_cast<std::uint32_t>(seed & 0x7fffffff); }
+
 RedrawOrder order_of(const ModelFamily& family) {
     RedrawOrder order;
     order.steps = family.steps;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -39,6 +40,9 @@ std::span<const ModelFamily> model_families();
 
 /// Family of a model by its name or file name; the one named `otherwise` where the name tells nothing.
 const ModelFamily& family_of(std::string_view model, std::string_view otherwise = "sd15");
+
+/// Seed as servers take it: 31 bits.
+std::uint32_t server_seed(std::uint64_t seed);
 
 /// Order with the settings of a family for a first round; it lacks pictures and prompts.
 RedrawOrder order_of(const ModelFamily& family);

@@ -25,12 +25,6 @@ constexpr double SeamStrength = 0.35;        // of the pass over what was carrie
 constexpr double LeastHole = 0.01;           // of a mask: less is not asked for by itself
 constexpr double FrontWeight = 0.5;          // by which a view from behind counts less as the key
 
-std::uint32_t server_seed(std::uint64_t seed) { return static_cast<std::uint32_t>(seed & 0x7fffffff); }
-
-bool is_square(const Image& picture) {
-    return std::abs(picture.width - picture.height) <= SameAspect * picture.width;
-}
-
 Mask difference(const Mask& mask, const Mask& without) {
     Mask result = mask;
     for (std::size_t i = 0; i < result.data.size(); ++i)
