@@ -181,6 +181,11 @@ def work(handler, number, job):
         job["files"] = {}
         for key, node in job["graph"].items():
             if node["class_type"] in OUTPUTS:
+        if world.most_side and any(pictures.decode_png(world.uploads[node["inputs"]["image"]]).width
+                                   > world.most_side
+                                   for node in job["graph"].values() if node["class_type"] == "LoadImage"):
+            job["status"] = "memory"
+            return
                 job["files"][key] = graph.value(node["inputs"]["images"])
         job["status"] = "done"
 
@@ -196,8 +201,9 @@ def history(handler, method, place, value):
     if fault == "job_lost":
         world.jobs.pop(number, None)
         job = None
-    if fault in ("execution_error", "execution_memory"):
-        words = "CUDA out of memory" if fault == "execution_memory" else "bad \x1b[31mthing"
+    short = fault == "execution_memory" or (job is not None and job["status"] == "memory")
+    if fault == "execution_error" or short:
+        words = "CUDA out of memory" if short else "bad \x1b[31mthing"
         return handler.send_json({number: {"outputs": {}, "status": {
             "status_str": "error", "completed": False, "messages": [["execution_start", {}], [
                 "execution_error", {"node_id": "3", "node_type": "KSampler", "exception_message": words,

@@ -147,3 +147,4 @@ edit::EditPlan plan_at_side(edit::EditPlan plan, int side) {
 }
 
 }  // namespace gse::pipeline
+    if (use.smaller_side > 0) json["smaller_side"] = use.smaller_side;

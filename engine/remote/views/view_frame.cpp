@@ -16,7 +16,6 @@ constexpr double LeastMargin = 1.0 / 16;  // of the box's longer side, on each s
 constexpr double LargestCrop = 0.8;       // of the view's side: a larger part is sent whole
 constexpr double SentGrowth = 4;          // px by which a sent mask is grown beside a latent cell
 constexpr double FeatherPx = 3;           // of a picture of ReferenceSide
-constexpr int SideStep = 64;
 
 int side_around(const localize::PixelBox& box) {
     const int longer = std::max(box.width, box.height);

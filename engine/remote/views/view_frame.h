@@ -9,6 +9,8 @@ namespace gse::remote {
 
 /// Least side of a part that is cut out of a view, px.
 inline constexpr int LeastCrop = 512;
+/// Sides of sent pictures are multiples of it, px.
+inline constexpr int SideStep = 64;
 
 /// Part of a square view as it is sent. Pictures are squares of one side.
 struct ViewFrame {

@@ -333,3 +333,35 @@ DOCTEST_TEST_CASE("editor: a round whose views are of two models is drawn once m
 
 }  // namespace
 }  // namespace remote_view_editor_test
+DOCTEST_TEST_CASE(
+    "source: a picture that is too large is asked for at 3/4 of its side, and the rest as well") {
+    Setup setup;
+    setup.server.draws = [&](const RedrawOrder& asked, std::size_t) {
+        if (asked.picture.width > 192) throw Error(ErrorCode::Foreign, "it ran out of memory", TooLargeHint);
+        return gse::test::in_colour(asked.picture, setup.server.colour);
+    };
+    RedrawOrder order;
+    order.picture = waves(256);
+    order.mask = as_image(disc(256, 40));
+    order.references = {waves(256), waves(64)};
+    PictureSource source(setup.server, setup.server.facts, "", &setup.answers);
+    const auto picture = source.ask(order, {});
+    DOCTEST_CHECK(picture.width == 256);
+    DOCTEST_CHECK(change_inside(picture, gse::test::in_colour(order.picture, setup.server.colour),
+                                disc(256, 100)) < 0.02);
+    DOCTEST_CHECK(source.use().smaller_side == 192);
+    DOCTEST_REQUIRE(setup.server.orders.size() == 2);
+    DOCTEST_CHECK(setup.server.orders[1].mask.width == 192);
+    DOCTEST_CHECK(setup.server.orders[1].references[0].width == 192);
+    DOCTEST_CHECK(setup.server.orders[1].references[1].width == 64);
+    DOCTEST_CHECK(source.ask(order, {}).data == picture.data);  // kept, and not asked for at the full size
+    DOCTEST_CHECK(setup.server.orders.size() == 2);
+    order.picture = Image(64, 64, 3);  // no smaller side is left
+    order.mask = {};
+    setup.server.draws = [](const RedrawOrder&, std::size_t) -> Image {
+        throw Error(ErrorCode::Foreign, "it ran out of memory", TooLargeHint);
+    };
+    DOCTEST_CHECK_THROWS_WITH_AS(source.ask(order, {}), doctest::Contains("ran out of memory"), Error);
+    DOCTEST_CHECK(setup.server.orders.size() == 3);
+}
+
