@@ -18,13 +18,15 @@ NODES = {
     "ReferenceLatent": ["conditioning", "latent"], "ConditioningZeroOut": ["conditioning"],
     "KSampler": ["model", "seed", "steps", "cfg", "sampler_name", "scheduler", "positive", "negative",
                  "latent_image", "denoise"],
+    "LoraLoader": ["model", "clip", "lora_name", "strength_model", "strength_clip"],
+    "LoraLoaderModelOnly": ["model", "lora_name", "strength_model"],
     "SaveImage": ["images"], "PreviewImage": ["images"], "PaidApi": ["image"],
 }
 OUTPUTS = {"SaveImage", "PreviewImage"}
 COMBOS = {"ckpt_name": ["stand-in.safetensors"], "unet_name": ["flux-2-klein-4b.safetensors"],
           "clip_name": ["qwen_3_4b.safetensors"], "vae_name": ["flux2-vae.safetensors"],
           "sampler_name": ["euler"], "scheduler": ["normal", "simple"], "channel": ["alpha", "red"],
-          "type": ["flux2"], "weight_dtype": ["default"]}
+          "lora_name": ["bronze.safetensors", "looks/oil paint.safetensors"], "type": ["flux2"], "weight_dtype": ["default"]}
 
 
 class Graph:
@@ -179,13 +181,13 @@ def work(handler, number, job):
             return
         graph = Graph(world, job["graph"])
         job["files"] = {}
-        for key, node in job["graph"].items():
-            if node["class_type"] in OUTPUTS:
         if world.most_side and any(pictures.decode_png(world.uploads[node["inputs"]["image"]]).width
                                    > world.most_side
                                    for node in job["graph"].values() if node["class_type"] == "LoadImage"):
             job["status"] = "memory"
             return
+        for key, node in job["graph"].items():
+            if node["class_type"] in OUTPUTS:
                 job["files"][key] = graph.value(node["inputs"]["images"])
         job["status"] = "done"
 

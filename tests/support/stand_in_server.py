@@ -155,6 +155,8 @@ class Handler(BaseHTTPRequestHandler):
         self.handle_request("GET", b"")
 
     def do_POST(self):
+        if self.world.unread and kind_of("POST", self.path) == "draw":
+            return faults.hang(self)
         try:
             self.handle_request("POST", self.read_body())
         except OSError:
@@ -309,10 +311,10 @@ class Handler(BaseHTTPRequestHandler):
         width, height = value.get("width", 512), value.get("height", 512)
         mask = mask_of(decoded(value.get("mask")))
         fault = self.fault
-        if fault.startswith("images_"):
-            wrong = {"images_none": [], "images_blank": [""], "images_null": [None], "images_number": 3}
         if 0 < self.world.most_side < width:
             return faults.TRANSPORT["out_of_memory"](self)
+        if fault.startswith("images_"):
+            wrong = {"images_none": [], "images_blank": [""], "images_null": [None], "images_number": 3}
             return self.send_json({"images": wrong.get(fault), "info": ""})
         if picture is None:
             file = pictures.encode_png(pictures.unrelated(width, height, value.get("seed", 0)))
@@ -363,10 +365,10 @@ class Handler(BaseHTTPRequestHandler):
         if flavour == "sdserver" and extra:
             values = json.loads(extra.group(1))
             seed, prompt = values.get("seed", seed), prompt.replace(extra.group(0), "")
-        if not images or images[0] is None:
-            file = pictures.encode_png(pictures.unrelated(64, 64, seed))
         if images and images[0] is not None and 0 < self.world.most_side < images[0].width:
             return faults.TRANSPORT["out_of_memory"](self)
+        if not images or images[0] is None:
+            file = pictures.encode_png(pictures.unrelated(64, 64, seed))
         else:
             file = self.drawn(images[0], mask, prompt, seed)
         data = {"images_none": [], "images_blank": [{"b64_json": ""}], "images_null": [None],
@@ -455,11 +457,11 @@ class Handler(BaseHTTPRequestHandler):
                 return
             job["status"] = "generating"
             time.sleep(world.draw_s)
-            seed = value.get("seed", 0)
-            mask = mask_of(decoded(value.get("mask_image")))
             if 0 < world.most_side < value.get("width", 512):
                 job["status"] = "memory"
                 return
+            seed = value.get("seed", 0)
+            mask = mask_of(decoded(value.get("mask_image")))
             if picture is None:
                 made = pictures.unrelated(value.get("width", 512), value.get("height", 512), seed)
             else:
