@@ -167,6 +167,10 @@ EditJob::EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCach
     for (auto* file :
          {&recipe_.job.segmenter, &recipe_.job.text_segmenter, &recipe_.server.workflow, &recipe_.server.ca})
         if (!file->empty()) *file = std::filesystem::absolute(*file).lexically_normal().string();
+    for (auto& text : recipe_.server.target_picture) {
+        const auto target = remote::target_picture_of(text);
+        text = target.view + "=" + std::filesystem::absolute(target.file).lexically_normal().string();
+    }
     auto [scene, cameras, notes, up] =
         load_scene_with_cameras(recipe_.job.scene, recipe_.job.cameras, {.activated = recipe_.job.activated});
     if (recipe_.job.up == "auto" && !up.empty()) notes.push_back(up);

@@ -118,6 +118,25 @@ DOCTEST_TEST_CASE("Searches are counted as refused below the threshold, and as r
     DOCTEST_CHECK(has(table, "| unknown | 1 | 1 |  |"));
 }
 
+DOCTEST_TEST_CASE("Ways of a server's views have a line each, also on the page") {
+    const Json rows{{{"agreement", "warp, second round"},
+                     {"disagreement", 0.02504},
+                     {"psnr_db", 22.61},
+                     {"rejected", 0.0},
+                     {"requests", 16.5},
+                     {"megapixels", 0.61},
+                     {"seconds", 12.34}}};
+    const auto* line = "| warp, second round | 0.0250 | 22.6 | 0.0 | 16.5 | 0.61 |";
+    DOCTEST_CHECK(has(servers_table(rows), line));
+    const test::ScratchFolder scratch;
+    FiguresRun run;
+    run.results = scratch.path();
+    run.parameters.suites = "";
+    DOCTEST_CHECK(has(figures_page(run, {}), "`gseditpro-lab bench server --side 192`\n\nNot measured yet."));
+    write_file(run.results / "server.json", rows.dump());
+    DOCTEST_CHECK(has(figures_page(run, {}), line));
+}
+
 DOCTEST_TEST_CASE(
     "The page takes results that are there, says what was not measured, and refuses other settings") {
     const test::ScratchFolder scratch;
