@@ -95,8 +95,7 @@ public:
 
     std::string text() {
         const auto sections = edits() + words() + reliability() + searches() + encoder() + methods() +
-                              const auto sections = edits() + words() + searches() + encoder() + methods() +
-                                                    servers() + stability() + speed() + scans();
+                              servers() + stability() + speed() + scans();
         return head() + sections;
     }
 

@@ -17,6 +17,7 @@ namespace {
 constexpr float Covered = 0.5f;  // alpha
 constexpr double Within = 0.85;  // of the grown thing is labelled: else the box holds a part of it
 constexpr double Most = 0.4;     // of the label is the grown thing
+constexpr double Least = 0.15;   // of the label is the support: less may be the thing's foot
 constexpr double Ring = 0.04;    // of the support's longer side in the picture: width of a ring around it
 constexpr double GoesOn = 0.4;   // of that ring shows more of the support (a pedestal stands on the ground)
 
@@ -46,7 +47,8 @@ std::vector<std::uint8_t> rows_beside(const std::vector<std::uint8_t>& bits,
         labelled += bits[row], grown += thing[row], both += bits[row] & thing[row];
         beside[row] = bits[row] != 0 && thing[row] == 0 ? 1 : 0;
     }
-    const bool same = grown > 0 && both >= Within * grown && both >= Most * labelled && both < labelled;
+    const bool same =
+        grown > 0 && both >= Within * grown && both >= Most * labelled && labelled - both >= Least * labelled;
     return same ? beside : std::vector<std::uint8_t>{};
 }
 
