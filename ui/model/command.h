@@ -185,9 +185,10 @@ struct UsePlacing {
     bool on = false;
 };
 /// Moves, turns, resizes or copies the labelled thing. Several in a row start from its common place and are
-/// one step of undo. The settings' defaults take them back.
+/// one step of undo. The settings' defaults take them back. Where a drag ends, the thing's shadow goes along.
 struct PlaceThing {
     edit::RearrangeSettings settings;
+    bool drag_ends = true;
 };
 /// Removes what was painted over, and fills the place with what is around it.
 struct HealStroke {

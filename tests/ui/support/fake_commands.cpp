@@ -85,9 +85,9 @@ template <class C> std::string fields_of(const C& wanted) {
         [&](const command::PutIn& one) { return text(one.path.string()); },
         [&](const command::UsePlacing& one) { return text(one.on ? "on" : "off"); },
         [&](const command::PlaceThing& one) {
-            return fmt::format(" {:.2f} {:.2f} {:.2f} turn {:.0f} size {:.2f}", one.settings.move_right,
+            return fmt::format(" {:.2f} {:.2f} {:.2f} turn {:.0f} size {:.2f}{}", one.settings.move_right,
                                one.settings.move_up, one.settings.move_forward, one.settings.turn,
-                               one.settings.resize);
+                               one.settings.resize, end_of(one.drag_ends));
         },
         [&](const command::PickRows& one) {
             return text(localize::choice_text(one.choice)) + (one.choice.within_label ? " within" : "");
