@@ -198,6 +198,13 @@ std::string why_not_export(const Context& context, const std::string& path) {
     return {};
 }
 
+void export_picture(Context& context) {
+    const auto& viewport = context.state.viewport;
+    const float width = viewport.high.x - viewport.low.x;
+    const float pixels = static_cast<float>(context.model.camera.width) / std::max(1.0f, width);
+    context.emit(command::ExportPicture{width > 1 && pixels > 0 ? context.em * pixels : context.em});
+}
+
 std::string views_text(const Context& context) {
     const auto there = static_cast<int>(context.document().views.size()), used = context.request.views;
     if (there < static_cast<int>(LeastViewpoints))

@@ -330,7 +330,10 @@ struct ForgetServer {};
 struct SetExports {
     ExportSettings settings;
 };
-struct ExportPicture {};
+/// `em_px`: size of the window's letters in pixels of the viewport's camera, for what lies over the picture.
+struct ExportPicture {
+    float em_px = 15;
+};
 struct ExportTurntable {};
 struct ExportScene {};
 struct ExportViewpoints {};
