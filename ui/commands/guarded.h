@@ -50,7 +50,7 @@ void cancel_job(Context& context);
 void ask_open(Context& context);
 /// Asks where the scene of the project is that could not be opened.
 void ask_lost_scene(Context& context);
-/// Opens. Asks first when there is unsaved work.
+/// Opens. Asks first when there is unsaved work. Weights are opened in the Models panel.
 void open_path(Context& context, const std::string& path);
 /// Opens the path; of several, asks which.
 void open_one_of(Context& context, const std::vector<std::string>& paths);

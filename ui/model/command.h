@@ -282,6 +282,11 @@ struct SetViewportSize {
 struct SetModelSettings {
     ModelSettings settings;
 };
+/// Uses a file or folder of weights by its kind: as the model, a LoRA, or a segmenter. Says in one sentence
+/// why another kind is of no use here, and what is.
+struct OpenModel {
+    std::filesystem::path path;
+};
 /// Tries a model, lists it, and uses it if it loads.
 struct ChooseModel {
     std::string path;
@@ -396,9 +401,9 @@ using ViewCommand =
                  command::SetViewSettings, command::SetComparison, command::CompareWith, command::LookThrough,
                  command::AddView, command::DeleteView, command::RenameView, command::DrawView,
                  command::PickColour, command::SetViewportSize>;
-using ModelCommand =
-    std::variant<command::SetModelSettings, command::ChooseModel, command::AddLora, command::SetLoraStrength,
-                 command::RemoveLora, command::ChooseSegmenter, command::SetCacheMb, command::ClearCache>;
+using ModelCommand = std::variant<command::SetModelSettings, command::OpenModel, command::ChooseModel,
+                                  command::AddLora, command::SetLoraStrength, command::RemoveLora,
+                                  command::ChooseSegmenter, command::SetCacheMb, command::ClearCache>;
 using ServerCommand = std::variant<command::SetServer, command::KeepServerPassword, command::TestServer,
                                    command::UseServer, command::ForgetServer>;
 using ExportCommand = std::variant<command::SetExports, command::ExportPicture, command::ExportTurntable,

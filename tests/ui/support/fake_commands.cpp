@@ -110,6 +110,7 @@ template <class C> std::string fields_of(const C& wanted) {
         [&](const command::DrawView& one) { return text(one.view); },
         [&](const command::PickColour& one) { return two(one.x, one.y); },
         [&](const command::SetViewportSize& one) { return two(one.width, one.height); },
+        [&](const command::OpenModel& one) { return text(one.path.string()); },
         [&](const command::ChooseModel& one) { return text(one.path); },
         [&](const command::AddLora& one) { return text(one.text); },
         [&](const command::SetLoraStrength& one) { return two(one.index, std::to_string(one.strength)); },
