@@ -124,10 +124,11 @@ DOCTEST_TEST_CASE(
     write_ones(unknown, {{"some.layer.weight", {2, 2}}});
     write_file(pickle, "PK\x03\x04 and so on");
     write_file(gguf, GgufBytes()
-                         .magic(1, 1)
-                         .statement("general.architecture", "flux")
-                         .tensor("double_blocks.0.img_attn.qkv.weight", {32, 32}, 2)
-                         .bytes());
+                             .magic(1, 1)
+                             .statement("general.architecture", "flux")
+                             .tensor("double_blocks.0.img_attn.qkv.weight", {32, 32}, 2)
+                             .bytes() +
+                         std::string(4096, '\0'));
     fs::copy(app::starter_model_path(), model, fs::copy_options::recursive);
     Session session;
     session.open_bear();
