@@ -318,7 +318,7 @@ void cancel_job(Context& context) {
 }
 
 void open_path(Context& context, const std::string& path) {
-    if (pipeline::names_model(path_of(path))) {
+    if (names_model(path_of(path))) {
         context.commands.push(command::OpenModel{path_of(path)});
         return show_panel(context.state, PanelId::Models);
     }
@@ -337,7 +337,7 @@ bool can_be_put_in(const Context& context, const std::vector<std::string>& paths
     if (!why_not_put_in(context).empty() || paths.size() != 1) return false;
     const auto& path = paths.front();
     return !has_extension(path, std::vector<std::string>{".png", ".gsep"}) && !only_cameras(path_of(path)) &&
-           !pipeline::names_model(path_of(path));
+           !names_model(path_of(path));
 }
 
 namespace {

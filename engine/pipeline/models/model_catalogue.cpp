@@ -12,7 +12,6 @@
 #include "engine/base/error.h"
 #include "engine/base/safetensors_header.h"
 #include "engine/neural/api/checkpoint.h"
-#include "engine/neural/api/files/weight_header.h"
 #include "engine/neural/api/files/weight_use.h"
 #include "engine/pipeline/models/installed.h"
 #include "engine/pipeline/models/model_places.h"
@@ -117,16 +116,6 @@ void describe_folder(const fs::path& path, FoundModel& model) {
 }
 
 }  // namespace
-
-bool names_model(const fs::path& path) {
-    const auto name = path.filename();
-    for (const char* of_cameras : {"cameras.bin", "images.bin", "points3D.bin", "rigs.bin", "frames.bin"})
-        if (name == of_cameras) return false;
-    std::error_code ignored;
-    return is_safetensors_name(path) || is_pickle_name(path) || neural::is_gguf_name(path) ||
-           fs::is_regular_file(path / "model_index.json", ignored) ||
-           fs::is_regular_file(path / "adapter_config.json", ignored);
-}
 
 FoundModel describe_model(const fs::path& path) {
     FoundModel model;

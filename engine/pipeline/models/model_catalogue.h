@@ -19,10 +19,6 @@ struct FoundModel {
     std::string problem;  // what is missing or not supported, and what to do; empty where nothing is
 };
 
-/// True for weights by their file's name (COLMAP's binaries are none), and for a folder that holds a model or
-/// a LoRA by a file of its settings.
-bool names_model(const std::filesystem::path& path);
-
 /// Facts of one. Throws nothing, as find_models().
 FoundModel describe_model(const std::filesystem::path& path);
 
