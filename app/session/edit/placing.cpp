@@ -107,7 +107,9 @@ DocumentState Placing::placed(const edit::RearrangeSettings& settings, std::uint
     if (shadow != nullptr) {
         const auto light =
             pipeline::light_after(before_.current, *rows_, *shadow, shadow_maps(where), shadow_leaves(where));
-        add_changes(delta, light_delta(before_, light, id));
+        const SceneDelta ground = light_delta(before_, light, id);
+        node.changed_outside_label = ground.changed.size();
+        add_changes(delta, ground);
     }
     node.delta = std::make_shared<const SceneDelta>(std::move(delta));
     node.name = placing_text(settings);
