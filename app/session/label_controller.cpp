@@ -409,7 +409,7 @@ template <> void LabelController::on(const command::SetEditStrength& one) {
 }
 
 template <> void LabelController::on(const command::ExchangeVariation& one) {
-    const Variations* kept = workspace_.variations.of(one.id);
+    const EditVariations* kept = workspace_.variations.of(one.id);
     if (kept == nullptr || one.index >= kept->nodes.size() || !stack_is_free()) return;
     if (kept->applied(state().stack) == one.index) return;
     const EditNode& node = kept->nodes[one.index];
