@@ -14,6 +14,7 @@
 #include "engine/base/log.h"
 #include "engine/base/path_text.h"
 #include "engine/base/print.h"
+#include "engine/base/printable.h"
 #include "engine/base/staged_folder.h"
 #include "engine/edit/request/checked_request.h"
 #include "engine/edit/request/edit_method.h"
@@ -22,6 +23,7 @@
 #include "engine/pipeline/models/model_settings.h"
 #include "engine/pipeline/models/tuning_json.h"
 #include "engine/pipeline/report/edit_output.h"
+#include "engine/pipeline/report/views_to_draw.h"
 #include "engine/pipeline/run/edit_job.h"
 #include "engine/pipeline/run/preview_check.h"
 #include "engine/pipeline/run/variations.h"
@@ -44,6 +46,7 @@ struct EditOptions {
     bool no_cache = false;
     bool partly = false;
     bool keep_failed = false;
+    bool views_only = false;
     std::string scene_words;
     int variations = 1;
     CLI::App* command = nullptr;
@@ -120,6 +123,7 @@ void complete(EditOptions& options) {
             if (option->count() > 0) option->run_callback();
     }
     settle_server(*options.command, options.recipe.server);
+    give_loras_to_server(*options.command, options.recipe);
     if (options.recipe.job.scene.empty())
         throw Error(ErrorCode::InvalidArgument, "no scene is named", "give a scene file, --recipe or --demo");
     if (options.output.empty())
@@ -364,6 +368,24 @@ void run_steps(const EditOptions& options, const EditSteps& steps, CommandContex
     context.exit_code = SomeNotDone;
 }
 
+/// Writes the views that a server would draw, and ends.
+void write_views_only(const EditOptions& options, const CommandContext& context) {
+    StagedFolder folder(options.output, {"views.json", {"views.json", "views"}});
+    EditJob job(options.recipe, context.job(), answers(options));
+    job.locate();
+    require_search(job, options.output);
+    nlohmann::ordered_json report;
+    report["views"] = write_views(folder.path() / "views", views_to_draw(job));
+    report["files"] = folder.listing();
+    write_file(folder.path() / "views.json", json_text(report, 1) + "\n");
+    folder.commit();
+    if (options.json) return print_json(report, 2);
+    for (const auto& view : report["views"])
+        print("{:<24} {}\n", printable(view["view"].get<std::string>()),
+              (options.output / view["file"].get<std::string>()).string());
+    print("Paint over one, and give it as --target-picture VIEW=FILE.\n");
+}
+
 void run_edit_command(EditOptions& options, CommandContext& context) {
     complete(options);
     EditSteps steps;
@@ -380,6 +402,9 @@ void run_edit_command(EditOptions& options, CommandContext& context) {
         return;
     }
     if (steps.steps.size() > 1) {
+        if (options.views_only)
+            throw Error(ErrorCode::InvalidArgument, "views are written for one change, not for several",
+                        "make the changes one after another");
         if (options.variations > 1)
             throw Error(ErrorCode::InvalidArgument,
                         fmt::format("the sentence asks for {} changes, and variations are of one",
@@ -389,6 +414,7 @@ void run_edit_command(EditOptions& options, CommandContext& context) {
     }
     if (!steps.steps.empty()) options.recipe = recipe_of_step(options.recipe, steps.steps.front());
     options.recipe = with_words(std::move(options.recipe));
+    if (options.views_only) return write_views_only(options, context);
     if (options.variations > 1) return run_variations(options, context);
     refuse_own_folder(options.recipe.job.scene, options.output);
     EditJob job(options.recipe, context.job(), answers(options));
@@ -441,6 +467,12 @@ void add_edit_commands(CLI::App& app, CommandContext& context) {
     auto* edit_command = app.add_subcommand("edit", "Change a scene by one sentence");
     add_options(*edit_command, edit);
     add_server_options(*edit_command, edit->recipe.server);
+    edit_command
+        ->add_flag(
+            "--views-only", edit->views_only,
+            "Write the views that the server would draw to the folder views of --out, to paint over, and "
+            "end; no picture is sent")
+        ->group("Image server");
     edit_command->add_flag(
         "--gate,!--no-gate", edit->gate,
         "Method sds: first show what the model makes of four views, in evidence/gate_*.png, and warn when "

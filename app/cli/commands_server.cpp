@@ -49,7 +49,9 @@ std::string draw_test(const ServerOptions& options, remote::ImageServer& server,
     if (!views.facts().takes_mask) order.mask = {};
     auto drawn = server.redraw(order, job).picture;
     write_png(options.draw, drawn);
-    remote::ViewFrame frame{{}, order.picture, order.picture, mask, mask};
+    remote::ViewFrame frame;
+    frame.picture = frame.original = order.picture;
+    frame.mask = frame.sent_mask = mask;
     const auto checked = remote::check_answer(frame, std::move(drawn));
     return checked.note.empty() ? "the picture is as asked" : checked.note;
 }
@@ -68,6 +70,7 @@ void print_facts(const ViewServer& views) {
     print("masks       {}\nreferences  {}\nrepeats     {}\n", facts.takes_mask ? "yes" : "no",
           facts.references, facts.repeats ? "yes" : "no");
     for (const auto& model : facts.models) print("offers      {}\n", printable(model));
+    for (const auto& lora : facts.loras) print("LoRA        {}\n", printable(lora));
     for (const auto& note : facts.notes) print("note        {}\n", printable(note));
 }
 
@@ -80,6 +83,7 @@ void run_server_command(ServerOptions& options, const CommandContext& context) {
     if (options.json) {
         auto json = views.to_json();
         json["models"] = views.facts().models;
+        json["loras"] = views.facts().loras;
         json["notes"] = views.facts().notes;
         json["takes_mask"] = views.facts().takes_mask;
         json["references"] = views.facts().references;

@@ -8,17 +8,40 @@
 
 namespace gse::app {
 
+namespace {
+
+/// Names of their own: the address, and what is about views.
+std::string server_option_name(const std::string& field) {
+    if (field == "url") return "--server";
+    if (field == "target_picture" || field == "key_view") return option_name(field);
+    return "--server-" + option_name(field).substr(2);
+}
+
+}  // namespace
+
 void add_server_options(CLI::App& command, remote::ServerSettings& settings) {
     remote::ServerSettings::visit_fields(
         settings, [&](const char* name, auto& value, const char* help, const auto&... range) {
-            const bool address = std::string(name) == "url";
-            const auto option = address ? std::string("--server") : "--server-" + option_name(name).substr(2);
+            const auto option = server_option_name(name);
             add_field_option(command, option, value, help, range...)->group("Image server");
         });
 }
 
+void give_loras_to_server(const CLI::App& command, EditRecipe& recipe) {
+    if (!recipe.server.used() || command.get_option("--lora")->count() == 0) return;
+    auto& loras = recipe.server.lora;
+    if (command.get_option("--server-lora")->count() == 0) loras.clear();  // of a recipe
+    loras.insert(loras.end(), recipe.job.lora.begin(), recipe.job.lora.end());
+    recipe.job.lora.clear();
+}
+
 void settle_server(const CLI::App& command, remote::ServerSettings& settings) {
     const auto* option = command.get_option_no_throw("--server");
+    if (option != nullptr && !settings.used() &&
+        (!settings.target_picture.empty() || !settings.key_view.empty()))
+        throw Error(ErrorCode::InvalidArgument,
+                    "pictures of your own and a key view lead the views that an image server draws",
+                    "name a server (--server)");
     if (option == nullptr || settings.url == "none") settings = {};
     if (!settings.used() || option->count() > 0) return;
     throw Error(

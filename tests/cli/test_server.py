@@ -3,6 +3,7 @@ import json
 import math
 import os
 import pathlib
+import struct
 import subprocess
 import sys
 import unittest
@@ -20,6 +21,7 @@ import stand_in_pictures as pictures   # noqa: E402
 
 QUICK = ["--quality", "draft", "--turntable-frames", 0, "--server-side", 128, "--front", 0,
          "--views", 12]
+WHITE = .5 / .28209479177387814   # coefficient of degree 0
 
 
 class Server:
@@ -73,33 +75,132 @@ class Servers(ProgramTest):
 
     def rendered(self, scene, name):
         path = self.folder / name
-        process = run("render", scene, path, "--width", 128, "--height", 128)
+        process = run("render", scene, path, "--width", 256, "--height", 256)
         self.assertEqual(process.returncode, 0, process.stderr)
         return pictures.decode_png(path.read_bytes()).colour()
 
-    def test_the_scene_becomes_what_the_server_draws(self):
-        server = self.server(model="sd-v1-5")
+    def covered(self, out):
+        """Indices of the pixels that labelled splats cover wholly: they alone are drawn white."""
+        data = (out / "source.ply").read_bytes()
+        head, _, body = data.partition(b"end_header\n")
+        lines = head.decode().splitlines()
+        names = [line.split()[-1] for line in lines if line.startswith("property")]
+        count = next(int(line.split()[-1]) for line in lines if line.startswith("element vertex"))
+        self.assertEqual(len(body), 4 * len(names) * count)
+        rows = [list(row) for row in struct.iter_unpack(f"<{len(names)}f", body)]
+        for row in rows:
+            white = 1 if row[names.index("label")] > .5 else -1
+            for name in ("f_dc_0", "f_dc_1", "f_dc_2"):
+                row[names.index(name)] = white * WHITE
+        path = self.write("covered.ply", head + b"end_header\n" + b"".join(
+            struct.pack(f"<{len(names)}f", *row) for row in rows))
+        picture = self.rendered(path, "covered.png")
+        return [i for i in range(0, len(picture.data), 3) if picture.data[i] >= .95 * 255]
+
+    def psnr_inside(self, out):
+        """dB of the edited scene to what the stand-in's rule makes of the scene, inside the label."""
+        before, after = (self.rendered(path, name) for path, name in
+                         ((SCENE, "before.png"), (out / "scene.ply", "after.png")))
+        inside = self.covered(out)
+        self.assertGreater(len(inside), 300)
+        squares = 0
+        for i in inside:
+            truth = [max(before.data[i:i + 3]) * c / 255 for c in pictures.COLOURS["golden"]]
+            squares += sum((a - b) ** 2 for a, b in zip(after.data[i:i + 3], truth))
+        return 10 * math.log10(255 ** 2 * 3 * len(inside) / squares)
+
+    def test_the_scene_becomes_what_the_server_draws_over_every_protocol(self):
+        for kind, flavour, family, knobs in (("sdcpp", "sdserver", "sd15", {"model": "sd-v1-5"}),
+                                             ("webui", "a1111", "sd15", {}),
+                                             ("openai", "vllm", "editor", {}),
+                                             ("comfy", "comfy", "sd15", {})):
+            with self.subTest(kind):
+                server = self.server(flavour, **knobs)
+                out = self.folder / kind
+                process = self.edit(out, "--server", server.url, "--server-kind", kind)
+                self.assertEqual(process.returncode, 0, process.stderr)
+                report = json.loads((out / "report.json").read_text())
+                self.assertEqual(report["changed_outside_label"], 0)
+                self.assertEqual(report["server"]["kind"], kind)
+                self.assertEqual(report["server"]["requests"], len(server.drawings()))
+                self.assertEqual(report["server"]["family"], family)
+                psnr = self.psnr_inside(out)
+                print(f"{kind}: PSNR {psnr:.1f} dB inside the label")
+                self.assertGreaterEqual(psnr, 25)
+
+    def test_options_and_loras_go_to_the_server_and_into_recipe_and_report(self):
+        server = self.server("forge")
+        out = self.folder / "out"
+        process = self.edit(out, "--server", server.url, "--server-option", "scheduler=karras",
+                            "--server-option", "eta=0.5", "--lora", "bronze:0.8")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        for entry in server.drawings():
+            self.assertEqual(entry["json"]["scheduler"], "karras")
+            self.assertEqual(entry["json"]["eta"], .5)
+            self.assertIn("<lora:bronze:0.8>", entry["json"]["prompt"])
+        recipe = json.loads((out / "recipe.json").read_text())
+        self.assertEqual(recipe["server"]["option"], ["scheduler=karras", "eta=0.5"])
+        self.assertEqual(recipe["server"]["lora"], ["bronze:0.8"])
+        self.assertEqual(recipe["job"]["lora"], [])
+        report = json.loads((out / "report.json").read_text())
+        self.assertEqual(report["server"]["options"], ["scheduler=karras", "eta=0.5"])
+        self.assertEqual(report["server"]["lora"], ["bronze:0.8"])
+        asked = len(server.drawings())
+        for arguments, words in ((("--server-option", "width=8"), "set by the program"),
+                                 (("--server-option", "shceduler=karras"), "it takes sampler_name"),
+                                 (("--server-option", "token=abc"), "GSEDITPRO_SERVER_TOKEN"),
+                                 (("--lora", "brass"), "it has: bronze")):
+            refused = self.edit(self.folder / "no", "--server", server.url, *arguments)
+            self.assertEqual(refused.returncode, 2)
+            self.assert_one_sentence(refused, words)
+        self.assertEqual(len(server.drawings()), asked)
+
+    def test_a_server_with_little_memory_draws_smaller_pictures_and_it_is_told(self):
+        server = self.server(model="sd-v1-5", most_side=64)
         out = self.folder / "out"
         process = self.edit(out, "--server", server.url)
         self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertIn("ran out of memory: pictures are asked for at 64 x 64 pixels", process.stderr)
+        self.assertEqual(json.loads((out / "report.json").read_text())["server"]["smaller_side"], 64)
+        self.assertEqual(sum(entry["json"]["width"] == 128 for entry in server.drawings()), 1)
+
+    def test_a_view_becomes_the_artists_own_picture_and_the_others_follow_it(self):
+        server = self.server(model="sd-v1-5-inpainting")
+        listed = self.folder / "listed"
+        process = self.edit(listed, "--server", server.url, "--views-only")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertEqual(server.drawings(), [])
+        views = json.loads((listed / "views.json").read_text())["views"]
+        self.assertGreater(len(views), 2)
+        self.assertFalse((listed / "scene.ply").exists())
+        for view in views:
+            picture = pictures.decode_png((listed / view["file"]).read_bytes())
+            self.assertEqual((picture.width, picture.height), (128, 128))
+            self.assertIn(view["view"], process.stdout)
+        most = max(views, key=lambda view: view["share"])
+        seen = pictures.decode_png((listed / most["file"]).read_bytes()).colour()
+        painted = bytes(value for i in range(0, len(seen.data), 3)
+                        for value in (seen.data[i + 2], 0, max(seen.data[i:i + 3])))
+        own = self.write("own.png", pictures.encode_png(pictures.Picture(128, 128, 3, painted)))
+        out = self.folder / "out"
+        process = self.edit(out, "--server", server.url, "--target-picture", f"{most['view']}={own}")
+        self.assertEqual(process.returncode, 0, process.stderr)
         report = json.loads((out / "report.json").read_text())
+        self.assertEqual(report["server"]["target_pictures"], [most["view"]])
+        self.assertEqual(report["server"]["agreement"], "warp")
         self.assertEqual(report["changed_outside_label"], 0)
-        self.assertEqual(report["server"]["requests"], len(server.drawings()))
-        self.assertEqual(report["server"]["family"], "sd15")
-        before, after = (self.rendered(path, name) for path, name in
-                         ((SCENE, "before.png"), (out / "scene.ply", "after.png")))
-        squares = count = 0
-        for i in range(0, len(before.data), 3):
-            old, new = before.data[i:i + 3], after.data[i:i + 3]
-            if max(abs(a - b) for a, b in zip(old, new)) < 8:
-                continue
-            truth = [max(old) * c / 255 for c in pictures.COLOURS["golden"]]
-            squares += sum((a - b) ** 2 for a, b in zip(new, truth))
-            count += 3
-        self.assertGreater(count, 300)
-        print(f"{count // 3} pixels, PSNR {10 * math.log10(255 ** 2 * count / squares):.1f} dB")
-        # 23 dB: pixels that the label covers in part are among them.
-        self.assertLess(squares / count, 255 ** 2 / 10 ** 2.3)
+        small = self.write("small.png", pictures.encode_png(pictures.Picture(32, 32, 3, bytes(32 * 32 * 3))))
+        wide = self.write("wide.png", pictures.encode_png(pictures.Picture(128, 64, 3, bytes(128 * 64 * 3))))
+        for picture, words in ((f"nowhere={own}", "none of the views that are drawn"),
+                               (f"{most['view']}={wide}", "128 x 64 pixels"),
+                               (f"{most['view']}={small}", "32 x 32 pixels"),
+                               (f"{most['view']}={self.folder / 'missing.png'}", "missing.png"),
+                               ("nothing", "VIEW=FILE")):
+            refused = self.edit(self.folder / "no", "--server", server.url, "--target-picture", picture)
+            self.assertNotEqual(refused.returncode, 0, refused.stderr)
+            self.assertIn(words, refused.stderr)
+        alone = self.edit(self.folder / "no", "--target-picture", f"{most['view']}={own}")
+        self.assert_one_sentence(alone, "image server")
 
     def test_nothing_that_is_written_names_address_or_password(self):
         server = self.server()
@@ -184,6 +285,7 @@ class Servers(ProgramTest):
         self.assertEqual(facts["kind"], "sdcpp")
         self.assertEqual(facts["family"], "flux2-klein")
         self.assertTrue(facts["takes_mask"])
+        self.assertEqual(facts["loras"], ["bronze"])
         self.assertEqual(facts["drawn"], "the picture is as asked")
         self.assertEqual(pictures.decode_png(drawn.read_bytes()).width, 128)
         nobody = run("-q", "server", "http://127.0.0.1:9")

@@ -18,13 +18,15 @@ NODES = {
     "ReferenceLatent": ["conditioning", "latent"], "ConditioningZeroOut": ["conditioning"],
     "KSampler": ["model", "seed", "steps", "cfg", "sampler_name", "scheduler", "positive", "negative",
                  "latent_image", "denoise"],
+    "LoraLoader": ["model", "clip", "lora_name", "strength_model", "strength_clip"],
+    "LoraLoaderModelOnly": ["model", "lora_name", "strength_model"],
     "SaveImage": ["images"], "PreviewImage": ["images"], "PaidApi": ["image"],
 }
 OUTPUTS = {"SaveImage", "PreviewImage"}
 COMBOS = {"ckpt_name": ["stand-in.safetensors"], "unet_name": ["flux-2-klein-4b.safetensors"],
           "clip_name": ["qwen_3_4b.safetensors"], "vae_name": ["flux2-vae.safetensors"],
           "sampler_name": ["euler"], "scheduler": ["normal", "simple"], "channel": ["alpha", "red"],
-          "type": ["flux2"], "weight_dtype": ["default"]}
+          "lora_name": ["bronze.safetensors", "looks/oil paint.safetensors"], "type": ["flux2"], "weight_dtype": ["default"]}
 
 
 class Graph:
@@ -179,6 +181,11 @@ def work(handler, number, job):
             return
         graph = Graph(world, job["graph"])
         job["files"] = {}
+        if world.most_side and any(pictures.decode_png(world.uploads[node["inputs"]["image"]]).width
+                                   > world.most_side
+                                   for node in job["graph"].values() if node["class_type"] == "LoadImage"):
+            job["status"] = "memory"
+            return
         for key, node in job["graph"].items():
             if node["class_type"] in OUTPUTS:
                 job["files"][key] = graph.value(node["inputs"]["images"])
@@ -196,8 +203,9 @@ def history(handler, method, place, value):
     if fault == "job_lost":
         world.jobs.pop(number, None)
         job = None
-    if fault in ("execution_error", "execution_memory"):
-        words = "CUDA out of memory" if fault == "execution_memory" else "bad \x1b[31mthing"
+    short = fault == "execution_memory" or (job is not None and job["status"] == "memory")
+    if fault == "execution_error" or short:
+        words = "CUDA out of memory" if short else "bad \x1b[31mthing"
         return handler.send_json({number: {"outputs": {}, "status": {
             "status_str": "error", "completed": False, "messages": [["execution_start", {}], [
                 "execution_error", {"node_id": "3", "node_type": "KSampler", "exception_message": words,

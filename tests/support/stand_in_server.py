@@ -44,6 +44,8 @@ class World:
         self.fault, self.at, self.after, self.times = "", "draw", 0, -1
         self.rate, self.target, self.status, self.words, self.retry_after = 20, "", 0, "", ""
         self.draw_s, self.noise, self.drift = 0.0, 0, 0
+        self.unread = 0      # 1: bodies of drawings are not read
+        self.most_side = 0   # px that its memory does for; 0 = any
         self.edits = ""   # "red": what is red is edited where no mask says what
         self.password, self.model, self.prefix = "", "stand-in", ""
         self.queue_limit, self.new_comfy = 64, 0
@@ -153,6 +155,8 @@ class Handler(BaseHTTPRequestHandler):
         self.handle_request("GET", b"")
 
     def do_POST(self):
+        if self.world.unread and kind_of("POST", self.path) == "draw":
+            return faults.hang(self)
         try:
             self.handle_request("POST", self.read_body())
         except OSError:
@@ -307,6 +311,8 @@ class Handler(BaseHTTPRequestHandler):
         width, height = value.get("width", 512), value.get("height", 512)
         mask = mask_of(decoded(value.get("mask")))
         fault = self.fault
+        if 0 < self.world.most_side < width:
+            return faults.TRANSPORT["out_of_memory"](self)
         if fault.startswith("images_"):
             wrong = {"images_none": [], "images_blank": [""], "images_null": [None], "images_number": 3}
             return self.send_json({"images": wrong.get(fault), "info": ""})
@@ -359,6 +365,8 @@ class Handler(BaseHTTPRequestHandler):
         if flavour == "sdserver" and extra:
             values = json.loads(extra.group(1))
             seed, prompt = values.get("seed", seed), prompt.replace(extra.group(0), "")
+        if images and images[0] is not None and 0 < self.world.most_side < images[0].width:
+            return faults.TRANSPORT["out_of_memory"](self)
         if not images or images[0] is None:
             file = pictures.encode_png(pictures.unrelated(64, 64, seed))
         else:
@@ -403,8 +411,9 @@ class Handler(BaseHTTPRequestHandler):
         fault = self.fault
         answer = {key: job[key] for key in ("id", "kind", "status", "created")}
         answer["queue_position"] = 3 if job["status"] == "queued" else 0
-        if fault in ("failed", "failed_memory"):
-            words = "CUDA error: out of memory" if fault == "failed_memory" else "model \x1b[31mbroke\n<b>"
+        short = fault == "failed_memory" or job["status"] == "memory"
+        if fault == "failed" or short:
+            words = "CUDA error: out of memory" if short else "model \x1b[31mbroke\n<b>"
             return {**answer, "status": "failed", "error": {"code": "x", "message": words}}
         if fault == "cancelled":
             return {**answer, "status": "cancelled"}
@@ -448,6 +457,9 @@ class Handler(BaseHTTPRequestHandler):
                 return
             job["status"] = "generating"
             time.sleep(world.draw_s)
+            if 0 < world.most_side < value.get("width", 512):
+                job["status"] = "memory"
+                return
             seed = value.get("seed", 0)
             mask = mask_of(decoded(value.get("mask_image")))
             if picture is None:

@@ -256,6 +256,18 @@ std::string methods_table(const Json& edit) {
     return markdown_table(rows);
 }
 
+std::string servers_table(const Json& rows) {
+    std::vector<Cells> cells{{"agreement", "disagreement", "PSNR, dB", "rejected", "requests", "megapixels"}};
+    const auto number = [](const Json& value, int digits) {
+        return fmt::format("{:.{}f}", value.get<double>(), digits);
+    };
+    for (const auto& row : rows)
+        cells.push_back({row["agreement"].get<std::string>(), number(row["disagreement"], 4),
+                         number(row["psnr_db"], 1), number(row["rejected"], 1), number(row["requests"], 1),
+                         number(row["megapixels"], 2)});
+    return markdown_table(cells);
+}
+
 std::string stability_table(const Json& stability) {
     std::vector<Cells> rows{{"cause", "scenes", "picture: median", "worst", "gradient: median", "worst",
                              "not finite", "other bits"}};

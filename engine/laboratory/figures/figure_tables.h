@@ -28,6 +28,8 @@ std::string searches_table(const nlohmann::ordered_json& searches, double least_
 std::string encoder_table(const nlohmann::ordered_json& clip);
 /// A line per method and setting. `edit`: edit.json of `bench edit`.
 std::string methods_table(const nlohmann::ordered_json& edit);
+/// A line per way to make the views of a server agree. `rows`: the JSON of `bench server`.
+std::string servers_table(const nlohmann::ordered_json& rows);
 /// A line per cause of trouble. `stability`: stability.json of `bench stability`.
 std::string stability_table(const nlohmann::ordered_json& stability);
 

@@ -19,10 +19,13 @@
 #include "engine/laboratory/bench/raster/speed_bench.h"
 #include "engine/laboratory/bench/raster/stability_bench.h"
 #include "engine/laboratory/bench/search_bench.h"
+#include "engine/laboratory/bench/server_bench.h"
 #include "engine/laboratory/eval/eval_run.h"
 #include "engine/laboratory/eval/real/real_eval.h"
 #include "engine/laboratory/figures/figure_tables.h"
 #include "engine/laboratory/figures/real_tables.h"
+#include "engine/laboratory/figures/reliability_table.h"
+#include "engine/pipeline/models/installed.h"
 #include "engine/pipeline/models/recipe_model.h"
 
 namespace gse::bench {
@@ -31,7 +34,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-constexpr std::array Suites{"edits", "words", "searches", "encoder", "methods", "stability", "speed", "real"};
+constexpr std::array Suites{"edits",   "words",     "searches", "encoder", "methods",
+                            "servers", "stability", "speed",    "real"};
 
 /// An evaluation of the page: its name and how it departs from the standard one.
 struct Evaluation {
@@ -69,6 +73,7 @@ constexpr Bench NoGround{"search_no_ground.json",
                          "gseditpro-lab bench search --scenes 8 --seed 65 --no-ground"};
 constexpr Bench Encoder{"clip.json", "gseditpro-lab bench clip"};
 constexpr Bench Methods{"methods/edit.json", "gseditpro-lab bench edit"};
+constexpr Bench Servers{"server.json", "gseditpro-lab bench server --side 192"};
 constexpr Bench Stability{"stability/stability.json", "gseditpro-lab bench stability"};
 constexpr Bench Speed{"speed.md", "gseditpro-lab bench speed"};
 constexpr Bench Machine{"machine.json", ""};
@@ -89,8 +94,8 @@ public:
     }
 
     std::string text() {
-        const auto sections =
-            edits() + words() + searches() + encoder() + methods() + stability() + speed() + scans();
+        const auto sections = edits() + words() + reliability() + searches() + encoder() + methods() +
+                              servers() + stability() + speed() + scans();
         return head() + sections;
     }
 
@@ -194,6 +199,12 @@ private:
                        seeds_text());
     }
 
+    std::string reliability() {
+        return section("How right a label is, by its confidence", command_of(Standard),
+                       reliability_table(evaluations(Standard, "edits"), scans_report()),
+                       seeds_text() + ", and `gseditpro-lab eval --real SUITE` by word");
+    }
+
     std::string searches() {
         const auto of = [&](const Bench& bench, std::uint64_t seed, bool ground) {
             SearchBenchParameters parameters;
@@ -225,6 +236,16 @@ private:
                        bench_table(Methods, "methods", methods_table, [&] {
                            fs::create_directories(place(Methods).parent_path());
                            return bench_edit({}, run_.settings, place(Methods).parent_path(), job_);
+                       }));
+    }
+
+    std::string servers() {
+        return section("Views of a server that contradicts itself", Servers.command,
+                       bench_table(Servers, "servers", servers_table, [&] {
+                           ServerBenchParameters parameters;
+                           parameters.side = 192;
+                           return agreement_json(bench_server(
+                               pipeline::assets_path() / "scenes/bear/scene.ply", parameters, job_));
                        }));
     }
 

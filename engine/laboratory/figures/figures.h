@@ -12,14 +12,14 @@ namespace gse::bench {
 
 struct FiguresParameters {
     std::string seeds = "1 2";
-    std::string suites = "edits words searches encoder methods stability speed real";
+    std::string suites = "edits words searches encoder methods servers stability speed real";
     std::string real;
 
     template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         f("seeds", self.seeds, "Seeds of the evaluations, with spaces between.");
         f("suites", self.suites,
-          "Suites to measure: edits words searches encoder methods stability speed real. Results of the "
-          "others are taken where the folder has them.");
+          "Suites to measure: edits words searches encoder methods servers stability speed real. Results of "
+          "the others are taken where the folder has them.");
         f("real", self.real,
           "Suite of scanned scenes with truth made by hand (JSON), as eval takes it; empty = it is not "
           "measured.");

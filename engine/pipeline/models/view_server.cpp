@@ -4,13 +4,16 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "engine/base/content_hash.h"
+#include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/log.h"
 #include "engine/base/printable.h"
 #include "engine/pipeline/models/remote_loader.h"
 #include "engine/pipeline/models/server_instruction.h"
+#include "engine/pipeline/recipe/target_pictures.h"
 #include "engine/remote/api/server_kind.h"
 #include "engine/remote/api/server_url.h"
 #include "engine/remote/views/difference_source.h"
@@ -33,10 +36,27 @@ remote::ModelFamily family_for(const remote::ServerSettings& settings, const rem
     return family;
 }
 
+/// Takes the views of the first round in place of drawing them.
+class HandedOutViews final : public edit::MultiViewEditor {
+public:
+    explicit HandedOutViews(std::vector<edit::EditView>& views) : views_(views) {}
+    edit::EditedViews edit(const std::vector<edit::EditView>& views, const edit::EditViewsRequest&,
+                           const JobControl&) override {
+        views_ = views;
+        throw Error(ErrorCode::Cancelled, "the views are handed out");
+    }
+    bool agrees_on_colour() const override { return true; }  // no view is drawn before the others
+
+private:
+    std::vector<edit::EditView>& views_;
+};
+
 /// Inputs of the pictures that no order holds.
 std::string identity_of(const remote::ServerSettings& settings) {
     ContentHash hash;
     hash.text(settings.model);
+    hash.texts(settings.lora);
+    hash.texts(settings.option);
     if (!settings.workflow.empty()) hash.text(read_file(settings.workflow));
     return hash.key().hex();
 }
@@ -45,13 +65,20 @@ std::string identity_of(const remote::ServerSettings& settings) {
 
 ViewServer::ViewServer(std::shared_ptr<remote::ImageServer> server, const remote::ServerSettings& settings,
                        std::shared_ptr<AnswerCache> cache, const JobControl& job)
+    : ViewServer(std::move(server), settings, std::move(cache), job, {}) {}
+
+ViewServer::ViewServer(std::shared_ptr<remote::ImageServer> server, const remote::ServerSettings& settings,
+                       std::shared_ptr<AnswerCache> cache, const JobControl& job,
+                       const std::vector<remote::OwnPicture>& own)
     : server_(std::move(server)), cache_(std::move(cache)),
       source_(std::make_unique<remote::PictureSource>(*server_, server_->probe(job), identity_of(settings),
                                                       cache_.get())),
-      drawing_(std::make_unique<remote::RemoteDrawing>()) {
+      drawing_(std::make_unique<remote::RemoteDrawing>()), loras_(settings.lora), options_(settings.option) {
     drawing_->family = family_for(settings, facts());
-    drawing_->agreement =
-        remote::suited_agreement(remote::agreement_of(settings.agreement), drawing_->family, facts());
+    drawing_->own = own;
+    drawing_->key_view = settings.key_view;
+    drawing_->agreement = remote::suited_agreement(remote::agreement_of(settings.agreement), drawing_->family,
+                                                   facts(), !drawing_->own.empty());
     drawing_->side = remote::sent_side(settings.side, drawing_->family.side);
     log::info("the views are drawn by {} ({}): family {}, agreement {}, {} x {} pixels", facts().product,
               facts().model.empty() ? "model not told" : printable(facts().model), drawing_->family.name,
@@ -70,6 +97,7 @@ const remote::ServerUse& ViewServer::use() const { return source_->use(); }
 std::unique_ptr<edit::MultiViewEditor> ViewServer::editor(const edit::CheckedRequest& request,
                                                           edit::EditMode mode,
                                                           const std::string& negative_prompt) {
+    if (handed_out_ != nullptr) return std::make_unique<HandedOutViews>(*handed_out_);
     return std::make_unique<remote::RemoteViewEditor>(*source_, told(request, mode, negative_prompt));
 }
 
@@ -93,9 +121,13 @@ remote::RemoteDrawing ViewServer::told(const edit::CheckedRequest& request, edit
 
 std::string ViewServer::key() const {
     const auto& family = drawing_->family;
-    return fmt::format("{} {} {} {} {} {} {} {} {}", remote::server_kind_name(facts().kind), facts().product,
-                       facts().model, family.name, family.steps, family.guidance_scale, family.strength,
-                       remote::agreement_name(drawing_->agreement), drawing_->side);
+    ContentHash own;
+    for (const auto& picture : drawing_->own) own.text(picture.view), own.image(picture.picture);
+    own.text(drawing_->key_view);
+    return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {}", remote::server_kind_name(facts().kind),
+                       facts().product, facts().model, family.name, family.steps, family.guidance_scale,
+                       family.strength, remote::agreement_name(drawing_->agreement), drawing_->side,
+                       fmt::join(loras_, " "), fmt::join(options_, " "), own.key().hex());
 }
 
 nlohmann::ordered_json ViewServer::to_json() const {
@@ -110,11 +142,16 @@ nlohmann::ordered_json ViewServer::to_json() const {
                                 {"steps", family.steps},
                                 {"guidance", family.guidance_scale},
                                 {"strength", family.strength}};
+    for (const auto& own : drawing_->own) json["target_pictures"].push_back(own.view);
+    if (!drawing_->key_view.empty()) json["key_view"] = drawing_->key_view;
+    if (!loras_.empty()) json["lora"] = loras_;
+    if (!options_.empty()) json["options"] = options_;
     const auto& use = source_->use();
     json["requests"] = use.requests;
     json["cached_requests"] = use.cached;
     json["megapixels"] = use.megapixels;
     json["seconds"] = use.seconds;
+    if (use.smaller_side > 0) json["smaller_side"] = use.smaller_side;
     return json;
 }
 
@@ -125,6 +162,8 @@ std::shared_ptr<remote::ImageServer> connect_server(const remote::ServerSettings
     if (settings.kind != "auto") address.kind = remote::server_kind_of(settings.kind);
     address.model = settings.model;
     address.workflow = settings.workflow;
+    address.loras = remote::parse_server_loras(settings.lora);
+    address.options = remote::parse_server_options(settings.option);
     address.ca_file = settings.ca;
     address.allow_paid_nodes = settings.paid_nodes;
     return remote_api().connect(address, job);
@@ -136,8 +175,9 @@ std::shared_ptr<ViewServer> open_view_server(const remote::ServerSettings& setti
     const auto url = remote::parse_server_url(settings.url).url;
     log::info("pictures of the scene, their masks and the sentence go to {}{}, which may keep them",
               url.nickname(), url.encrypted() ? "" : " (not encrypted)");
+    const auto own = read_target_pictures(settings);
     auto server = connect_server(settings, job);
-    return std::make_shared<ViewServer>(std::move(server), settings, std::move(cache), job);
+    return std::make_shared<ViewServer>(std::move(server), settings, std::move(cache), job, own);
 }
 
 edit::EditPlan plan_at_side(edit::EditPlan plan, int side) {

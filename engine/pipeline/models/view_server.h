@@ -3,6 +3,8 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "engine/base/answer_cache.h"
 #include "engine/edit/interfaces/edit_plan.h"
@@ -16,6 +18,7 @@ namespace gse::remote {
 class PictureSource;
 enum class Agreement;
 struct ModelFamily;
+struct OwnPicture;
 struct RemoteDrawing;
 struct ServerUse;
 
@@ -31,6 +34,10 @@ public:
     /// (InvalidArgument) for settings that are none or do not fit the server.
     ViewServer(std::shared_ptr<remote::ImageServer> server, const remote::ServerSettings& settings,
                std::shared_ptr<AnswerCache> cache, const JobControl& job);
+    /// `own`: pictures of the artist's own.
+    ViewServer(std::shared_ptr<remote::ImageServer> server, const remote::ServerSettings& settings,
+               std::shared_ptr<AnswerCache> cache, const JobControl& job,
+               const std::vector<remote::OwnPicture>& own);
     ~ViewServer();
 
     const remote::ServerFacts& facts() const;
@@ -43,6 +50,9 @@ public:
     /// Draws the views of a request in that mode. The server stays alive.
     std::unique_ptr<edit::MultiViewEditor> editor(const edit::CheckedRequest& request, edit::EditMode mode,
                                                   const std::string& negative_prompt);
+    /// From now on the views of a round are handed out in place of being drawn, and the edit ends with Error
+    /// (Cancelled). Null: they are drawn again.
+    void hand_out(std::vector<edit::EditView>* views) { handed_out_ = views; }
     /// Finds the thing of a request in pictures by what the server changes in them: the edit, or (`paints`)
     /// the thing's colour. The server stays alive. Throws Error as remote::DifferenceSource.
     std::unique_ptr<edit::AttentionSource> differences(const edit::CheckedRequest& request,
@@ -63,6 +73,8 @@ private:
     std::shared_ptr<AnswerCache> cache_;
     std::unique_ptr<remote::PictureSource> source_;
     std::unique_ptr<remote::RemoteDrawing> drawing_;  // without its text
+    std::vector<edit::EditView>* handed_out_ = nullptr;
+    const std::vector<std::string> loras_, options_;  // of the server
 };
 
 /// The server at the settings' address. Name and password that stand in the address are kept in the user's

@@ -31,6 +31,14 @@ std::string lora_beside(const std::string& text, const std::filesystem::path& fo
     return neural::lora_text(lora);
 }
 
+/// "VIEW=FILE" with the file in that folder.
+std::string target_beside(const std::string& text, const std::filesystem::path& folder) {
+    auto target = remote::target_picture_of(text);
+    target.file = path_of_text(target.file.string());
+    if (!target.file.is_absolute()) target.file = std::filesystem::weakly_canonical(folder / target.file);
+    return target.view + "=" + target.file.string();
+}
+
 }  // namespace
 
 nlohmann::ordered_json recipe_to_json(const EditRecipe& recipe) {
@@ -52,6 +60,8 @@ nlohmann::ordered_json recipe_to_json(const EditRecipe& recipe) {
         json["server"]["url"] = remote::without_secrets(recipe.server.url);
         for (const char* file : {"workflow", "ca"})
             json["server"][file] = text_of_path(json["server"][file].get<std::string>());
+        for (auto& target : json["server"]["target_picture"])
+            target = text_of_path(target.get<std::string>());
     }
     return json;
 }
@@ -83,6 +93,7 @@ EditRecipe recipe_from_json(const nlohmann::ordered_json& json, const std::files
     recipe.use_dreambooth = read("dreambooth", recipe.dreambooth);
     read("server", recipe.server);
     for (auto& lora : recipe.job.lora) lora = lora_beside(path_of_text(lora), folder);
+    for (auto& target : recipe.server.target_picture) target = target_beside(target, folder);
     for (auto* name :
          {&recipe.job.scene, &recipe.job.cameras, &recipe.job.model, &recipe.job.taesd, &recipe.job.segmenter,
           &recipe.job.text_segmenter, &recipe.server.workflow, &recipe.server.ca}) {

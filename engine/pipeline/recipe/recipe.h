@@ -51,8 +51,8 @@ struct JobParameters {
         f("model", self.model, "Diffusers folder or .safetensors checkpoint; empty = the starter model.");
         f("lora", self.lora,
           "LoRA that is merged into the model, as FILE or FILE:strength; of kohya, LyCORIS (LoCon), PEFT or "
-          "diffusers. May be given "
-          "several times.");
+          "diffusers. May be given several times. With --server, a LoRA of the server, as NAME or "
+          "NAME:weight.");
         f("taesd", self.taesd,
           "Folder of a tiny autoencoder (TAESD), for all pictures but the last; empty = \"taesd\" beside the "
           "weights, \"none\" = not used.");

@@ -6,9 +6,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "engine/remote/api/image_server.h"
 #include "engine/remote/api/server_kind.h"
+#include "engine/remote/api/server_lora.h"
+#include "engine/remote/api/server_option.h"
 
 namespace gse::remote {
 
@@ -32,11 +35,13 @@ struct ServerTimes {
 /// A server as the artist named it.
 struct ServerAddress {
     std::string url;
-    std::optional<ServerKind> kind = {};  // none = found out
-    std::string model = {};               // to draw with; empty = the one that is loaded
-    std::filesystem::path workflow = {};  // ComfyUI: a file in API format; empty = a bundled one that fits
-    std::filesystem::path ca_file = {};   // certificates to trust beside the system's; empty = none
-    bool allow_paid_nodes = false;        // ComfyUI: nodes that send pictures on and cost money
+    std::optional<ServerKind> kind = {};     // none = found out
+    std::string model = {};                  // to draw with; empty = the one that is loaded
+    std::filesystem::path workflow = {};     // ComfyUI: a file in API format; empty = a bundled one that fits
+    std::filesystem::path ca_file = {};      // certificates to trust beside the system's; empty = none
+    std::vector<ServerOption> options = {};  // of every request, beside what an order holds
+    std::vector<ServerLora> loras = {};      // of the server, to draw with
+    bool allow_paid_nodes = false;           // ComfyUI: nodes that send pictures on and cost money
     ServerTimes times = {};
 };
 

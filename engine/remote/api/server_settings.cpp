@@ -18,6 +18,24 @@ ServerSearch server_search_of(const std::string& name) {
                 "name auto, differences, paint or none");
 }
 
+TargetPicture target_picture_of(const std::string& text) {
+    const auto equals = text.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("\"{}\" names no picture of a view", printable(text)),
+                    "write it as VIEW=FILE; --views-only lists the views");
+    return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+std::string file_name_of_view(const std::string& view) {
+    std::string name = view;
+    for (char& c : name) {
+        const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+        if (!plain && c != '.' && c != '-' && c != '_') c = '_';
+    }
+    return name;
+}
+
 std::string without_secrets(std::string_view url) {
     url = url.substr(0, url.find_first_of("?#"));
     const auto scheme = url.find("://");

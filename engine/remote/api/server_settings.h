@@ -1,8 +1,10 @@
 // Settings of a server that draws the views of an edit.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "engine/base/fields.h"
 
@@ -21,6 +23,10 @@ struct ServerSettings {
     int steps = 0;
     double guidance = 0;
     double strength = 0;
+    std::vector<std::string> lora;
+    std::vector<std::string> option;
+    std::vector<std::string> target_picture;
+    std::string key_view;
     std::string ca;
     bool paid_nodes = false;
 
@@ -51,6 +57,20 @@ struct ServerSettings {
         f("steps", self.steps, "Denoising steps at the server; 0 = the family's.", Range{0, 200});
         f("guidance", self.guidance, "Guidance scale at the server; 0 = the family's.", Range{0, 50});
         f("strength", self.strength, "Strength of redrawing at the server; 0 = the family's.", Range{0, 1});
+        f("lora", self.lora,
+          "LoRA of the server, as NAME or NAME:weight; may be given several times. With --server, --lora "
+          "means "
+          "the same.");
+        f("option", self.option,
+          "Setting of the server's own, as NAME=VALUE; may be given several times. NAME is a field of its "
+          "request (\"scheduler\", \"sample_params.flow_shift\"), or with ComfyUI an input of a node "
+          "(\"KSampler.sampler_name\").");
+        f("target_picture", self.target_picture,
+          "Picture of your own that a view shall look like, as VIEW=FILE; may be given several times. The "
+          "other "
+          "views follow it. --views-only writes the views to paint over.");
+        f("key_view", self.key_view,
+          "View that is drawn first and that others follow; empty = the one with the most to change.");
         f("ca", self.ca, "File of certificates to trust beside the system's.");
         f("paid_nodes", self.paid_nodes,
           "Let a workflow use nodes that send the pictures on and cost money.");
@@ -64,6 +84,19 @@ enum class ServerSearch { Auto, Differences, None, Paint };
 
 /// Search of that name. Throws Error (InvalidArgument) that lists the names.
 ServerSearch server_search_of(const std::string& name);
+
+/// Picture of an artist's own for a view.
+struct TargetPicture {
+    std::string view;
+    std::filesystem::path file;
+};
+
+/// Picture of a text "VIEW=FILE". Throws Error (InvalidArgument) for another form.
+TargetPicture target_picture_of(const std::string& text);
+
+/// Name of a view as files have it: letters, digits, ".", "-" and "_"; others become "_". Options take
+/// either.
+std::string file_name_of_view(const std::string& view);
 
 /// Address without user name, password, query and fragment.
 std::string without_secrets(std::string_view url);

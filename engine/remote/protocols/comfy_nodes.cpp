@@ -12,7 +12,6 @@ namespace gse::remote {
 namespace {
 
 constexpr std::size_t NodeBytes = std::size_t{4} << 20;
-constexpr std::size_t MostNamed = 8;
 
 nlohmann::json node_facts(ServerLink& link, const std::string& kind, const JobControl& job) {
     Ask how;
@@ -39,13 +38,6 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-std::string listed(const std::vector<std::string>& names) {
-    std::string list;
-    for (std::size_t i = 0; i < std::min(names.size(), MostNamed); ++i)
-        list += (i > 0 ? ", " : "") + names[i];
-    return shown(list + (names.size() > MostNamed ? ", ..." : ""));
-}
-
 Error unknown_model(const ServerLink& link, const std::string& name,
                     const std::vector<std::string>& choices) {
     if (choices.empty())
@@ -66,11 +58,6 @@ std::string chosen_model(const ServerLink& link, const std::string& in_workflow,
     if (choices.size() == 1 && name.empty()) return choices[0];
     if (!has(choices, name)) throw unknown_model(link, name, choices);
     return name;
-}
-
-bool is_set_by_us(const Workflow& workflow, const std::string& node, const std::string& input) {
-    return std::any_of(workflow.places.begin(), workflow.places.end(),
-                       [&](const auto& place) { return place.node == node && place.input == input; });
 }
 
 class NodeCheck {
@@ -116,7 +103,7 @@ public:
     void check_choices() const {
         for (const auto& [number, node] : workflow_.graph.items())
             for (const auto& [input, value] : node["inputs"].items()) {
-                if (!value.is_string() || is_set_by_us(workflow_, number, input)) continue;
+                if (!value.is_string() || workflow_.sets(number, input)) continue;
                 const auto choices = choices_of(facts_.at(text_of(node, "class_type")), input);
                 if (!choices.empty() && !has(choices, value.get<std::string>()))
                     throw unknown_model(link_, value.get<std::string>(), choices);

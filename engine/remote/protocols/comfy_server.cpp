@@ -13,7 +13,10 @@
 #include "engine/remote/protocols/comfy_nodes.h"
 #include "engine/remote/protocols/order_checks.h"
 #include "engine/remote/protocols/server_error.h"
+#include "engine/remote/protocols/server_loras.h"
 #include "engine/remote/workflow/workflow_files.h"
+#include "engine/remote/workflow/workflow_loras.h"
+#include "engine/remote/workflow/workflow_options.h"
 
 namespace gse::remote {
 namespace {
@@ -74,6 +77,13 @@ void check_messages(const nlohmann::json& status, const ServerUrl& url) {
     if (text_of(status, "status_str") == "error") throw work_error(url, "");
 }
 
+/// Order with a mask and nothing else, as most are.
+RedrawOrder usual_order() {
+    RedrawOrder order;
+    order.mask = Image(1, 1, 1, 1);
+    return order;
+}
+
 /// Place of a job in a list of the queue; -1 = not in it.
 int place_in(const nlohmann::json& list, const std::string& id) {
     if (!list.is_array()) return -1;
@@ -86,7 +96,8 @@ int place_in(const nlohmann::json& list, const std::string& id) {
 
 ComfyServer::ComfyServer(std::unique_ptr<ServerLink> link, const ServerAddress& address)
     : link_(std::move(link)), workflow_(address.workflow), wanted_model_(address.model),
-      paid_nodes_(address.allow_paid_nodes), client_(unique_id()) {}
+      wanted_loras_(address.loras), options_(address.options), paid_nodes_(address.allow_paid_nodes),
+      client_(unique_id()) {}
 
 ServerFacts ComfyServer::probe(const JobControl& job) {
     const auto stats = link_->ask_json(link_->get("/system_stats"), {}, job);
@@ -102,6 +113,7 @@ ServerFacts ComfyServer::probe(const JobControl& job) {
     const auto unets = offered_names(*link_, "UNETLoader", "unet_name", job);
     facts.models.insert(facts.models.end(), unets.begin(), unets.end());
     facts.loras = offered_names(*link_, "LoraLoader", "lora_name", job);
+    choose_loras(facts.loras);
     if (!workflow_.empty() && !is_bundled_workflow(workflow_)) {
         const auto& workflow = workflow_for({}, job);
         facts.references = workflow.count(WorkflowRole::Reference);
@@ -109,9 +121,21 @@ ServerFacts ComfyServer::probe(const JobControl& job) {
         facts.repeats = workflow.find(WorkflowRole::Seed) != nullptr;
         facts.notes = workflow.table();
         facts.model = model_;
-    } else if (facts.models.size() == 1) facts.model = facts.models[0];
+    } else {
+        auto fits = load_workflow(bundled_workflow_for(usual_order(), workflow_.string()));
+        set_inputs(fits, options_);  // said before the first picture
+        if (facts.models.size() == 1) facts.model = facts.models[0];
+    }
     if (!wanted_model_.empty()) facts.model = wanted_model_;
     return facts_ = facts;
+}
+
+void ComfyServer::choose_loras(const std::vector<std::string>& names) {
+    std::vector<OfferedLora> offered;
+    for (const auto& name : names) offered.push_back({name, name});
+    loras_.clear();
+    for (const auto& lora : chosen_loras(wanted_loras_, offered, link_->url()))
+        loras_.emplace_back(lora.name, lora.weight);
 }
 
 const Workflow& ComfyServer::workflow_for(const RedrawOrder& order, const JobControl& job) {
@@ -119,6 +143,8 @@ const Workflow& ComfyServer::workflow_for(const RedrawOrder& order, const JobCon
     const auto name = bundled ? bundled_workflow_for(order, workflow_.string()) : workflow_.string();
     if (loaded_ && loaded_name_ == name) return *loaded_;
     auto workflow = load_workflow(name);
+    set_inputs(workflow, options_);
+    add_lora_loaders(workflow, loras_);
     model_ = check_nodes(*link_, workflow, wanted_model_, paid_nodes_, job);
     loaded_name_ = name;
     loaded_ = std::move(workflow);

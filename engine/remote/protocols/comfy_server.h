@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "engine/remote/api/image_server.h"
 #include "engine/remote/protocols/server_link.h"
@@ -19,6 +21,7 @@ public:
     RedrawnPicture redraw(const RedrawOrder& order, const JobControl& job) override;
 
 private:
+    void choose_loras(const std::vector<std::string>& names);
     /// The workflow for an order, checked against the nodes and models that the server has.
     const Workflow& workflow_for(const RedrawOrder& order, const JobControl& job);
     /// Uploads the pictures of an order; gives the values with the names that they have there.
@@ -37,12 +40,15 @@ private:
     std::unique_ptr<ServerLink> link_;
     const std::filesystem::path workflow_;  // of the artist, or "edit"; empty = what fits
     const std::string wanted_model_;
+    const std::vector<ServerLora> wanted_loras_;
+    const std::vector<ServerOption> options_;
     const bool paid_nodes_;
     const std::string client_;
     std::string upload_type_ = "temp";
     std::string loaded_name_ = {};
     std::optional<Workflow> loaded_ = {};
     std::string model_ = {};
+    std::vector<std::pair<std::string, double>> loras_ = {};  // names as the server has them, weights
     ServerFacts facts_ = {};
 };
 

@@ -24,10 +24,9 @@ std::optional<Credential> credential_for(const TypedUrl& typed) {
 std::unique_ptr<ImageServer> server_of(const DetectedServer& found, std::unique_ptr<ServerLink> link,
                                        const ServerAddress& address) {
     switch (found.kind) {
-        case ServerKind::SdCpp: return std::make_unique<SdCppServer>(std::move(link), address.model);
-        case ServerKind::Webui:
-            return std::make_unique<WebuiServer>(std::move(link), found.product, address.model);
-        case ServerKind::OpenAi: return std::make_unique<OpenAiServer>(std::move(link), address.model);
+        case ServerKind::SdCpp: return std::make_unique<SdCppServer>(std::move(link), address);
+        case ServerKind::Webui: return std::make_unique<WebuiServer>(std::move(link), found.product, address);
+        case ServerKind::OpenAi: return std::make_unique<OpenAiServer>(std::move(link), address);
         case ServerKind::Comfy: return std::make_unique<ComfyServer>(std::move(link), address);
     }
     throw Error(ErrorCode::InvalidArgument, "this protocol is not known");

@@ -5,6 +5,7 @@
 
 #include "engine/base/json.h"
 #include "engine/remote/picture/picture_codec.h"
+#include "engine/remote/protocols/request_options.h"
 #include "engine/remote/protocols/sdcpp_server.h"
 
 namespace gse::remote {
@@ -19,16 +20,18 @@ HttpPart picture_part(const std::string& name, std::string file) {
 std::string plain_number(double value) { return fmt::format("{}", value); }
 
 /// Settings that sd-server reads inside the prompt, on one line.
-std::string sd_server_prompt(const RedrawOrder& order) {
+std::string sd_server_prompt(const RedrawOrder& order, const OpenAiExtras& extras) {
     nlohmann::json guidance{{"txt_cfg", order.guidance_scale}};
     if (order.distilled_guidance > 0) guidance["distilled_guidance"] = order.distilled_guidance;
     nlohmann::json sampling{{"sample_steps", steps_to_ask_of_levels(order.steps, order.strength)},
                             {"guidance", guidance}};
     if (!order.sampler.empty()) sampling["sample_method"] = order.sampler;
-    const nlohmann::json settings{{"seed", order.seed},
-                                  {"strength", order.strength},
-                                  {"negative_prompt", order.negative_prompt},
-                                  {"sample_params", sampling}};
+    nlohmann::json settings{{"seed", order.seed},
+                            {"strength", order.strength},
+                            {"negative_prompt", order.negative_prompt},
+                            {"sample_params", sampling}};
+    if (!extras.loras.empty()) settings["lora"] = lora_list(extras.loras);
+    add_options(settings, extras.options);
     return order.prompt + " <sd_cpp_extra_args>" + json_text(settings) + "</sd_cpp_extra_args>";
 }
 
@@ -64,18 +67,23 @@ std::string openai_product_name(OpenAiProduct product) {
     return {};
 }
 
-std::vector<HttpPart> openai_parts(const RedrawOrder& order, OpenAiProduct product,
-                                   const std::string& model) {
+std::vector<HttpPart> openai_parts(const RedrawOrder& order, OpenAiProduct product, const std::string& model,
+                                   const OpenAiExtras& extras) {
     std::vector<HttpPart> parts;
+    const bool in_prompt = product == OpenAiProduct::SdServer;
     if (!model.empty()) parts.push_back(text_part("model", model));
-    parts.push_back(
-        text_part("prompt", product == OpenAiProduct::SdServer ? sd_server_prompt(order) : order.prompt));
+    parts.push_back(text_part("prompt", in_prompt ? sd_server_prompt(order, extras) : order.prompt));
     parts.push_back(text_part("n", "1"));
     parts.push_back(text_part("size", fmt::format("{}x{}", order.picture.width, order.picture.height)));
     if (product != OpenAiProduct::OpenAi) parts.push_back(text_part("response_format", "b64_json"));
     if (product == OpenAiProduct::OpenAi) parts.push_back(text_part("input_fidelity", "high"));
     parts.push_back(text_part("output_format", "png"));
     if (product == OpenAiProduct::Vllm) add_vllm_fields(parts, order);
+    for (const auto& option : extras.options) {
+        if (in_prompt) break;
+        std::erase_if(parts, [&](const auto& part) { return part.name == option.name; });
+        parts.push_back(text_part(option.name, option.value));
+    }
     add_pictures(parts, order, product);
     return parts;
 }

@@ -6,6 +6,7 @@
 
 #include "engine/remote/api/image_server.h"
 #include "engine/remote/http/http_types.h"
+#include "engine/remote/protocols/server_loras.h"
 
 namespace gse::remote {
 
@@ -14,7 +15,14 @@ enum class OpenAiProduct { SdServer, Vllm, OpenAi, Other };
 
 std::string openai_product_name(OpenAiProduct product);
 
-/// Parts of POST images/edits. `model` is left away where it is empty.
-std::vector<HttpPart> openai_parts(const RedrawOrder& order, OpenAiProduct product, const std::string& model);
+/// Parts of a request that are an artist's own.
+struct OpenAiExtras {
+    std::vector<ChosenLora> loras = {};  // for sd-server alone
+    std::vector<ServerOption> options = {};
+};
+
+/// Parts of POST images/edits. `model` is left away where it is empty; `extras` are checked.
+std::vector<HttpPart> openai_parts(const RedrawOrder& order, OpenAiProduct product, const std::string& model,
+                                   const OpenAiExtras& extras = {});
 
 }  // namespace gse::remote

@@ -5,6 +5,7 @@
 
 #include "engine/remote/picture/picture_codec.h"
 #include "engine/remote/protocols/order_checks.h"
+#include "engine/remote/protocols/request_options.h"
 #include "engine/remote/protocols/server_error.h"
 
 namespace gse::remote {
@@ -43,6 +44,8 @@ ServerFacts OpenAiServer::probe(const JobControl& job) {
     const auto models = link_->ask_json(link_->get("/v1/models"), how, job);
     if (!value_of(models, "data").is_array()) throw answer_error(link_->url(), "without a list of models");
     product_ = product_of(*link_, models, job);
+    check_openai_options(options_, product_, link_->url());
+    choose_loras(job);
     ServerFacts facts;
     facts.kind = ServerKind::OpenAi;
     facts.product = openai_product_name(product_);
@@ -59,6 +62,16 @@ ServerFacts OpenAiServer::probe(const JobControl& job) {
     return facts_ = facts;
 }
 
+/// The protocol has none, but sd-server takes them.
+void OpenAiServer::choose_loras(const JobControl& job) {
+    if (wanted_loras_.empty()) return;
+    std::vector<OfferedLora> offered;
+    if (product_ == OpenAiProduct::SdServer)
+        if (const auto json = link_->look("/sdcpp/v1/capabilities", job))
+            offered = offered_loras(value_of(*json, "loras"));
+    loras_ = chosen_loras(wanted_loras_, offered, link_->url());
+}
+
 RedrawnPicture OpenAiServer::redraw(const RedrawOrder& order, const JobControl& job) {
     check_order(order, facts_);
     if (leaves_nothing(order)) return {order.picture, facts_.model};
@@ -67,8 +80,8 @@ RedrawnPicture OpenAiServer::redraw(const RedrawOrder& order, const JobControl& 
     how.draws = true;
     how.most_bytes = picture_answer_bytes(order, 0);
     job.report("the server draws", 0, 0);
-    const auto request =
-        link_->requests().post_parts("/v1/images/edits", openai_parts(order, product_, facts_.model));
+    const auto request = link_->requests().post_parts(
+        "/v1/images/edits", openai_parts(order, product_, facts_.model, {loras_, options_}));
     const auto json = link_->ask_json(request, how, job);
     return {received_picture(picture_in(json, link_->url()), order.picture), facts_.model};
 }

@@ -11,6 +11,7 @@
 #include "engine/remote/picture/base64.h"
 #include "engine/remote/picture/picture_codec.h"
 #include "engine/remote/protocols/order_checks.h"
+#include "engine/remote/protocols/request_options.h"
 #include "engine/remote/protocols/server_error.h"
 
 namespace gse::remote {
@@ -61,6 +62,7 @@ nlohmann::json sdcpp_body(const RedrawOrder& order) {
 }
 
 ServerFacts SdCppServer::probe(const JobControl& job) {
+    check_sdcpp_options(options_, link_->url());
     Ask how;
     how.most_bytes = CapabilityBytes;
     const auto json = link_->ask_json(link_->get("/sdcpp/v1/capabilities"), how, job);
@@ -72,7 +74,9 @@ ServerFacts SdCppServer::probe(const JobControl& job) {
     facts.product = "sd-server";
     facts.model = shown(text_of(model, "name").empty() ? text_of(model, "stem") : text_of(model, "name"));
     check_only_model(link_->url(), wanted_model_, facts.model);
-    facts.loras = texts_of(value_of(json, "loras"), "name");
+    const auto offered = offered_loras(value_of(json, "loras"));
+    facts.loras = names_of(offered);
+    loras_ = chosen_loras(wanted_loras_, offered, link_->url());
     facts.references = value_of(features, "ref_images") == false ? 0 : MostReferences;
     facts.takes_mask = value_of(features, "mask_image") != false;
     facts.cancels = value_of(features, "cancel_queued") != false;
@@ -130,7 +134,9 @@ nlohmann::json SdCppServer::wait_for_job(const std::string& id, std::size_t most
 RedrawnPicture SdCppServer::redraw(const RedrawOrder& order, const JobControl& job) {
     check_order(order, facts_);
     if (leaves_nothing(order)) return {order.picture, facts_.model};
-    const auto body = sdcpp_body(order);
+    auto body = sdcpp_body(order);
+    if (!loras_.empty()) body["lora"] = lora_list(loras_);
+    add_options(body, options_);
     nlohmann::json done;
     for (int attempt = 0; attempt < 2 && done.is_null(); ++attempt) {
         if (attempt > 0) probe(job);  // it was started again, perhaps with another model

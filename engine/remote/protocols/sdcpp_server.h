@@ -7,6 +7,7 @@
 
 #include "engine/remote/api/image_server.h"
 #include "engine/remote/protocols/server_link.h"
+#include "engine/remote/protocols/server_loras.h"
 
 namespace gse::remote {
 
@@ -18,9 +19,10 @@ int steps_to_ask_of_levels(int real, double strength);
 
 class SdCppServer final : public ImageServer {
 public:
-    /// `model` is the one that it must have; empty = any.
-    SdCppServer(std::unique_ptr<ServerLink> link, std::string model)
-        : link_(std::move(link)), wanted_model_(std::move(model)) {}
+    /// The address's model is the one that it must have; empty = any.
+    SdCppServer(std::unique_ptr<ServerLink> link, const ServerAddress& address)
+        : link_(std::move(link)), wanted_model_(address.model), wanted_loras_(address.loras),
+          options_(address.options) {}
     ServerFacts probe(const JobControl& job) override;
     RedrawnPicture redraw(const RedrawOrder& order, const JobControl& job) override;
 
@@ -31,6 +33,9 @@ private:
 
     std::unique_ptr<ServerLink> link_;
     const std::string wanted_model_;
+    const std::vector<ServerLora> wanted_loras_;
+    const std::vector<ServerOption> options_;
+    std::vector<ChosenLora> loras_ = {};
     ServerFacts facts_;
 };
 

@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t MostWordBytes = 300;
 constexpr int DeepestWords = 4;
+constexpr std::size_t MostNamed = 8;
 
 std::string lower_case(std::string_view text) {
     std::string lower(text);
@@ -121,6 +122,13 @@ std::string shown(std::string_view text) {
     std::size_t end = MostWordBytes - 3;
     while (end > 0 && (static_cast<unsigned char>(plain[end]) & 0xc0) == 0x80) --end;
     return plain.substr(0, end) + "...";
+}
+
+std::string listed(const std::vector<std::string>& names) {
+    std::string list;
+    for (std::size_t i = 0; i < std::min(names.size(), MostNamed); ++i)
+        list += (i > 0 ? ", " : "") + names[i];
+    return shown(list + (names.size() > MostNamed ? ", ..." : ""));
 }
 
 std::string server_words(const HttpAnswer& answer) { return shown(raw_words(answer)); }

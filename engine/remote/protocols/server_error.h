@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "engine/base/error.h"
 #include "engine/remote/api/server_url.h"
@@ -15,6 +16,9 @@ std::string server_words(const HttpAnswer& answer);
 
 /// Text of a server made fit to be shown: printable, at most 300 characters.
 std::string shown(std::string_view text);
+
+/// Some of a server's names, for people: "a, b, ...".
+std::string listed(const std::vector<std::string>& names);
 
 /// True for an answer that says that the server's memory did not do.
 bool ran_out_of_memory(const HttpAnswer& answer);

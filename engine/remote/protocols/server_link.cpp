@@ -119,8 +119,11 @@ std::optional<nlohmann::json> ServerLink::look(const std::string& place, const J
     return json;
 }
 
-std::optional<nlohmann::json> ServerLink::try_json(HttpRequest request, const JobControl& job) {
-    const auto result = ask_once(request, {}, job);
+std::optional<nlohmann::json> ServerLink::try_json(HttpRequest request, const JobControl& job,
+                                                   std::size_t most_bytes) {
+    Ask how;
+    how.most_bytes = most_bytes;
+    const auto result = ask_once(request, how, job);
     if (!result.ok() || result.answer.status != 200) return std::nullopt;
     auto json = try_parse_json(result.answer.body);
     if (json.is_discarded()) return std::nullopt;

@@ -63,8 +63,10 @@ public:
     /// JSON of an answer 200; none for another status or another content. Asks once. Throws Error where
     /// nobody answers, for a redirect, and for a password that is wanted.
     std::optional<nlohmann::json> look(const std::string& place, const JobControl& job);
-    /// JSON of an answer 200; none for everything else. Asks once; throws Error (Cancelled) only.
-    std::optional<nlohmann::json> try_json(HttpRequest request, const JobControl& job);
+    /// JSON of an answer 200 of at most so many bytes; none for everything else. Asks once; throws Error
+    /// (Cancelled) only.
+    std::optional<nlohmann::json> try_json(HttpRequest request, const JobControl& job,
+                                           std::size_t most_bytes = std::size_t{1} << 20);
     /// Sends without waiting.
     void send_later(HttpRequest request, FollowUp then = {});
 

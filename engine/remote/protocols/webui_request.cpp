@@ -43,6 +43,10 @@ std::size_t webui_references(WebuiProduct product) {
     return product == WebuiProduct::SdServer || product == WebuiProduct::KoboldCpp ? 4 : 0;
 }
 
+bool webui_lists_loras(WebuiProduct product) {
+    return product == WebuiProduct::SdServer || product == WebuiProduct::KoboldCpp;
+}
+
 bool webui_has_tasks(WebuiProduct product) {
     return product == WebuiProduct::A1111 || product == WebuiProduct::Forge;
 }

@@ -23,6 +23,9 @@ bool webui_has_tasks(WebuiProduct product);
 /// Steps to ask, so that RedrawOrder::steps really run.
 int webui_steps(WebuiProduct product, int real, double strength);
 
+/// True where LoRAs are a list beside the prompt; elsewhere they are tags inside it.
+bool webui_lists_loras(WebuiProduct product);
+
 /// Body of POST img2img. `task` is the job's number, where the product has them.
 nlohmann::json webui_body(const RedrawOrder& order, WebuiProduct product, const std::string& task);
 

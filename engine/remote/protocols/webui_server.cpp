@@ -10,13 +10,15 @@
 #include "engine/remote/http/unique_id.h"
 #include "engine/remote/picture/picture_codec.h"
 #include "engine/remote/protocols/order_checks.h"
+#include "engine/remote/protocols/request_options.h"
 #include "engine/remote/protocols/server_error.h"
 
 namespace gse::remote {
 namespace {
 
 constexpr std::size_t ListBytes = std::size_t{4} << 20;
-constexpr std::size_t EchoedPictures = 2;  // sd-server sends picture and mask back
+constexpr std::size_t LoraBytes = std::size_t{64} << 20;  // with all that was noted when they were trained
+constexpr std::size_t EchoedPictures = 2;                 // sd-server sends picture and mask back
 constexpr int ProgressSteps = 100;
 
 Ask list_ask() {
@@ -43,6 +45,7 @@ std::string picture_text(const nlohmann::json& answer, const ServerUrl& url) {
 }  // namespace
 
 ServerFacts WebuiServer::probe(const JobControl& job) {
+    check_webui_options(options_, product_, link_->url());
     ServerFacts facts;
     facts.kind = ServerKind::Webui;
     facts.product = webui_product_name(product_);
@@ -66,8 +69,11 @@ void WebuiServer::read_models(ServerFacts& facts, const JobControl& job) {
     }
     if (const auto options = link_->try_json(link_->get("/sdapi/v1/options"), job))
         if (const auto model = text_of(*options, "sd_model_checkpoint"); !model.empty()) facts.model = model;
-    if (const auto loras = link_->try_json(link_->get("/sdapi/v1/loras"), job))
-        facts.loras = texts_of(*loras, "name");
+    std::vector<OfferedLora> offered;
+    if (const auto loras = link_->try_json(link_->get("/sdapi/v1/loras"), job, LoraBytes))
+        offered = offered_loras(*loras);
+    facts.loras = names_of(offered);
+    loras_ = chosen_loras(wanted_loras_, offered, link_->url());
     if (product_ == WebuiProduct::SdNext)
         if (const auto version = link_->try_json(link_->get("/sdapi/v1/version"), job))
             facts.version = shown(text_of(*version, "version"));
@@ -138,7 +144,11 @@ RedrawnPicture WebuiServer::redraw(const RedrawOrder& order, const JobControl& j
     how.meanwhile = [&] { report_progress(task, job); };
     job.report("the server draws", 0, 0);
     try {
-        const auto request = link_->requests().post("/sdapi/v1/img2img", webui_body(order, product_, task));
+        auto body = webui_body(order, product_, task);
+        if (!loras_.empty() && webui_lists_loras(product_)) body["lora"] = lora_list(loras_);
+        else body["prompt"] = prompt_with_loras(order.prompt, loras_);
+        add_options(body, options_);
+        const auto request = link_->requests().post("/sdapi/v1/img2img", body);
         const auto json = link_->ask_json(request, how, job);
         const auto model = webui_model(json);
         return {received_picture(picture_text(json, link_->url()), order.picture),

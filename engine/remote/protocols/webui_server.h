@@ -5,15 +5,17 @@
 
 #include "engine/remote/api/image_server.h"
 #include "engine/remote/protocols/server_link.h"
+#include "engine/remote/protocols/server_loras.h"
 #include "engine/remote/protocols/webui_request.h"
 
 namespace gse::remote {
 
 class WebuiServer final : public ImageServer {
 public:
-    /// `model` is switched to when the server is first asked; empty = the one that is loaded.
-    WebuiServer(std::unique_ptr<ServerLink> link, WebuiProduct product, std::string model)
-        : link_(std::move(link)), product_(product), wanted_model_(std::move(model)) {}
+    /// The address's model is switched to when the server is first asked; empty = the one that is loaded.
+    WebuiServer(std::unique_ptr<ServerLink> link, WebuiProduct product, const ServerAddress& address)
+        : link_(std::move(link)), product_(product), wanted_model_(address.model),
+          wanted_loras_(address.loras), options_(address.options) {}
     ServerFacts probe(const JobControl& job) override;
     RedrawnPicture redraw(const RedrawOrder& order, const JobControl& job) override;
 
@@ -26,6 +28,9 @@ private:
     std::unique_ptr<ServerLink> link_;
     const WebuiProduct product_;
     const std::string wanted_model_;
+    const std::vector<ServerLora> wanted_loras_;
+    const std::vector<ServerOption> options_;
+    std::vector<ChosenLora> loras_ = {};
     ServerFacts facts_;
 };
 

@@ -36,7 +36,8 @@ Agreement agreement_of(std::string_view name) {
                 "name one of auto, none, sheet, reference, warp");
 }
 
-Agreement suited_agreement(Agreement asked, const ModelFamily& family, const ServerFacts& facts) {
+Agreement suited_agreement(Agreement asked, const ModelFamily& family, const ServerFacts& facts,
+                           bool follows) {
     // The picture to redraw is one of them for servers that edit by references alone.
     const bool shows_another = family.references > 0 && facts.references > 1;
     if (asked == Agreement::Reference && facts.references == 0)
@@ -45,7 +46,7 @@ Agreement suited_agreement(Agreement asked, const ModelFamily& family, const Ser
                     "let views agree in another way: --server-agreement sheet, warp or none");
     if (asked != Agreement::Auto) return asked;
     if (family.instructed()) return shows_another ? Agreement::Reference : Agreement::Sheet;
-    return family.inpaints ? Agreement::Warp : Agreement::None;
+    return family.inpaints || follows ? Agreement::Warp : Agreement::None;
 }
 
 }  // namespace gse::remote

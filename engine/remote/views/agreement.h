@@ -18,7 +18,9 @@ std::string_view agreement_name(Agreement agreement);
 Agreement agreement_of(std::string_view name);
 
 /// Way that suits a family and a server, for Auto. Other values are returned as they are, but for Reference
-/// where the server takes no pictures beside the one to redraw: throws Error (InvalidArgument).
-Agreement suited_agreement(Agreement asked, const ModelFamily& family, const ServerFacts& facts);
+/// where the server takes no pictures beside the one to redraw: throws Error (InvalidArgument). `follows`:
+/// views are to follow an artist's picture.
+Agreement suited_agreement(Agreement asked, const ModelFamily& family, const ServerFacts& facts,
+                           bool follows = false);
 
 }  // namespace gse::remote

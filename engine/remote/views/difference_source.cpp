@@ -64,8 +64,9 @@ ChangedPart DifferenceSource::painted(const Image& sent, std::uint64_t seed) {
 }
 
 ChangedPart DifferenceSource::part_of(const edit::AttentionQuery& query) {
-    const auto& [text, family, agreement, side] = edit_.drawing;
-    const Image sent = at_side(query.image, side);
+    const auto& text = edit_.drawing.text;
+    const auto& family = edit_.drawing.family;
+    const Image sent = at_side(query.image, edit_.drawing.side);
     if (edit_.paints) return painted(sent, query.seed);
     if (!family.instructed()) {
         const Image as_it_is = ask(sent, edit_.before, query.seed, ComparedStrength);

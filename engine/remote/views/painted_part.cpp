@@ -20,7 +20,7 @@ constexpr std::array<PaintColour, 6> Colours{{{"pure magenta (#FF00FF)", {1, 0, 
 constexpr double SameHue = 20, NearHue = 40;  // degrees
 // Shading leaves saturation, and light lowers it.
 constexpr double LeastSaturation = 0.5, LeastValue = 0.2;
-constexpr double LeastChange = 0.1;  // of a pixel that has the hue, in the channel that changed most
+constexpr double LeastPaintChange = 0.1;  // of a pixel that has the hue, in the channel that changed most
 constexpr double LeastPainted = 0.003, MostPainted = 0.6;  // of the pixels
 constexpr double LargePiece = 0.01, InLargePieces = 0.8;   // of the painted pixels
 
@@ -86,7 +86,7 @@ ChangedPart painted_part(const Image& before, const Image& after, const PaintCol
     Mask mask(before.width, before.height);
     const Image change = change_map(before, after, 0);
     for (std::size_t i = 0; i < mask.data.size(); ++i)
-        mask.data[i] = change.data[i] >= LeastChange && has_hue(after.data.data() + 3 * i, hue) ? 1 : 0;
+        mask.data[i] = change.data[i] >= LeastPaintChange && has_hue(after.data.data() + 3 * i, hue) ? 1 : 0;
     const double painted = static_cast<double>(mask.count()) / static_cast<double>(mask.data.size());
     part.mask = Mask(before.width, before.height);
     if (painted > MostPainted) part.found = ChangeFound::Everywhere;
@@ -96,7 +96,7 @@ ChangedPart painted_part(const Image& before, const Image& after, const PaintCol
     part.mask = localize::without_holes(localize::clean_clusters(mask, weight, {1.5, 1}, LargePiece));
     for (std::size_t i = 0; i < part.mask.data.size(); ++i)
         part.map.data[i] = part.mask.data[i] != 0 ? 1.0f : 0.0f;
-    part.level = LeastChange;
+    part.level = LeastPaintChange;
     part.found = ChangeFound::Part;
     return part;
 }

@@ -10,9 +10,12 @@
 
 #include "engine/base/clock.h"
 #include "engine/base/content_hash.h"
+#include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/base/printable.h"
 #include "engine/remote/api/server_kind.h"
+#include "engine/remote/views/acceptance.h"
+#include "engine/remote/views/view_frame.h"
 
 namespace gse::remote {
 namespace {
@@ -23,6 +26,12 @@ constexpr int MostSide = 16384;  // px of a kept picture; a larger number is dam
 Image with_eight_bits(Image picture) {
     for (auto& value : picture.data) value = std::round(std::clamp(value, 0.0f, 1.0f) * 255) / 255;
     return picture;
+}
+
+/// 3/4 of a square order's side, as a side that servers take; 0 where there is none.
+int smaller_side(const RedrawOrder& order) {
+    const auto& picture = order.picture;
+    return picture.width == picture.height ? picture.width * 3 / 4 / SideStep * SideStep : 0;
 }
 
 /// Width, height, model's length, model, bytes of the pixels.
@@ -79,7 +88,49 @@ void PictureSource::note_model(const std::string& model) {
     model_ = model;
 }
 
+/// A full disk is said once: the edit goes on, and only a second run asks again.
+void PictureSource::keep(const RedrawOrder& order, const RedrawnPicture& redrawn) {
+    if (cache_ == nullptr) return;
+    const auto question = question_of(order);
+    cache_->keep(question, bytes_of(redrawn.picture, redrawn.model));
+    if (cache_->find(question)) return;
+    if (use_.not_kept++ == 0)
+        log::warning("pictures of the server cannot be kept on the disk: another run asks for them again");
+}
+
 Image PictureSource::ask(const RedrawOrder& order, const JobControl& job) {
+    if (use_.smaller_side > 0 && use_.smaller_side < order.picture.width) return ask_smaller(order, job);
+    try {
+        return ask_as_ordered(order, job);
+    } catch (const Error& error) {
+        const int side = smaller_side(order);
+        if (error.hint() != TooLargeHint || side == 0) throw;
+        log::warning("{}: pictures are asked for at {} x {} pixels in place of {} x {}", error.message(),
+                     side, side, order.picture.width, order.picture.height);
+        use_.smaller_side = side;
+    }
+    return ask_smaller(order, job);
+}
+
+Image PictureSource::ask_smaller(const RedrawOrder& order, const JobControl& job) {
+    const int side = use_.smaller_side;
+    RedrawOrder smaller = order;
+    smaller.picture = at_side(order.picture, side);
+    if (!order.mask.data.empty()) smaller.mask = at_side(order.mask, side);
+    for (auto& reference : smaller.references)
+        if (is_square(reference) && reference.width > side) reference = at_side(reference, side);
+    try {
+        auto picture = ask_as_ordered(smaller, job);
+        const bool usable = is_square(picture);
+        return usable ? with_eight_bits(at_side(picture, order.picture.width)) : picture;
+    } catch (const Error& error) {
+        if (error.hint() != TooLargeHint) throw;
+        throw Error(error.code(), fmt::format("{}, also at {} x {} pixels", error.message(), side, side),
+                    error.hint());
+    }
+}
+
+Image PictureSource::ask_as_ordered(const RedrawOrder& order, const JobControl& job) {
     const auto question = question_of(order);
     if (cache_ != nullptr)
         if (const auto answer = cache_->find(question))
@@ -94,7 +145,7 @@ Image PictureSource::ask(const RedrawOrder& order, const JobControl& job) {
     use_.megapixels += static_cast<double>(redrawn.picture.pixel_count()) / 1e6;
     redrawn.picture = with_eight_bits(std::move(redrawn.picture));
     note_model(redrawn.model);
-    if (cache_ != nullptr) cache_->keep(question_of(order), bytes_of(redrawn.picture, redrawn.model));
+    keep(order, redrawn);
     return std::move(redrawn.picture);
 }
 

@@ -15,17 +15,22 @@ struct ServerUse {
     std::size_t cached = 0;    // that the cache had
     double megapixels = 0;     // drawn
     double seconds = 0;        // waited for
+    std::size_t not_kept = 0;  // pictures that the disk did not take
+    int smaller_side = 0;      // px at which it is asked since its memory did not do; 0 = as ordered
 };
 
 /// Asks a server for pictures and keeps each as it comes, so that an edit that was cancelled asks only for
 /// what is missing. An answer is kept under kind, model, all values and pictures of its order; no address.
+/// A picture that is too large for the server is asked for once at 3/4 of its side. All later ones are asked
+/// for at that side, and what comes is brought back to the size of the order.
 class PictureSource {
 public:
     /// `facts`: as the server told them. `identity`: what the pictures follow from beside the order, such as
     /// a workflow. `cache` may be null. All stay alive.
     PictureSource(ImageServer& server, ServerFacts facts, std::string identity, AnswerCache* cache);
 
-    /// Picture [H,W,3] of 8 bits per channel. Throws as ImageServer::redraw().
+    /// Picture [H,W,3] of 8 bits per channel. Throws as ImageServer::redraw(); for a picture that is too
+    /// large at 3/4 of its side, too, the error says so.
     Image ask(const RedrawOrder& order, const JobControl& job);
 
     const ServerFacts& facts() const { return facts_; }
@@ -36,6 +41,9 @@ public:
     std::size_t model_changes() const { return model_changes_; }
 
 private:
+    Image ask_as_ordered(const RedrawOrder& order, const JobControl& job);
+    Image ask_smaller(const RedrawOrder& order, const JobControl& job);
+    void keep(const RedrawOrder& order, const RedrawnPicture& redrawn);
     std::string question_of(const RedrawOrder& order) const;
     void note_model(const std::string& model);
 

@@ -2,11 +2,14 @@
 #include "engine/remote/views/remote_view_editor.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "engine/base/error.h"
 #include "engine/base/log.h"
+#include "engine/base/printable.h"
 #include "engine/edit/request/scales.h"
 #include "engine/remote/views/change_map.h"
 
@@ -17,9 +20,24 @@ constexpr double ChangeBlurPx = 2;  // of a picture of ReferenceSide
 
 }  // namespace
 
+/// Names that an artist gave mean views of the first round.
+void RemoteViewEditor::check_names(const std::vector<edit::EditView>& views) {
+    if (std::exchange(names_checked_, true)) return;
+    std::vector<std::string> wanted, known;
+    for (const auto& own : drawing_.own) wanted.push_back(own.view);
+    if (!drawing_.key_view.empty()) wanted.push_back(drawing_.key_view);
+    for (const auto& view : views) known.push_back(printable(view.view.name));
+    for (const auto& name : wanted)
+        if (std::none_of(views.begin(), views.end(), [&](const auto& view) { return is_named(view, name); }))
+            throw Error(ErrorCode::InvalidArgument,
+                        fmt::format("\"{}\" is none of the views that are drawn", printable(name)),
+                        fmt::format("they are {}", fmt::join(known, ", ")));
+}
+
 /// A round whose views are of two models is drawn once more.
 DrawnRound RemoteViewEditor::draw(const std::vector<edit::EditView>& views,
                                   const edit::EditViewsRequest& request, const JobControl& job) {
+    check_names(views);
     RemoteDrawing drawing = drawing_;
     if (!request.sentence.empty()) drawing.text.description = request.sentence;
     const auto changes = source_.model_changes();

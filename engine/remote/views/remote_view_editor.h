@@ -17,7 +17,8 @@ public:
     RemoteViewEditor(PictureSource& source, RemoteDrawing drawing)
         : source_(source), drawing_(std::move(drawing)) {}
 
-    /// Throws Error (Cancelled) on a stop request, (Model) where no view is of use, and as
+    /// Throws Error (Cancelled) on a stop request, (InvalidArgument) for names of views that are not among
+    /// the first ones, (Model) where no view is of use, and as
     /// ImageServer::redraw().
     edit::EditedViews edit(const std::vector<edit::EditView>& views, const edit::EditViewsRequest& request,
                            const JobControl& job) override;
@@ -31,12 +32,14 @@ public:
 private:
     DrawnRound draw(const std::vector<edit::EditView>& views, const edit::EditViewsRequest& request,
                     const JobControl& job);
+    void check_names(const std::vector<edit::EditView>& views);
     void add_outlines(const std::vector<edit::EditView>& views, const DrawnRound& drawn,
                       edit::EditedViews& edited) const;
 
     PictureSource& source_;
     const RemoteDrawing drawing_;
     KeyPicture key_;
+    bool names_checked_ = false;
 };
 
 }  // namespace gse::remote

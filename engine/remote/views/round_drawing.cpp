@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/base/random.h"
+#include "engine/remote/api/server_settings.h"
 #include "engine/remote/views/colour_match.h"
 #include "engine/remote/views/depth_warp.h"
 #include "engine/remote/views/view_sheet.h"
@@ -34,6 +36,10 @@ Mask difference(const Mask& mask, const Mask& without) {
 
 }  // namespace
 
+bool is_named(const edit::EditView& view, const std::string& name) {
+    return !name.empty() && (view.view.name == name || file_name_of_view(view.view.name) == name);
+}
+
 RoundDrawing::RoundDrawing(PictureSource& source, const RemoteDrawing& drawing,
                            const std::vector<edit::EditView>& views, const edit::EditViewsRequest& request,
                            const JobControl& job)
@@ -43,6 +49,17 @@ RoundDrawing::RoundDrawing(PictureSource& source, const RemoteDrawing& drawing,
     for (const auto& view : views)
         frames_.push_back(
             frame_of(view, crop_around(view.mask, crop), drawing.side, drawing.family.latent_cell));
+    take_own_pictures();
+}
+
+void RoundDrawing::take_own_pictures() {
+    for (const auto& own : drawing_.own)
+        for (std::size_t v = 0; v < views_.size(); ++v) {
+            if (!is_named(views_[v], own.view)) continue;
+            CheckedPicture checked;
+            checked.picture = framed(own.picture, frames_[v]);
+            take(v, std::move(checked));
+        }
 }
 
 DrawnRound RoundDrawing::draw(KeyPicture& key) {
@@ -64,7 +81,8 @@ DrawnRound RoundDrawing::draw(KeyPicture& key) {
 }
 
 void RoundDrawing::draw_each() {
-    for (std::size_t v = 0; v < views_.size(); ++v) draw_alone(v);
+    for (std::size_t v = 0; v < views_.size(); ++v)
+        if (!is_there(v)) draw_alone(v);
 }
 
 void RoundDrawing::draw_alone(std::size_t view) { take(view, ask(frames_[view], order_for(view))); }
@@ -75,8 +93,9 @@ void RoundDrawing::draw_sheets() {
     const std::size_t key = key_view();
     auto rest = outwards_from(key);
     rest.erase(rest.begin());
+    std::erase_if(rest, [&](auto v) { return is_there(v); });
     std::vector<std::size_t> cells{key};
-    bool first = true;
+    bool first = !is_there(key);
     for (std::size_t next = 0; next < rest.size();) {
         while (cells.size() < SheetCells && next < rest.size()) cells.push_back(rest[next++]);
         draw_sheet(cells, first ? nullptr : &squares_[key]);
@@ -128,10 +147,11 @@ void RoundDrawing::draw_with_reference(KeyPicture& key) {
     const bool again = views_.size() == 1 && !key.picture.data.empty();
     if (!again) {
         rest = outwards_from(key_view());
-        draw_alone(rest.front());
+        if (!is_there(rest.front())) draw_alone(rest.front());
         key.picture = squares_[rest.front()];
         rest.erase(rest.begin());
     }
+    std::erase_if(rest, [&](auto v) { return is_there(v); });
     for (const auto v : rest) key.picture.data.empty() ? draw_alone(v) : draw_like(v, key.picture);
 }
 
@@ -150,8 +170,11 @@ void RoundDrawing::draw_like(std::size_t view, const Image& key) {
 }
 
 void RoundDrawing::draw_by_warp() {
+    const auto order = outwards_from(key_view());
     std::vector<std::size_t> drawn;
-    for (const auto v : outwards_from(key_view())) {
+    std::copy_if(order.begin(), order.end(), std::back_inserter(drawn), [&](auto v) { return is_there(v); });
+    for (const auto v : order) {
+        if (is_there(v)) continue;
         drawn.empty() ? draw_alone(v) : draw_warped(v, drawn);
         if (!squares_[v].data.empty()) drawn.push_back(v);
     }
@@ -206,10 +229,11 @@ RedrawOrder RoundDrawing::order_for(std::size_t view) const {
 }
 
 CheckedPicture RoundDrawing::ask(const ViewFrame& frame, RedrawOrder order, bool may_stay) {
-    if (frame.mask.count() == 0) return {frame.picture};  // nothing may change
+    CheckedPicture checked;
+    checked.picture = frame.picture;
+    if (frame.mask.count() == 0) return checked;  // nothing may change
     order.picture = frame.picture;
     order.mask = as_image(frame.sent_mask);
-    CheckedPicture checked;
     for (int attempt = 0; attempt < Attempts; ++attempt) {
         if (attempt > 0) {
             order.seed = server_seed(Random::stream(request_.seed, SeedStream).next());
@@ -248,13 +272,16 @@ void RoundDrawing::take(std::size_t view, CheckedPicture checked) {
     if (checked.flaw == Flaw::None) squares_[view] = std::move(checked.picture);
 }
 
-/// The view with the most to change; from behind it counts less.
+/// The view that the artist names, else one of his own, else that with the most to change; from behind it
+/// counts less.
 std::size_t RoundDrawing::key_view() const {
     std::size_t best = 0;
     double most = -1;
     for (std::size_t v = 0; v < views_.size(); ++v) {
         const double front = views_[v].azimuth ? (1 + std::cos(*views_[v].azimuth)) / 2 : 1;
-        const double weight = static_cast<double>(views_[v].mask.count()) * (1 - FrontWeight * (1 - front));
+        const double named = is_named(views_[v], drawing_.key_view) ? 2 : is_there(v) ? 1 : 0;
+        const double pixels = static_cast<double>(views_[v].mask.count()) * (1 - FrontWeight * (1 - front));
+        const double weight = pixels + named * static_cast<double>(views_[v].mask.data.size());
         if (weight > most) most = weight, best = v;
     }
     return best;

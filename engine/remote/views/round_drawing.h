@@ -15,12 +15,20 @@
 
 namespace gse::remote {
 
+/// Picture of an artist's own, in place of a drawn one.
+struct OwnPicture {
+    std::string view;  // its name, or that name as files have it
+    Image picture;     // [S,S,3] of the whole view
+};
+
 /// Settings of what is drawn.
 struct RemoteDrawing {
     EditText text;
     ModelFamily family;
     Agreement agreement = Agreement::None;  // not Auto
     int side = 512;                         // px of the pictures that are sent: a multiple of 64
+    std::vector<OwnPicture> own = {};       // of views that are not drawn: the others follow them
+    std::string key_view = {};              // drawn first; empty = the one with the most to change
 };
 
 /// Picture of the view that the others are drawn like.
@@ -36,6 +44,9 @@ struct DrawnRound {
     double drift = 0;                    // mean over the views, share of the picture's side
 };
 
+/// True where a name that an artist gave means this view.
+bool is_named(const edit::EditView& view, const std::string& name);
+
 /// Draws the views of one round. Refers to all it is given.
 class RoundDrawing {
 public:
@@ -48,6 +59,7 @@ public:
     DrawnRound draw(KeyPicture& key);
 
 private:
+    void take_own_pictures();
     void draw_each();
     void draw_sheets();
     void draw_with_reference(KeyPicture& key);
@@ -60,6 +72,7 @@ private:
 
     RedrawOrder order(std::string prompt) const;
     RedrawOrder order_for(std::size_t view) const;
+    bool is_there(std::size_t view) const { return !squares_[view].data.empty(); }
     /// Asks for one frame, and once more with another seed where the answer is of no use. `may_stay`: what is
     /// drawn may look as the scene did.
     CheckedPicture ask(const ViewFrame& frame, RedrawOrder order, bool may_stay = false);

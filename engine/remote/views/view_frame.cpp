@@ -16,7 +16,6 @@ constexpr double LeastMargin = 1.0 / 16;  // of the box's longer side, on each s
 constexpr double LargestCrop = 0.8;       // of the view's side: a larger part is sent whole
 constexpr double SentGrowth = 4;          // px by which a sent mask is grown beside a latent cell
 constexpr double FeatherPx = 3;           // of a picture of ReferenceSide
-constexpr int SideStep = 64;
 
 int side_around(const localize::PixelBox& box) {
     const int longer = std::max(box.width, box.height);
@@ -86,11 +85,16 @@ Image as_image(const Mask& mask) {
 ViewFrame frame_of(const edit::EditView& view, const edit::ViewSection& section, int side, int latent_cell) {
     ViewFrame frame;
     frame.section = section;
+    frame.view_side = view.mask.width;
     frame.picture = at_side(cut(view.rendered, frame.section), side);
     frame.original = at_side(cut(view.original, frame.section), side);
     frame.mask = at_side(cut(view.mask, frame.section), side);
     frame.sent_mask = localize::dilate(frame.mask, SentGrowth + latent_cell);
     return frame;
+}
+
+Image framed(const Image& whole, const ViewFrame& frame) {
+    return at_side(cut(at_side(whole, frame.view_side), frame.section), frame.picture.width);
 }
 
 Image pasted(const edit::EditView& view, const ViewFrame& frame, const Image& drawn) {

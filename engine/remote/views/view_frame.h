@@ -9,6 +9,8 @@ namespace gse::remote {
 
 /// Least side of a part that is cut out of a view, px.
 inline constexpr int LeastCrop = 512;
+/// Sides of sent pictures are multiples of it, px.
+inline constexpr int SideStep = 64;
 
 /// Part of a square view as it is sent. Pictures are squares of one side.
 struct ViewFrame {
@@ -16,6 +18,7 @@ struct ViewFrame {
     Image picture;              // [S,S,3] in [0,1] to redraw
     Image original;             // [S,S,3] the unedited scene there
     Mask mask;                  // [S,S] where it may change
+    int view_side = 0;          // px of the view
     Mask sent_mask;             // the mask as the server is told: grown, so that its rim can change
 };
 
@@ -30,6 +33,9 @@ edit::ViewSection crop_around(const Mask& mask, int side);
 /// Frame of that part of a view. `side` of the sent picture, px; `latent_cell`: px of a cell of the model's
 /// latent.
 ViewFrame frame_of(const edit::EditView& view, const edit::ViewSection& section, int side, int latent_cell);
+
+/// Part of a whole picture of the view [S,S,3], of any side, that the frame shows.
+Image framed(const Image& whole, const ViewFrame& frame);
 
 /// Side that a family's picture is sent at: `asked`, or the family's where it is 0, as a multiple of 64.
 int sent_side(int asked, int family_side);

@@ -200,6 +200,11 @@ const WorkflowPlace* Workflow::find(WorkflowRole role) const {
     return nullptr;
 }
 
+bool Workflow::sets(std::string_view node, std::string_view input) const {
+    return std::any_of(places.begin(), places.end(),
+                       [&](const auto& place) { return place.node == node && place.input == input; });
+}
+
 std::vector<std::string> Workflow::table() const {
     std::vector<std::string> lines;
     for (const auto& place : places)

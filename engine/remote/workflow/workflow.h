@@ -44,6 +44,8 @@ struct Workflow {
     std::size_t count(WorkflowRole role) const;
     /// The first place of a role; null without one.
     const WorkflowPlace* find(WorkflowRole role) const;
+    /// True for an input that is set for every picture.
+    bool sets(std::string_view node, std::string_view input) const;
     /// "image: node 4 (LoadImage), image": one line per place, for people.
     std::vector<std::string> table() const;
 };

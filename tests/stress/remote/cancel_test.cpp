@@ -77,6 +77,25 @@ DOCTEST_TEST_CASE("a stop returns at once while connecting, sending, waiting, re
     }
 }
 
+DOCTEST_TEST_CASE("a stop returns at once while a picture is being sent that the server does not read") {
+    if (!can_stand_in()) return;
+    auto& stand_in = shared_stand_in("forge");
+    const auto server = connect(stand_in.address(), {});
+    auto order = small_order();
+    order.picture = Image(2048, 2048, 3);  // noise: more bytes than the system holds for a connection
+    order.mask = {};
+    std::uint32_t noise = 1;
+    for (auto& value : order.picture.data) {
+        noise = noise * 1664525u + 1013904223u;
+        value = static_cast<float>(noise >> 24) / 255;
+    }
+    stand_in.set({{"unread", "1"}});
+    std::vector<double> times;
+    for (int i = 0; i < 3; ++i) times.push_back(stop_after(*server, order, Milliseconds(4'000)));
+    DOCTEST_CHECK(middle(times) < 100);
+    stand_in.reset();
+}
+
 /// Port of this machine that takes no more connections: those who try wait.
 class FullPort {
 public:

@@ -242,6 +242,26 @@ DOCTEST_TEST_CASE("a server that is busy is asked again, and draws once") {
     }
 }
 
+DOCTEST_TEST_CASE("a password that is wanted in the middle is asked for once, and helps") {
+    if (!can_stand_in()) return;
+    for (const auto& [flavour, kind, at] :
+         {Place{"forge", ServerKind::Webui, "/img2img"}, Place{"sdserver", ServerKind::SdCpp, "/img_gen"},
+          Place{"vllm", ServerKind::OpenAi, "/edits"}, Place{"comfy", ServerKind::Comfy, "/upload/image"}}) {
+        DOCTEST_CAPTURE(flavour);
+        auto& stand_in = shared_stand_in(flavour);
+        auto address = stand_in.address();
+        address.kind = kind;
+        const auto server = connect(address, {});
+        stand_in.set({{"password", "bearer sk-1"}});
+        DOCTEST_CHECK(caught([&] { server->redraw(small_order(), {}); }).says("wants a password"));
+        DOCTEST_CHECK(stand_in.asked(at).size() <= 1);  // ComfyUI is asked about its nodes first
+        setenv("GSEDITPRO_SERVER_TOKEN", "sk-1", 1);
+        const auto picture = connect(address, {})->redraw(small_order(), {}).picture;
+        unsetenv("GSEDITPRO_SERVER_TOKEN");
+        DOCTEST_CHECK(picture.width == 64);
+    }
+}
+
 DOCTEST_TEST_CASE("a drawing whose answer is lost is not asked for twice") {
     if (!can_stand_in()) return;
     for (const char* fault : {"reset", "no_bytes", "length_long", "half_header"}) {

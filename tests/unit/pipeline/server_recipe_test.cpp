@@ -2,6 +2,7 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
+#include "engine/base/error.h"
 #include "engine/pipeline/models/server_instruction.h"
 #include "engine/pipeline/models/view_server.h"
 #include "engine/pipeline/recipe/recipe.h"
@@ -27,6 +28,24 @@ DOCTEST_TEST_CASE("server recipe: settings come back as written, the address wit
     DOCTEST_CHECK(read.server.agreement == "sheet");
     DOCTEST_CHECK(read.server.side == 768);
     DOCTEST_CHECK(read.given.contains("server.side"));
+}
+
+DOCTEST_TEST_CASE("server recipe: options, LoRAs and pictures come back, files beside the recipe") {
+    EditRecipe recipe;
+    recipe.request.source = "bear";
+    recipe.server.url = "http://host:7860";
+    recipe.server.option = {"scheduler=karras"};
+    recipe.server.lora = {"bronze:0.8"};
+    recipe.server.target_picture = {"view 3=mine=1.png"};
+    recipe.server.key_view = "view 3";
+    const auto read = recipe_from_json(recipe_to_json(recipe), "/tmp");
+    DOCTEST_CHECK(read.server.option == recipe.server.option);
+    DOCTEST_CHECK(read.server.lora == recipe.server.lora);
+    DOCTEST_CHECK(read.server.target_picture == std::vector<std::string>{"view 3=/tmp/mine=1.png"});
+    DOCTEST_CHECK(read.server.key_view == "view 3");
+    DOCTEST_CHECK(remote::file_name_of_view("photos/a b.JPG") == "photos_a_b.JPG");
+    for (const char* text : {"", "view", "=file", "view="})
+        DOCTEST_CHECK_THROWS_AS(remote::target_picture_of(text), Error);
 }
 
 DOCTEST_TEST_CASE("server recipe: an address is cut where secrets may stand") {

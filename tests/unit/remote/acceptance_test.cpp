@@ -64,8 +64,10 @@ DOCTEST_TEST_CASE("acceptance: drift is undone up to 2 %, and refused beyond") {
     DOCTEST_CHECK(near.flaw == Flaw::None);
     DOCTEST_CHECK(near.drift * Side == doctest::Approx(3.6).epsilon(0.1));
     DOCTEST_CHECK(psnr_outside(frame.picture, near.picture, frame.sent_mask) > 30);
-    const auto far = check_answer(frame, edited(frame, waves(Side, 14, 0)));
-    DOCTEST_CHECK(far.flaw != Flaw::None);
+    DOCTEST_CHECK(check_answer(frame, edited(frame, waves(Side, 1, 0))).flaw == Flaw::None);
+    DOCTEST_CHECK(check_answer(frame, edited(frame, waves(Side, 5, 0))).flaw == Flaw::None);
+    for (const auto& far : {waves(Side, 14, 0), waves(Side, 40, 0), waves(Side, 0, 0, 1.03)})
+        DOCTEST_CHECK(check_answer(frame, edited(frame, far)).flaw != Flaw::None);
 }
 
 DOCTEST_TEST_CASE("acceptance: another size of one aspect is brought to ours, another aspect is refused") {

@@ -155,6 +155,32 @@ DOCTEST_TEST_CASE("a turn that EXIF asks for is not made") {
     DOCTEST_CHECK(picture.height == 32);
 }
 
+/// JPEG of one block of 8 x 8 in four inks, all at half.
+std::string cmyk_jpeg() {
+    const auto marker = [](char kind, const std::string& content) {
+        const auto size = content.size() + 2;
+        return std::string{'\xff', kind, static_cast<char>(size >> 8), static_cast<char>(size)} + content;
+    };
+    const std::string one_code("\1\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0", 17);  // of length 1, for 0
+    std::string frame("\x08\0\x08\0\x08\x04", 6), scan("\x04");
+    for (char ink = 1; ink <= 4; ++ink) {
+        frame += std::string{ink, '\x11', '\0'};
+        scan += std::string{ink, '\0'};
+    }
+    return "\xff\xd8" + marker('\xdb', std::string(1, '\0') + std::string(64, '\1')) + marker('\xc0', frame) +
+           marker('\xc4', std::string(1, '\0') + one_code) + marker('\xc4', "\x10" + one_code) +
+           marker('\xda', scan + std::string("\0\x3f\0", 3)) + std::string("\0\xff\xd9", 3);
+}
+
+DOCTEST_TEST_CASE("a JPEG in four inks becomes colours") {
+    const auto picture = received_picture(bytes_of(cmyk_jpeg()), ramp(64, 64));
+    DOCTEST_REQUIRE(picture.width == 8);
+    DOCTEST_CHECK(picture.channels == 3);
+    DOCTEST_CHECK(std::abs(picture.at(3, 3, 0) - picture.at(3, 3, 2)) < 0.02);
+    DOCTEST_CHECK(picture.at(3, 3, 0) > 0.1);
+    DOCTEST_CHECK(picture.at(3, 3, 0) < 0.6);
+}
+
 DOCTEST_TEST_CASE("16 bits become 8") {
     cv::Mat deep(8, 8, CV_16UC3, cv::Scalar(257 * 10, 257 * 20, 257 * 30));
     const auto picture = received_picture(bytes_of(encoded(".png", deep)), ramp(64, 64));

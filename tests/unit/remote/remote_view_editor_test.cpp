@@ -273,6 +273,65 @@ DOCTEST_TEST_CASE("warp: parts of a mask that lie beside the object may stay as 
     DOCTEST_CHECK(setup.server.orders.size() == 1 + 2 * 2);
 }
 
+DOCTEST_TEST_CASE(
+    "own pictures: a view that has one is not asked for, and leads the others, whatever their way") {
+    const auto views = views_of_wall(5);
+    const auto blue = gse::test::in_colour(views[3].original, {0.2f, 0.4f, 1.0f});
+    for (const auto& [agreement, family] : {std::pair{Agreement::None, "sd15"},
+                                            {Agreement::Sheet, "kontext"},
+                                            {Agreement::Reference, "flux2-klein"},
+                                            {Agreement::Warp, "sd15-inpainting"}}) {
+        DOCTEST_CAPTURE(agreement_name(agreement));
+        Setup setup;
+        setup.server.facts.references = 4;
+        auto drawing = drawing_of(agreement, family);
+        drawing.own = {{"view_3", at_side(blue, 2 * Side)}};  // the name as files have it
+        const auto edited = setup.edit(drawing, views);
+        DOCTEST_CHECK(change_inside(edited.images[3], blue, views[3].mask) < 0.02);
+        DOCTEST_CHECK(psnr_outside(views[3].rendered, edited.images[3], views[3].mask) == 99);
+        DOCTEST_CHECK(edited.rejected[3] == 0);
+        for (const auto& order : setup.server.orders) {
+            DOCTEST_CHECK(order.picture.data != views[3].rendered.data);
+            if (agreement == Agreement::Reference)
+                DOCTEST_CHECK(
+                    change_inside(order.references.back(), at_side(blue, Side), Mask(Side, Side, 1)) < 0.02);
+        }
+        if (agreement == Agreement::Warp)  // view 0 is blue, carried over, before the server is asked
+            DOCTEST_CHECK(change_inside(setup.server.orders[0].picture,
+                                        gse::test::in_colour(views[0].original, {0.2f, 0.4f, 1.0f}),
+                                        disc(Side, 20)) < 0.05);
+        if (agreement == Agreement::Sheet)
+            DOCTEST_CHECK(change_inside(cut_cell(setup.server.orders[0].picture, 0),
+                                        at_side(blue, cell_side(Side)), disc(cell_side(Side), 10)) < 0.05);
+    }
+}
+
+DOCTEST_TEST_CASE("own pictures: a name that no view of the round has is refused with the names they have") {
+    Setup setup;
+    auto drawing = drawing_of(Agreement::None);
+    drawing.own = {{"view 9", waves(Side)}};
+    DOCTEST_CHECK_THROWS_WITH_AS(setup.edit(drawing, views_of_wall(3)),
+                                 doctest::Contains("\"view 9\" is none of the views"), Error);
+    drawing.own = {};
+    drawing.key_view = "view 4";
+    DOCTEST_CHECK_THROWS_AS(setup.edit(drawing, views_of_wall(3)), Error);
+    DOCTEST_CHECK(setup.server.orders.empty());
+}
+
+DOCTEST_TEST_CASE("own pictures: the view that is named as key is drawn first") {
+    Setup setup;
+    setup.server.facts.references = 4;
+    auto drawing = drawing_of(Agreement::Reference, "flux2-klein");
+    drawing.key_view = "view 2";
+    const auto views = views_of_wall(4);
+    setup.edit(drawing, views);
+    DOCTEST_CHECK(setup.server.orders[0].picture.data == views[2].rendered.data);
+    DOCTEST_CHECK(suited_agreement(Agreement::Auto, family_named("sd15"), setup.server.facts) ==
+                  Agreement::None);
+    DOCTEST_CHECK(suited_agreement(Agreement::Auto, family_named("sd15"), setup.server.facts, true) ==
+                  Agreement::Warp);
+}
+
 DOCTEST_TEST_CASE("editor: something new comes with its outline") {
     Setup setup;
     const auto hat = disc(Side, 9);
@@ -317,6 +376,38 @@ DOCTEST_TEST_CASE("source: answers are kept by all that they follow from, and no
     }
     setup.server.facts.model = "another";
     DOCTEST_CHECK(asked("", order));
+}
+
+DOCTEST_TEST_CASE(
+    "source: a picture that is too large is asked for at 3/4 of its side, and the rest as well") {
+    Setup setup;
+    setup.server.draws = [&](const RedrawOrder& asked, std::size_t) {
+        if (asked.picture.width > 192) throw Error(ErrorCode::Foreign, "it ran out of memory", TooLargeHint);
+        return gse::test::in_colour(asked.picture, setup.server.colour);
+    };
+    RedrawOrder order;
+    order.picture = waves(256);
+    order.mask = as_image(disc(256, 40));
+    order.references = {waves(256), waves(64)};
+    PictureSource source(setup.server, setup.server.facts, "", &setup.answers);
+    const auto picture = source.ask(order, {});
+    DOCTEST_CHECK(picture.width == 256);
+    DOCTEST_CHECK(change_inside(picture, gse::test::in_colour(order.picture, setup.server.colour),
+                                disc(256, 100)) < 0.02);
+    DOCTEST_CHECK(source.use().smaller_side == 192);
+    DOCTEST_REQUIRE(setup.server.orders.size() == 2);
+    DOCTEST_CHECK(setup.server.orders[1].mask.width == 192);
+    DOCTEST_CHECK(setup.server.orders[1].references[0].width == 192);
+    DOCTEST_CHECK(setup.server.orders[1].references[1].width == 64);
+    DOCTEST_CHECK(source.ask(order, {}).data == picture.data);  // kept, and not asked for at the full size
+    DOCTEST_CHECK(setup.server.orders.size() == 2);
+    order.picture = Image(64, 64, 3);  // no smaller side is left
+    order.mask = {};
+    setup.server.draws = [](const RedrawOrder&, std::size_t) -> Image {
+        throw Error(ErrorCode::Foreign, "it ran out of memory", TooLargeHint);
+    };
+    DOCTEST_CHECK_THROWS_WITH_AS(source.ask(order, {}), doctest::Contains("ran out of memory"), Error);
+    DOCTEST_CHECK(setup.server.orders.size() == 3);
 }
 
 DOCTEST_TEST_CASE("editor: a round whose views are of two models is drawn once more") {

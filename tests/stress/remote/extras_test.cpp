@@ -1,0 +1,140 @@
+// Options, LoRAs and smaller pictures over each protocol of the stand-in.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "engine/remote/protocols/connect.h"
+#include "engine/remote/views/picture_source.h"
+#include "engine/remote/views/view_frame.h"
+#include "tests/stress/remote/stand_in.h"
+
+namespace gse::remote {
+namespace {
+
+struct Spoken {
+    const char* flavour;
+    ServerKind kind;
+    const char* place;  // of a drawing
+};
+
+const std::vector<Spoken>& spoken() {
+    static const std::vector<Spoken> all{{"forge", ServerKind::Webui, "/img2img"},
+                                         {"vllm", ServerKind::OpenAi, "/edits"},
+                                         {"sdserver", ServerKind::SdCpp, "/img_gen"},
+                                         {"comfy", ServerKind::Comfy, "/prompt"}};
+    return all;
+}
+
+ServerAddress address_of(StandIn& stand_in, ServerKind kind) {
+    auto address = stand_in.address();
+    address.kind = kind;
+    return address;
+}
+
+RedrawOrder order_of_side(int side) {
+    auto order = small_order();
+    order.picture = at_side(order.picture, side);
+    order.mask = at_side(order.mask, side);
+    for (auto& value : order.mask.data) value = value > 0.5f ? 1.0f : 0.0f;
+    return order;
+}
+
+DOCTEST_TEST_CASE("options reach the requests, and wrong ones are refused before a picture is sent") {
+    if (!can_stand_in()) return;
+    const char* options[] = {"scheduler=karras", "guidance_scale=2", "sample_params.flow_shift=3",
+                             "KSampler.scheduler=simple"};
+    const char* wrong[] = {"width=8", "mask_image=x", "init_image=x", "KSampler.seed=1"};
+    for (std::size_t i = 0; i < spoken().size(); ++i) {
+        const auto& [flavour, kind, place] = spoken()[i];
+        DOCTEST_CAPTURE(flavour);
+        auto& stand_in = shared_stand_in(flavour);
+        auto address = address_of(stand_in, kind);
+        address.options = {parse_server_option(options[i])};
+        connect(address, {})->redraw(small_order(), {});
+        const auto sent = stand_in.asked(place).at(0);
+        const auto fields = sent["fields"];
+        if (kind == ServerKind::Webui) DOCTEST_CHECK(sent["json"]["scheduler"] == "karras");
+        if (kind == ServerKind::SdCpp) DOCTEST_CHECK(sent["json"]["sample_params"]["flow_shift"] == 3);
+        if (kind == ServerKind::Comfy)
+            DOCTEST_CHECK(sent["json"]["prompt"]["7"]["inputs"]["scheduler"] == "simple");
+        if (kind == ServerKind::OpenAi)
+            DOCTEST_CHECK(std::count(fields.begin(), fields.end(),
+                                     nlohmann::json::array({"guidance_scale", "", "2"})) == 1);
+        stand_in.reset();
+        address.options = {parse_server_option(wrong[i])};
+        DOCTEST_CHECK(caught([&] { connect(address, {}); }).says("set by the program"));
+        for (const auto& entry : stand_in.log()) DOCTEST_CHECK(entry["method"] == "GET");
+    }
+    auto& comfy = shared_stand_in("comfy");
+    auto address = comfy.address();
+    address.options = {parse_server_option("KSampler.scheduler=nonsense")};
+    const auto refused = caught([&] { connect(address, {})->redraw(small_order(), {}); });
+    DOCTEST_CHECK(refused.says("does not have \"nonsense\""));
+    DOCTEST_CHECK(comfy.asked("/upload/image").empty());
+}
+
+DOCTEST_TEST_CASE("LoRAs are told as each server takes them, and those it lacks are refused with its list") {
+    if (!can_stand_in()) return;
+    struct Told {
+        const char* flavour;
+        ServerKind kind;
+    };
+    for (const auto& [flavour, kind] :
+         {Told{"forge", ServerKind::Webui}, Told{"kcpp", ServerKind::Webui},
+          Told{"sdserver", ServerKind::SdCpp}, Told{"sdserver", ServerKind::OpenAi},
+          Told{"comfy", ServerKind::Comfy}, Told{"vllm", ServerKind::OpenAi}}) {
+        DOCTEST_CAPTURE(flavour);
+        auto& stand_in = shared_stand_in(flavour);
+        auto address = address_of(stand_in, kind);
+        address.loras = {{"brass", 1}};
+        const auto refused = caught([&] { connect(address, {}); });
+        DOCTEST_CHECK(refused.says("has no LoRA \"brass\""));
+        const bool has_any = std::string(flavour) != "vllm";
+        DOCTEST_CHECK((refused.hint.find("it has: bronze") != std::string::npos) == has_any);
+        if (!has_any) continue;
+        address.loras = {{"bronze", 0.5}};
+        const auto server = connect(address, {});
+        DOCTEST_CHECK(server->redraw(small_order(), {}).picture.width == 64);
+        const nlohmann::json listed{{{"path", "bronze.safetensors"}, {"multiplier", 0.5}}};
+        if (kind == ServerKind::OpenAi) {
+            DOCTEST_CHECK(stand_in.asked("/edits").at(0)["fields"].dump().find("bronze.safetensors") !=
+                          std::string::npos);
+        } else if (kind == ServerKind::SdCpp) {
+            DOCTEST_CHECK(stand_in.asked("/img_gen").at(0)["json"]["lora"] == listed);
+        } else if (kind == ServerKind::Comfy) {
+            const auto graph = stand_in.asked("/prompt").at(0)["json"]["prompt"];
+            DOCTEST_CHECK(graph["gse lora 1"]["inputs"]["lora_name"] == "bronze.safetensors");
+            DOCTEST_CHECK(graph["7"]["inputs"]["model"][0] == "gse lora 1");
+        } else {
+            const auto sent = stand_in.asked("/img2img").at(0)["json"];
+            const bool tagged = std::string(flavour) == "forge";
+            DOCTEST_CHECK(sent["prompt"] == (tagged ? "a golden bear <lora:bronze:0.5>" : "a golden bear"));
+            if (!tagged) DOCTEST_CHECK(sent["lora"] == listed);
+        }
+    }
+}
+
+DOCTEST_TEST_CASE("a server whose memory does not do is asked once at 3/4 of the side, then given up") {
+    if (!can_stand_in()) return;
+    for (const auto& [flavour, kind, place] : spoken()) {
+        DOCTEST_CAPTURE(flavour);
+        auto& stand_in = shared_stand_in(flavour);
+        const auto server = connect(address_of(stand_in, kind), {});
+        stand_in.set({{"most_side", "192"}});
+        PictureSource source(*server, server->probe({}), "", nullptr);
+        DOCTEST_CHECK(source.ask(order_of_side(256), {}).width == 256);
+        DOCTEST_CHECK(source.use().smaller_side == 192);
+        DOCTEST_CHECK(source.ask(order_of_side(256), {}).width == 256);
+        DOCTEST_CHECK(stand_in.asked(place).size() == 3);  // the second picture is asked for smaller at once
+        DOCTEST_CHECK(source.ask(order_of_side(128), {}).width == 128);
+        stand_in.reset({{"most_side", "64"}});
+        PictureSource other(*server, server->probe({}), "", nullptr);
+        const auto error = caught([&] { other.ask(order_of_side(256), {}); });
+        DOCTEST_CHECK(error.says("ran out of memory, also at 192 x 192 pixels"));
+        DOCTEST_CHECK(error.hint == TooLargeHint);
+        DOCTEST_CHECK(stand_in.asked(place).size() == 2);
+    }
+}
+
+}  // namespace
+}  // namespace gse::remote
