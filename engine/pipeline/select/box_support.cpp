@@ -17,7 +17,7 @@ namespace {
 constexpr float Covered = 0.5f;  // alpha
 constexpr double Within = 0.85;  // of the grown thing is labelled: else the box holds a part of it
 constexpr double Most = 0.4;     // of the label is the grown thing
-constexpr double Least = 0.15;   // of the label is the support: less may be the thing's foot
+constexpr double Least = 0.11;   // of the label is the support: less may be the thing's foot
 constexpr double Ring = 0.04;    // of the support's longer side in the picture: width of a ring around it
 constexpr double GoesOn = 0.4;   // of that ring shows more of the support (a pedestal stands on the ground)
 
