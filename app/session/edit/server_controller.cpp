@@ -15,7 +15,10 @@
 #include "engine/edit/request/decide_mode.h"
 #include "engine/pipeline/models/remote_loader.h"
 #include "engine/pipeline/models/view_server.h"
+#include "engine/remote/api/server_lora.h"
+#include "engine/remote/api/server_option.h"
 #include "engine/remote/api/server_url.h"
+#include "engine/remote/views/view_frame.h"
 
 namespace gse::app {
 namespace {
@@ -44,6 +47,20 @@ int pictures_of(const edit::EditRequest& request) {
     return edit::round_plan(request, mode).views;
 }
 
+/// Throws Error for settings that no server takes.
+void check_settings(const remote::ServerSettings& settings) {
+    check_fields(settings);
+    remote::parse_server_loras(settings.lora);
+    remote::parse_server_options(settings.option);
+}
+
+/// Settings that a server's answer depends on: not the numbers.
+nlohmann::ordered_json asked_with(remote::ServerSettings settings) {
+    settings.side = settings.steps = 0;
+    settings.guidance = settings.strength = 0;
+    return fields_to_json(settings);
+}
+
 /// Words about who can read what goes there.
 std::string said_of_way(const remote::ServerUrl& url) {
     if (remote::is_loopback(url.host)) return "That is this machine.";
@@ -68,7 +85,8 @@ std::string ServerController::consent_key() const {
 
 std::string ServerController::told(const edit::EditRequest& request) const {
     const auto url = remote::parse_server_url(settings_.url).url;
-    const auto size = side_ > 0 ? fmt::format(", {0} x {0} pixels", side_) : std::string();
+    const int side = view_.usual.side > 0 ? remote::sent_side(settings_.side, view_.usual.side) : 0;
+    const auto size = side > 0 ? fmt::format(", {0} x {0} pixels", side) : std::string();
     return fmt::format(
         "{} pictures of your scene in each round{}, their masks and the sentence \"{}\" go to "
         "{} ({}{}). {}",
@@ -111,6 +129,7 @@ void ServerController::settings_from_json(const nlohmann::json& json) {
     try {
         remote::ServerSettings read;
         fields_from_json(read, nlohmann::ordered_json(json["server"]));
+        check_settings(read);
         read.url = remote::parse_server_url(read.url).url.at("");
         settings_ = std::move(read);
     } catch (const std::exception& error) {  // of another version, or edited by hand
@@ -120,7 +139,8 @@ void ServerController::settings_from_json(const nlohmann::json& json) {
 
 void ServerController::show(ui::ServerPart& model) const {
     model.server = view_;
-    model.server.choice = {settings_.url, settings_.model, settings_.family, settings_.agreement};
+    model.server.choice = settings_;
+    if (!view_.facts.empty()) model.server.facts.push_back(values_fact(settings_, view_.usual));
     model.server.families = server_families();
     model.server.on = on_;
 }
@@ -130,34 +150,32 @@ void ServerController::show(ui::ServerPart& model) const {
 void ServerController::forget_facts() {
     view_ = {};
     kind_.clear();
-    side_ = 0;
 }
 
 /// Throws Error.
-void ServerController::take(const ui::ServerChoice& choice) {
-    auto next = settings_;
-    next.url = choice.url.empty() ? std::string() : remote::parse_server_url(choice.url).url.at("");
+void ServerController::take(const remote::ServerSettings& choice) {
+    check_settings(choice);
+    const auto url = choice.url.empty() ? std::string() : remote::parse_server_url(choice.url).url.at("");
     if (remote::without_secrets(choice.url) != choice.url) remote_api().keep_credentials(choice.url);
-    next.model = choice.model;
-    next.family = choice.family;
-    next.agreement = choice.agreement;
-    if (next.url != settings_.url) {
+    if (url == settings_.url) {
+        settings_ = choice;
+    } else {
         on_ = false;
-        next = {};
-        next.url = choice.url.empty() ? std::string() : remote::parse_server_url(choice.url).url.at("");
+        settings_ = {};
         forget_facts();
     }
-    settings_ = std::move(next);
+    settings_.url = url;
     workspace_.settings_changed = true;
 }
 
 template <> void ServerController::on(const command::SetServer& one) {
-    const auto url = settings_.url;
-    const bool known = !view_.facts.empty();
+    const auto before = settings_;
+    const bool asked = !view_.facts.empty() || !view_.problem.empty();
     try {
         take(one.choice);
     } catch (const Error& error) { return workspace_.notices.report(error); }
-    if (known && url == settings_.url && !workspace_.jobs->works()) ask();  // facts follow the choice
+    const bool answers_differ = asked_with(before) != asked_with(settings_);
+    if (asked && before.url == settings_.url && answers_differ && !workspace_.jobs->works()) ask();
 }
 
 template <> void ServerController::on(const command::KeepServerPassword& one) {
@@ -180,7 +198,11 @@ void ServerController::ask() {
     if (!settings_.used()) return;
     if (workspace_.jobs->works())
         return workspace_.notices.toast("The image server can be asked when the job is done.");
-    forget_facts();
+    auto known = std::exchange(view_, {});
+    view_.usual = known.usual;  // so that what was chosen wrongly can be taken off
+    view_.loras = std::move(known.loras);
+    view_.is_comfy = known.is_comfy;
+    kind_.clear();
     view_.testing = true;
     auto answer = std::make_shared<ServerAnswer>();
     auto work = [settings = settings_, answer](const JobControl& control) {
@@ -198,8 +220,10 @@ void ServerController::ask() {
         view_.facts = answer->facts;
         view_.notes = answer->notes;
         view_.models = answer->models;
+        view_.loras = answer->loras;
+        view_.is_comfy = answer->is_comfy;
+        view_.usual = answer->usual;
         kind_ = answer->kind;
-        side_ = answer->side;
     };
     workspace_.jobs->start_work(JobKind::Other, {"Test the image server", work, done});
 }

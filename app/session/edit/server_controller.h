@@ -36,7 +36,7 @@ public:
 
 private:
     template <class C> void on(const C& command);
-    void take(const ui::ServerChoice& choice);
+    void take(const remote::ServerSettings& choice);
     void forget_facts();
     void ask();
     std::string consent_key() const;
@@ -47,7 +47,6 @@ private:
     bool on_ = false;
     ui::ServerView view_;             // of the last answer
     std::string kind_;                // "sd-server"; empty = not asked yet
-    int side_ = 0;                    // of the pictures that are sent, px; 0 = not asked yet
     std::set<std::string> consents_;  // of this session
 };
 

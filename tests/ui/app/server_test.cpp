@@ -23,7 +23,9 @@ bool can_ask() {
 }
 
 void choose(Session& session, const std::string& url) {
-    session.app.run(command::SetServer{{url, {}, "auto", "auto"}});
+    gse::remote::ServerSettings settings;
+    settings.url = url;
+    session.app.run(command::SetServer{settings});
 }
 
 std::string all_facts(const ui::ServerView& server) {
@@ -93,6 +95,52 @@ DOCTEST_TEST_CASE("a server tells what it is; nothing is drawn, and its address 
     DOCTEST_CHECK_FALSE(again.app.model().server.on);
     again.app.run(command::ForgetServer{});
     DOCTEST_CHECK(again.app.model().server.choice.url.empty());
+}
+
+DOCTEST_TEST_CASE("settings of the drawing are checked, keep their origin, and outlive the program") {
+    if (!can_ask()) return;
+    const Place place;
+    remote::StandIn server("sdserver");
+    {
+        Session session;
+        choose(session, server.url());
+        session.app.run(command::TestServer{});
+        DOCTEST_REQUIRE(session.idle());
+        const auto& view = session.app.model().server;
+        DOCTEST_CHECK(view.usual.side > 0);
+        DOCTEST_CHECK(view.loras == std::vector<std::string>{"bronze"});
+        DOCTEST_CHECK(all_facts(view).find("of the family") != std::string::npos);
+        auto choice = view.choice;
+        choice.steps = 9;
+        const auto before = server.log().size();
+        session.app.run(command::SetServer{choice});
+        DOCTEST_REQUIRE(session.settled());
+        DOCTEST_CHECK(server.log().size() == before);  // a number needs no answer
+        DOCTEST_CHECK(all_facts(view).find("9 steps") != std::string::npos);
+        DOCTEST_CHECK(all_facts(view).find("some chosen by you") != std::string::npos);
+        choice.lora = {"bronze:0.5"};
+        session.app.run(command::SetServer{choice});
+        DOCTEST_REQUIRE(session.idle());
+        DOCTEST_CHECK(view.problem == "");
+        choice.option = {"no option"};
+        session.app.run(command::SetServer{choice});
+        DOCTEST_CHECK(view.choice.option.empty());
+        choice.option.clear();
+        choice.lora = {"silver"};  // the server has none of that name
+        session.app.run(command::SetServer{choice});
+        DOCTEST_REQUIRE(session.idle());
+        DOCTEST_CHECK(view.problem.find("silver") != std::string::npos);
+        DOCTEST_CHECK(view.loras == std::vector<std::string>{"bronze"});  // to choose another
+        choice.lora = {"bronze:0.5"};
+        session.app.run(command::SetServer{choice});
+        DOCTEST_REQUIRE(session.idle());
+        DOCTEST_CHECK(view.problem == "");
+        session.app.shut_down();
+    }
+    Session again;
+    DOCTEST_CHECK(again.app.model().server.choice.steps == 9);
+    DOCTEST_CHECK(again.app.model().server.choice.lora == std::vector<std::string>{"bronze:0.5"});
+    again.app.shut_down();
 }
 
 DOCTEST_TEST_CASE("a server that nobody runs is a sentence with a remedy, and no question to the artist") {
