@@ -63,7 +63,7 @@ PlannedMemory CostBook::memory() const {
     return memory;
 }
 
-void CostBook::estimate(const std::vector<PlannedEdit>& edits) {
+void CostBook::estimate(const std::vector<PlannedEdit>& edits, const ServerCost& server) {
     ui::Estimate sum;
     sum.seconds = sum.tflop = 0;
     sum.quality_seconds.fill(0);
@@ -80,6 +80,11 @@ void CostBook::estimate(const std::vector<PlannedEdit>& edits) {
         const auto by_quality = costs_by_quality(measured, request, work);
         for (std::size_t i = 0; i < by_quality.size(); ++i)
             add(sum.quality_seconds[i], by_quality[i].seconds);
+    }
+    if (server.pictures > 0) {
+        sum = {};
+        sum.server_pictures = server.pictures;
+        sum.server_seconds = server.seconds;
     }
     sum.memory_mb = estimated_memory_mb(measured, memory());
     sum.memory_free_mb = static_cast<double>(free_memory()) / (1 << 20);

@@ -23,8 +23,9 @@ public:
     void remember(const std::string& key, const CostProfile& measured);
     PlannedMemory memory() const;
 
-    /// Estimates edits that are made one after another; `edits` must not be empty.
-    void estimate(const std::vector<PlannedEdit>& edits);
+    /// Estimates edits that are made one after another; `edits` must not be empty. Where a server draws, the
+    /// work of the model here says nothing of the time: only the server's part is told.
+    void estimate(const std::vector<PlannedEdit>& edits, const ServerCost& server);
     void forget_estimate() { estimate_ = {}; }
     void show(ui::SearchPart& model) const { model.estimate = estimate_; }
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -14,10 +15,10 @@
 #include "engine/edit/request/checked_request.h"
 #include "engine/edit/request/decide_mode.h"
 #include "engine/pipeline/models/remote_loader.h"
-#include "engine/pipeline/models/view_server.h"
 #include "engine/remote/api/server_lora.h"
 #include "engine/remote/api/server_option.h"
 #include "engine/remote/api/server_url.h"
+#include "engine/remote/views/picture_source.h"
 #include "engine/remote/views/view_frame.h"
 
 namespace gse::app {
@@ -59,6 +60,22 @@ nlohmann::ordered_json asked_with(remote::ServerSettings settings) {
     settings.side = settings.steps = 0;
     settings.guidance = settings.strength = 0;
     return fields_to_json(settings);
+}
+
+/// Settings that decide how long a picture takes.
+std::string cost_key(remote::ServerSettings settings) {
+    settings.target_picture.clear();
+    settings.key_view.clear();
+    return fields_to_json(settings).dump();
+}
+
+/// Pictures that are asked for to draw a round of views, where each is of use at once.
+int pictures_for(int views, remote::Agreement agreement) {
+    constexpr int cells = 4;  // of a sheet, the first of which shows the first view again
+    if (agreement == remote::Agreement::Sheet)
+        return views <= 1 ? views : 1 + std::max(0, (views - 2) / (cells - 1));
+    if (agreement == remote::Agreement::Warp) return std::max(0, 2 * views - 1);  // filled, then closed
+    return views;
 }
 
 /// Words about who can read what goes there.
@@ -114,6 +131,28 @@ void ServerController::mention(const remote::ServerSettings& named) {
         fmt::format("An image server drew the views of this recipe ({}). It is not asked here unless you "
                     "switch it on under Models.",
                     printable(url)));
+}
+
+// Costs
+
+void ServerController::measure(const remote::ServerSettings& settings, const ViewServer* server) {
+    if (server == nullptr || server->use().requests == 0) return;
+    const auto& use = server->use();
+    measured_[cost_key(settings)] = {server->agreement(), use.seconds / static_cast<double>(use.requests)};
+}
+
+ServerCost ServerController::cost_of(const std::vector<PlannedEdit>& edits) const {
+    if (!on_ || !settings_.used()) return {};
+    const auto found = measured_.find(cost_key(settings_));
+    const auto agreement = found == measured_.end() ? remote::Agreement::None : found->second.agreement;
+    ServerCost cost;
+    for (const auto& edit : edits) {
+        if (!edit.made || !edit::is_drawn(edit.work.mode)) continue;
+        const auto plan = edit::round_plan(edit.request, edit.work.mode);
+        cost.pictures += plan.rounds * pictures_for(plan.views, agreement);
+    }
+    if (found != measured_.end()) cost.seconds = cost.pictures * found->second.seconds;
+    return cost;
 }
 
 // Settings
@@ -237,6 +276,7 @@ template <> void ServerController::on(const command::ForgetServer&) {
     settings_ = {};
     on_ = false;
     consents_.clear();
+    measured_.clear();
     forget_facts();
     workspace_.settings_changed = true;
 }

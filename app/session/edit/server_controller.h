@@ -2,15 +2,20 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "app/engine_names.h"
 #include "app/session/edit/asked_sentence.h"
+#include "app/session/state/estimate.h"
 #include "app/session/state/workspace.h"
 #include "engine/edit/request/request.h"
+#include "engine/pipeline/models/view_server.h"
 #include "engine/remote/api/server_settings.h"
+#include "engine/remote/views/agreement.h"
 
 namespace gse::app {
 
@@ -28,6 +33,11 @@ public:
     /// True where the server may be sent what the sentence needs, or where none is needed. Otherwise asks the
     /// artist; with the consent, `then` is called later.
     bool may_send(const AskedSentence& sentence, std::function<void()> then);
+    /// Takes the time that the server of a run took for its pictures, where it drew any. Null = there was
+    /// none.
+    void measure(const remote::ServerSettings& settings, const ViewServer* server);
+    /// Part of these edits that the server would do as it is set now; none while it is off.
+    ServerCost cost_of(const std::vector<PlannedEdit>& edits) const;
     /// Shows the server that a recipe names. It is neither asked nor switched on.
     void mention(const remote::ServerSettings& named);
 
@@ -48,6 +58,12 @@ private:
     ui::ServerView view_;             // of the last answer
     std::string kind_;                // "sd-server"; empty = not asked yet
     std::set<std::string> consents_;  // of this session
+    /// Way in which pictures were drawn, and seconds for one.
+    struct Measured {
+        remote::Agreement agreement;
+        double seconds = 0;
+    };
+    std::map<std::string, Measured> measured_;  // in this session, by settings
 };
 
 }  // namespace gse::app

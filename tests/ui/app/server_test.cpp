@@ -193,6 +193,22 @@ DOCTEST_TEST_CASE("nothing goes to a server before the artist has agreed, and a 
     DOCTEST_CHECK(question(session).find("public address") != std::string::npos);
 }
 
+DOCTEST_TEST_CASE("an edit by a server is counted in pictures; their time is not known before one came") {
+    if (!can_ask()) return;
+    const Place place;
+    Session session;
+    session.open_bear();
+    ask_for_iridescence(session);
+    const auto& estimate = session.app.model().estimate;
+    choose(session, "http://127.0.0.1:1");
+    DOCTEST_CHECK(estimate.server_pictures == 0);
+    session.app.run(command::UseServer{true});
+    DOCTEST_REQUIRE(session.until([&] { return estimate.server_pictures == 4; }));
+    DOCTEST_CHECK(estimate.server_seconds < 0);
+    session.app.run(command::UseServer{false});
+    DOCTEST_REQUIRE(session.until([&] { return estimate.server_pictures == 0; }));
+}
+
 DOCTEST_TEST_CASE(
     "after the consent the server draws the edit, is not asked about again, and can be stopped") {
     if (!can_ask() || !networks()) return;
@@ -210,6 +226,10 @@ DOCTEST_TEST_CASE(
     DOCTEST_CHECK(session.app.model().job.error == "");
     DOCTEST_REQUIRE(session.app.model().result_waiting);
     DOCTEST_CHECK(server.asked("/img_gen").size() == 4);
+    const auto& estimate = session.app.model().estimate;
+    DOCTEST_REQUIRE(session.until([&] { return estimate.server_seconds > 0; }));  // of what was measured
+    DOCTEST_CHECK(estimate.server_pictures == 4);
+    DOCTEST_CHECK(estimate.seconds < 0);  // the model here draws nothing
     session.app.run(command::DiscardResult{});
     server.set({{"draw_s", "5"}});
     auto request = session.app.model().request;

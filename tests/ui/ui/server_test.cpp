@@ -132,9 +132,10 @@ DOCTEST_TEST_CASE("LoRAs of the server are picked from its list, weighed and tak
     panel.click("models.server.lora");
     panel.frame(2);
     DOCTEST_CHECK(panel.find("models.server.lora.clay") == nullptr);  // it is used already
-    panel.key(ImGuiKey_Escape);
-    panel.frame(2);
-    DOCTEST_CHECK(panel.asks("models.server.lora.0.remove",
+    Drawing other;
+    other.server().choice.lora = {"clay:1"};
+    other.frame(3);
+    DOCTEST_CHECK(other.asks("models.server.lora.0.remove",
                              "set_server http://127.0.0.1:1234  auto auto 0 0 0 0 [] []"));
 }
 
@@ -179,6 +180,22 @@ DOCTEST_TEST_CASE("a kept password is not shown again, and a server can be forgo
     DOCTEST_CHECK(panel.shell.state().models.server_password.empty());
     DOCTEST_CHECK(panel.asks("models.server.forget", "forget_server"));
     DOCTEST_CHECK(panel.shell.state().models.server_url.empty());
+}
+
+DOCTEST_TEST_CASE("the estimate is the server's where it draws, also before it has drawn anything") {
+    Harness harness({1600, 1000, 1, Situation::Scene, false});
+    auto& estimate = harness.application.model().estimate;
+    estimate = {};
+    harness.frame(3);
+    DOCTEST_CHECK(harness.find("prompt.estimate") == nullptr);
+    estimate.server_pictures = 8;
+    harness.frame(3);
+    const auto unknown = harness.rect("prompt.estimate");
+    DOCTEST_CHECK(unknown.visible);
+    estimate.server_seconds = 42;
+    harness.frame(3);
+    DOCTEST_CHECK(harness.rect("prompt.estimate").visible);
+    DOCTEST_CHECK(harness.rect("prompt.estimate").width < unknown.width);  // "about 42 s for 8 pictures"
 }
 
 DOCTEST_TEST_CASE("with a server, words that the model cannot draw are no obstacle to an edit") {
