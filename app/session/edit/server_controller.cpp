@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <utility>
 
@@ -53,12 +54,30 @@ void check_settings(const remote::ServerSettings& settings) {
     check_fields(settings);
     remote::parse_server_loras(settings.lora);
     remote::parse_server_options(settings.option);
+    for (const auto& text : settings.target_picture)
+        if (const auto own = remote::target_picture_of(text); !std::filesystem::is_regular_file(own.file))
+            throw Error(ErrorCode::NotFound,
+                        fmt::format("there is no picture \"{}\"", printable(own.file.string())),
+                        "choose a PNG or JPEG");
+}
+
+/// Views that have other pictures of the artist's own than before, in words; empty = none has.
+std::string said_of_pictures(const remote::ServerSettings& before, const remote::ServerSettings& now) {
+    for (const auto& text : now.target_picture)
+        if (const auto own = remote::target_picture_of(text);
+            std::find(before.target_picture.begin(), before.target_picture.end(), text) ==
+            before.target_picture.end())
+            return fmt::format("The next edit draws {} like {}.", printable(own.view),
+                               printable(own.file.filename().string()));
+    return before.target_picture.size() > now.target_picture.size() ? "The next edit draws that view itself."
+                                                                    : "";
 }
 
 /// Settings that a server's answer depends on: not the numbers.
 nlohmann::ordered_json asked_with(remote::ServerSettings settings) {
     settings.side = settings.steps = 0;
     settings.guidance = settings.strength = 0;
+    settings.target_picture.clear();
     return fields_to_json(settings);
 }
 
@@ -105,9 +124,10 @@ std::string ServerController::told(const edit::EditRequest& request) const {
     const int side = view_.usual.side > 0 ? remote::sent_side(settings_.side, view_.usual.side) : 0;
     const auto size = side > 0 ? fmt::format(", {0} x {0} pixels", side) : std::string();
     return fmt::format(
-        "{} pictures of your scene in each round{}, their masks and the sentence \"{}\" go to "
+        "{} pictures of your scene in each round{}, their masks{} and the sentence \"{}\" go to "
         "{} ({}{}). {}",
-        pictures_of(request), size, request.prompt, url.nickname(), kind_.empty() ? "an image server" : kind_,
+        pictures_of(request), size, settings_.target_picture.empty() ? "" : ", your own pictures",
+        request.prompt, url.nickname(), kind_.empty() ? "an image server" : kind_,
         url.encrypted() || remote::is_loopback(url.host) ? "" : ", not encrypted", said_of_way(url));
 }
 
@@ -160,6 +180,7 @@ ServerCost ServerController::cost_of(const std::vector<PlannedEdit>& edits) cons
 void ServerController::settings_to_json(nlohmann::json& json) const {
     if (!settings_.used()) return;
     json["server"] = fields_to_json(settings_);
+    json["server"].erase("target_picture");  // of this scene
     json["server"]["url"] = remote::without_secrets(settings_.url);
 }
 
@@ -213,6 +234,7 @@ template <> void ServerController::on(const command::SetServer& one) {
     try {
         take(one.choice);
     } catch (const Error& error) { return workspace_.notices.report(error); }
+    if (const auto said = said_of_pictures(before, settings_); !said.empty()) workspace_.notices.toast(said);
     const bool answers_differ = asked_with(before) != asked_with(settings_);
     if (asked && before.url == settings_.url && answers_differ && !workspace_.jobs->works()) ask();
 }

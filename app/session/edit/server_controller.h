@@ -38,6 +38,8 @@ public:
     void measure(const remote::ServerSettings& settings, const ViewServer* server);
     /// Part of these edits that the server would do as it is set now; none while it is off.
     ServerCost cost_of(const std::vector<PlannedEdit>& edits) const;
+    /// Forgets pictures that were for views of another document.
+    void take_document() { settings_.target_picture.clear(); }
     /// Shows the server that a recipe names. It is neither asked nor switched on.
     void mention(const remote::ServerSettings& named);
 

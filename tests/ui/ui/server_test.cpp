@@ -198,6 +198,41 @@ DOCTEST_TEST_CASE("the estimate is the server's where it draws, also before it h
     DOCTEST_CHECK(harness.rect("prompt.estimate").width < unknown.width);  // "about 42 s for 8 pictures"
 }
 
+DOCTEST_TEST_CASE(
+    "a view of the edit takes a picture of the artist's own, dropped or chosen, and gives it back") {
+    Harness harness({1920, 1080, 1, Situation::ResultWaiting, false});
+    harness.shell.show(ui::PanelId::Targets);
+    harness.frame(3);
+    DOCTEST_CHECK(harness.find("targets.1.own") == nullptr);  // the model here draws
+    auto& model = harness.application.model();
+    const auto view = model.target_rounds.back().targets[1].name;
+    model.server.on = true;
+    model.server.choice.url = "http://127.0.0.1:1234";
+    harness.frame(3);
+    harness.click("targets.1.own");
+    harness.frame(2);
+    DOCTEST_CHECK(harness.shell.state().files.is_open());
+    Harness other({1920, 1080, 1, Situation::ResultWaiting, false});
+    auto& shown = other.application.model();
+    shown.server = model.server;
+    other.shell.show(ui::PanelId::Targets);
+    other.frame(3);
+    other.shell.request_open({"/tmp/painted.png"});
+    other.frame(3);
+    DOCTEST_CHECK(other.application.asked("open /tmp/painted.png"));  // no view is selected
+    other.click("targets.1");
+    other.frame(2);
+    DOCTEST_CHECK(other.shell.state().targets.view == view);
+    other.shell.request_open({"/tmp/painted.png"});
+    other.frame(3);
+    DOCTEST_CHECK(other.application.asked("set_server http://127.0.0.1:1234  auto auto 0 0 0 0 [] [] [" +
+                                          view + "=/tmp/painted.png]"));
+    shown.server.choice.target_picture = {view + "=/tmp/painted.png"};
+    other.frame(3);
+    DOCTEST_CHECK(
+        other.asks("targets.own.0.clear", "set_server http://127.0.0.1:1234  auto auto 0 0 0 0 [] [] []"));
+}
+
 DOCTEST_TEST_CASE("with a server, words that the model cannot draw are no obstacle to an edit") {
     Harness harness({1600, 1000, 1, Situation::Scene, false});
     auto& model = harness.application.model();

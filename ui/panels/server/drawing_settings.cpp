@@ -198,7 +198,7 @@ void draw_files(Context& context, ServerSettings& choice) {
 
 void draw_drawing_settings(Context& context) {
     const auto& server = context.model.server;
-    if (server.facts.empty() && server.problem.empty()) return;  // nobody was asked
+    if (server.usual.side == 0 && server.problem.empty()) return;  // it was not asked yet
     if (!folding(context, "models.server.drawing", "Drawing settings")) return;
     auto choice = server.choice;
     const auto before = fields_to_json(choice);
