@@ -81,20 +81,23 @@ nlohmann::ordered_json asked_with(remote::ServerSettings settings) {
     return fields_to_json(settings);
 }
 
-/// Settings that decide how long a picture takes.
+/// Settings that decide how long a picture takes, and how many are asked for.
 std::string cost_key(remote::ServerSettings settings) {
+    const bool follows = !settings.target_picture.empty();
     settings.target_picture.clear();
     settings.key_view.clear();
-    return fields_to_json(settings).dump();
+    return fmt::format("{} {}", fields_to_json(settings).dump(), follows);
 }
 
-/// Pictures that are asked for to draw a round of views, where each is of use at once.
-int pictures_for(int views, remote::Agreement agreement) {
+/// Pictures that are asked for to draw a round, where each is of use at once. `own` of the views are there.
+int pictures_for(int views, int own, remote::Agreement agreement) {
     constexpr int cells = 4;  // of a sheet, the first of which shows the first view again
-    if (agreement == remote::Agreement::Sheet)
-        return views <= 1 ? views : 1 + std::max(0, (views - 2) / (cells - 1));
-    if (agreement == remote::Agreement::Warp) return std::max(0, 2 * views - 1);  // filled, then closed
-    return views;
+    const int missing = std::max(0, views - own);
+    if (agreement == remote::Agreement::Sheet && missing > 0)
+        return own > 0 ? (missing + cells - 2) / (cells - 1) : 1 + std::max(0, (missing - 2) / (cells - 1));
+    if (agreement == remote::Agreement::Warp)  // filled, then closed; the first is drawn by itself
+        return own > 0 ? 2 * missing : std::max(0, 2 * missing - 1);
+    return missing;
 }
 
 /// Words about who can read what goes there.
@@ -165,11 +168,12 @@ ServerCost ServerController::cost_of(const std::vector<PlannedEdit>& edits) cons
     if (!on_ || !settings_.used()) return {};
     const auto found = measured_.find(cost_key(settings_));
     const auto agreement = found == measured_.end() ? remote::Agreement::None : found->second.agreement;
+    const auto own = static_cast<int>(settings_.target_picture.size());
     ServerCost cost;
     for (const auto& edit : edits) {
         if (!edit.made || !edit::is_drawn(edit.work.mode)) continue;
         const auto plan = edit::round_plan(edit.request, edit.work.mode);
-        cost.pictures += plan.rounds * pictures_for(plan.views, agreement);
+        cost.pictures += plan.rounds * pictures_for(plan.views, own, agreement);
     }
     if (found != measured_.end()) cost.seconds = cost.pictures * found->second.seconds;
     return cost;

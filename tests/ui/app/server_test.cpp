@@ -3,6 +3,8 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "engine/base/file.h"
 #include "engine/io/image/image_file.h"
 #include "engine/pipeline/models/remote_loader.h"
@@ -35,6 +37,13 @@ std::string all_facts(const ui::ServerView& server) {
 }
 
 std::string question(const Session& session) { return session.app.model().question.text; }
+
+double mean_difference(const Image& a, const Image& b) {
+    DOCTEST_REQUIRE(a.data.size() == b.data.size());
+    double sum = 0;
+    for (std::size_t i = 0; i < a.data.size(); ++i) sum += std::abs(a.data[i] - b.data[i]);
+    return sum / static_cast<double>(a.data.size());
+}
 
 std::uint64_t questions(const Session& session) { return session.app.model().question.number; }
 
@@ -244,6 +253,47 @@ DOCTEST_TEST_CASE(
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK(session.app.model().job.outcome == "stopped");
     DOCTEST_CHECK_FALSE(session.app.model().result_waiting);
+}
+
+DOCTEST_TEST_CASE(
+    "a picture of the artist's own is taken for its view, which the server does not draw then") {
+    if (!can_ask() || !networks()) return;
+    const Place place;
+    remote::StandIn server("sdserver");
+    Session session;
+    ask_server(session, server);
+    session.app.run(command::Answer{0});
+    DOCTEST_REQUIRE(session.idle());
+    const auto& model = session.app.model();
+    DOCTEST_REQUIRE(model.target_rounds.size() == 1);
+    const auto target = model.target_rounds.back().targets.at(1);
+    session.app.run(command::DiscardResult{});
+    auto choice = model.server.choice;
+    choice.target_picture = {target.name + "=" + (place.folder / "own.png").string()};
+    session.app.run(command::SetServer{choice});  // there is no such file
+    DOCTEST_CHECK(model.server.choice.target_picture.empty());
+    write_png(place.folder / "own.png", *target.after);
+    session.app.run(command::SetServer{choice});
+    DOCTEST_CHECK(model.toasts.back().text.find("own.png") != std::string::npos);
+    auto request = model.request;
+    request.seed += 1;
+    session.app.run(command::SetRequest{request});
+    const auto before = server.asked("/img_gen").size();
+    session.app.run(command::Edit{});
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_CHECK(model.job.error == "");
+    // The other three are carried over by depth: filled, then drawn once more.
+    DOCTEST_CHECK(server.asked("/img_gen").size() == before + 6);
+    const auto& followed = model.target_rounds.back().targets.at(1);
+    DOCTEST_CHECK(followed.name == target.name);
+    DOCTEST_CHECK(mean_difference(*followed.after, *target.after) < 0.02);
+    DOCTEST_REQUIRE(session.until([&] { return model.estimate.server_pictures == 6; }));
+    DOCTEST_CHECK(model.estimate.server_seconds > 0);
+    session.app.run(command::DiscardResult{});
+    choice.target_picture.clear();
+    session.app.run(command::SetServer{choice});
+    DOCTEST_CHECK(model.server.choice.target_picture.empty());
+    session.app.shut_down();
 }
 
 DOCTEST_TEST_CASE("a recipe that names a server is told of, and changes neither address nor switch") {
