@@ -42,7 +42,7 @@ void CostBook::remember(const std::string& key, const CostProfile& measured) {
         entry = *entry < 0 ? news.erase(entry) : std::next(entry);
     if (known.work_mb > measured.work_mb) news.erase("work_mb");  // the largest job counts
     fields_from_json(known, news);
-    workspace_.settings_changed = true;
+    workspace_.settings_changed = stale_ = true;
 }
 
 PlannedMemory CostBook::memory() const {
@@ -89,6 +89,7 @@ void CostBook::estimate(const std::vector<PlannedEdit>& edits, const ServerCost&
     sum.memory_mb = estimated_memory_mb(measured, memory());
     sum.memory_free_mb = static_cast<double>(free_memory()) / (1 << 20);
     estimate_ = std::move(sum);
+    stale_ = false;
 }
 
 void CostBook::settings_to_json(nlohmann::json& json) const {

@@ -417,7 +417,7 @@ void SearchController::refresh() {
     sentence_.set_known_words(models_.list().known_words(), servers_.on());
     if (workspace_.document.empty()) return;
     refresh_scope();
-    if (seconds_since(last_estimate_) <= EstimateSeconds) return;
+    if (!costs_.is_stale() && seconds_since(last_estimate_) <= EstimateSeconds) return;
     last_estimate_ = Clock::now();
     refresh_estimate();
 }

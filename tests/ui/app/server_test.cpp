@@ -236,7 +236,7 @@ DOCTEST_TEST_CASE(
     DOCTEST_REQUIRE(session.app.model().result_waiting);
     DOCTEST_CHECK(server.asked("/img_gen").size() == 4);
     const auto& estimate = session.app.model().estimate;
-    DOCTEST_REQUIRE(session.until([&] { return estimate.server_seconds > 0; }));  // of what was measured
+    DOCTEST_CHECK(estimate.server_seconds > 0);  // of what was measured, in the frame that shows the result
     DOCTEST_CHECK(estimate.server_pictures == 4);
     DOCTEST_CHECK(estimate.seconds < 0);  // the model here draws nothing
     session.app.run(command::DiscardResult{});
