@@ -109,28 +109,29 @@ std::vector<std::string> labels_of_scene(const PlanOptions& options) {
     return pipeline::label_names(load_scene(options.scene, options.reading).labels);
 }
 
-/// Words of the scene: those that were given, else its labels and the source.
+edit::EditRequest request_of(const PlanOptions& options) {
+    edit::EditRequest request;
+    request.source = options.source;
+    request.prompt = options.prompt;
+    return request;
+}
+
+/// Words of the scene: those that were given, else what an edit takes for known.
 plan::SceneWords words_of_scene(const PlanOptions& options, const std::vector<std::string>& labels) {
     if (!options.words.empty()) return plan::scene_words(options.words);
-    std::string words = options.source;
-    for (const auto& label : labels)
-        if (label != options.source) words += "; " + label;
-    return plan::scene_words(words);
+    return edit::assumed_scene(request_of(options), labels);
 }
 
 /// The plan's steps, each told to the model or with the reason why it cannot be. Refusals have none.
 std::vector<edit::PlannedStep> steps_for_model(const plan::Plan& made, const plan::SceneWords& scene,
                                                const std::vector<std::string>& labels,
                                                const PlanOptions& options) {
-    edit::EditRequest request;
-    request.source = options.source;
-    request.prompt = options.prompt;
     pipeline::JobParameters job;
     job.model = options.model;
     if (made.is_refusal()) return {};
     const auto model = pipeline::model_path(job);
-    return pipeline::known_to_model(edit::planned_steps(made, scene, pipeline::model_ability(model)), request,
-                                    model, labels);
+    return pipeline::known_to_model(edit::planned_steps(made, scene, pipeline::model_ability(model)),
+                                    request_of(options), model, labels);
 }
 
 Json step_to_json(const edit::PlannedStep& planned) {

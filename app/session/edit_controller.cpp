@@ -360,7 +360,8 @@ template <> void EditController::on(const command::ApplyResult&) {
                               : fmt::format("The {} edits of \"{}\" are kept, each under History.",
                                             changes.size(), result.name));
     search_.sentence().forget_target();  // it is done: the next sentence has news of its own
-    view_.tint(false);                   // what was made is to be seen, not where
+    search_.sentence().set_step(std::nullopt);
+    view_.tint(false);  // what was made is to be seen, not where
 }
 
 void EditController::discard_result() {

@@ -20,12 +20,14 @@
 #include "engine/localize/focus.h"
 #include "engine/pipeline/models/installed.h"
 #include "engine/pipeline/report/film.h"
+#include "engine/pipeline/report/picture_marks.h"
 #include "engine/pipeline/report/picture_text.h"
 #include "engine/pipeline/run/views.h"
 #include "engine/pipeline/scene/scene_tools.h"
 #include "engine/scene/origin/world_offset.h"
 #include "engine/scene/row_values.h"
 #include "engine/scene/viewpoints.h"
+#include "ui/viewport/scene_lines.h"
 
 namespace gse::app {
 namespace {
@@ -148,8 +150,8 @@ void ExportController::start(const char* what, const std::filesystem::path& path
 
 template <> void ExportController::on(const command::SetExports& one) { settings_ = one.settings; }
 
-template <> void ExportController::on(const command::ExportPicture&) {
-    if (settings_.as_shown) return export_as_shown();
+template <> void ExportController::on(const command::ExportPicture& one) {
+    if (settings_.as_shown) return export_as_shown(one.em_px);
     if (!something_to_export()) return;
     const auto path = free_place(settings_.picture_path);
     auto settings = render_settings();
@@ -171,7 +173,7 @@ template <> void ExportController::on(const command::ExportPicture&) {
     start("Screenshot", path, work, said_of_export());
 }
 
-void ExportController::export_as_shown() {
+void ExportController::export_as_shown(float em_px) {
     PictureRequest request = view_.wanted();
     if (!workspace_.require_scene() || request.camera.width <= 0) return;
     const auto path = free_place(settings_.picture_path);
@@ -179,9 +181,17 @@ void ExportController::export_as_shown() {
     const auto recipe = search_.recipe();
     auto recipe_json = recipe_to_json(recipe);
     recipe_json["camera"] = camera_to_json(view_.shown_camera());
-    auto work = [=](const JobControl& control) {
+    const auto& state = workspace_.document.state();
+    auto work = [=, views = state.views, set = state.current,
+                 radius = view_.orbit().radius](const JobControl& control) {
         control.report("rendering", 0, 1);
-        const Image picture = shown_picture(request);
+        Image picture = shown_picture(request);
+        ui::ShownLines lines{request.camera, request.settings, {}, {}, views, radius, em_px};
+        if (request.settings.show_bounds) {
+            const auto statistics = compute_statistics(set);
+            lines.low = statistics.robust_low, lines.high = statistics.robust_high;
+        }
+        draw_marks(picture, ui::marks_of(lines));
         control.report("writing", 1, 1);
         write_png(path, picture, picture_text(recipe, recipe_json));
     };

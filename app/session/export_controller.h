@@ -47,7 +47,7 @@ private:
     std::string said_of_export() const;
     OrbitParameters orbit(const GaussianSet& shown) const;
     raster::Settings render_settings() const;
-    void export_as_shown();
+    void export_as_shown(float em_px);
     void write_scene(const std::filesystem::path& path);
     void start(const char* what, const std::filesystem::path& path,
                std::function<void(const JobControl&)> work, const std::string& said, bool can_pause = false);

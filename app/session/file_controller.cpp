@@ -129,6 +129,7 @@ void FileController::take(OpenedWork opened) {
     workspace_.project_path = opened.project_path.string();
     workspace_.document = Document(std::move(opened.state));
     const auto& state = workspace_.document.state();
+    workspace_.variations.take(std::move(opened.data.variations));
     for (const auto& node : state.stack)
         workspace_.next_edit_id = std::max(workspace_.next_edit_id, node.id + 1);
     take_parts(std::move(opened.pending));
@@ -265,6 +266,7 @@ std::shared_ptr<ProjectData> FileController::project_data() const {
     data->source = source_;
     data->embeds = embeds_;
     data->unknown = unknown_;
+    data->variations = workspace_.variations.stored(workspace_.document.state().stack);
     parts_.view.to_json(data->ui);
     parts_.exports.to_json(data->ui);
     parts_.search.to_json(data->ui);

@@ -175,6 +175,14 @@ CutOutRows clicked(const GaussianSet& set, const CutOutRequest& request, const J
                                                   : fmt::format("The thing is labelled, {}.", parted)};
 }
 
+CutOutRows boxed(const GaussianSet& set, const CutOutRequest& request, edit::Segmenter* segmenter,
+                 const JobControl& control) {
+    auto thing = pipeline::cut_out(set, request, segmenter, control);
+    auto said = pipeline::cut_text(thing);
+    if (!said.empty()) said = fmt::format("Check the label: {}.", said);
+    return {std::move(thing.rows), std::move(said)};
+}
+
 }  // namespace
 
 template <> void LabelController::on(const command::CutOut& one) {
@@ -203,7 +211,7 @@ template <> void LabelController::on(const command::CutOut& one) {
                  return;
              }
              control.report("cutting out what is in the box", 0, 0);
-             found->rows = pipeline::cut_out(set, request, open_segmenters(job, cache).clicks.get(), control);
+             *found = boxed(set, request, open_segmenters(job, cache).clicks.get(), control);
          },
          [this, found, operation = one.operation, camera = request.camera,
           up = request.up](const Error* error) {
@@ -401,7 +409,7 @@ template <> void LabelController::on(const command::SetEditStrength& one) {
 }
 
 template <> void LabelController::on(const command::ExchangeVariation& one) {
-    const Variations* kept = workspace_.variations.of(one.id);
+    const EditVariations* kept = workspace_.variations.of(one.id);
     if (kept == nullptr || one.index >= kept->nodes.size() || !stack_is_free()) return;
     if (kept->applied(state().stack) == one.index) return;
     const EditNode& node = kept->nodes[one.index];

@@ -14,6 +14,7 @@
 #include "engine/base/error.h"
 #include "engine/base/json.h"
 #include "engine/neural/api/lora_spec.h"
+#include "engine/pipeline/inventory/model_inventory.h"
 #include "engine/pipeline/models/installed.h"
 #include "engine/pipeline/models/model_catalogue.h"
 #include "engine/pipeline/models/model_settings.h"
@@ -26,6 +27,18 @@ namespace command = ui::command;
 
 std::string reason_of(const Error& error) {
     return error.hint().empty() ? error.message() : fmt::format("{}; {}", error.message(), error.hint());
+}
+
+/// One sentence about weights that are neither model nor LoRA nor segmenter here.
+std::string why_not_used(const ModelFile& file) {
+    std::string why = file.use.why;
+    if (file.use.place == neural::WeightPlace::Here)
+        why = file.use.how == "--taesd" ? "the command line takes it with --taesd"
+                                        : "it counts where it lies beside the checkpoint that it belongs to";
+    else if (file.use.place == neural::WeightPlace::Server)
+        why += "; use it through an image server that has it (Models, Image server)";
+    return fmt::format("\"{}\" cannot be used by itself ({}): {}.", file.path.filename().string(), file.kind,
+                       why);
 }
 
 }  // namespace
@@ -379,6 +392,21 @@ template <> void ModelController::on(const command::ChooseSegmenter& one) {
                                  fmt::format("\"{}\": {}. What was in use stays.", file, reason_of(*error)),
                                  true);
                          }});
+}
+
+template <> void ModelController::on(const command::OpenModel& one) {
+    auto path = std::filesystem::absolute(one.path).lexically_normal();
+    const auto weights = path / "adapter_model.safetensors";
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(weights, ignored)) path = weights;  // a LoRA's folder
+    const auto file = describe_model_file(path);
+    if (file.use.how == "--model") try_model(path.string(), loras_, true);
+    else if (file.use.how == "--lora") on(command::AddLora{neural::lora_text({path, 1})});
+    else if (file.use.how == "--segmenter")
+        on(command::ChooseSegmenter{ui::SegmenterRole::Clicks, path.string()});
+    else if (file.use.how == "--text-segmenter")
+        on(command::ChooseSegmenter{ui::SegmenterRole::Words, path.parent_path().string()});
+    else workspace_.notices.toast(why_not_used(file), true);
 }
 
 template <> void ModelController::on(const command::SetCacheMb& one) {

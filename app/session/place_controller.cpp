@@ -54,19 +54,31 @@ template <> void PlaceController::on(const command::HealLabelledSplats&) {
 template <> void PlaceController::on(const command::HealPlace&) {
     if (!step_ || !thing_ || workspace_.document.revision() != step_->revision)
         return workspace_.notices.toast("Nothing was just placed.");
-    if (labelled() != nullptr)
-        heal(thing_->before(), std::make_shared<const std::vector<std::uint8_t>>(thing_->rows()), true);
+    if (labelled() == nullptr) return;
+    const bool known = measured_ && measured_->done && !measured_->healed.removed.empty();
+    if (known) return take_healed_place(measured_->healed);
+    heal(thing_->before(), std::make_shared<const std::vector<std::uint8_t>>(thing_->rows()), true);
 }
+
+namespace {
+
+/// Healing of a hole in that state. `stays`: what stood there is elsewhere by now.
+std::function<heal::Healed(const JobControl&)> healing_of(
+    const DocumentState& from, std::shared_ptr<const std::vector<std::uint8_t>> rows, bool stays) {
+    return [set = from.current, rows = std::move(rows), up = from.info.up, stays](const JobControl& control) {
+        heal::HealSettings settings;
+        settings.held_parts = !stays;
+        return heal::remove_and_heal({set, *rows, up, control}, settings);
+    };
+}
+
+}  // namespace
 
 /// Heals the hole of `rows` in that state. `stays`: they are elsewhere by now, and not deleted.
 void PlaceController::heal(const DocumentState& from, std::shared_ptr<const std::vector<std::uint8_t>> rows,
                            bool stays) {
     start_healing(stays ? "Heal the place" : "Delete and heal", from, rows, stays,
-                  [set = from.current, rows, up = from.info.up, stays](const JobControl& control) {
-                      heal::HealSettings settings;
-                      settings.held_parts = !stays;
-                      return heal::remove_and_heal({set, *rows, up, control}, settings);
-                  });
+                  healing_of(from, rows, stays));
 }
 
 void PlaceController::start_healing(const std::string& title, const DocumentState& from,
@@ -80,8 +92,9 @@ void PlaceController::start_healing(const std::string& title, const DocumentStat
     auto done = [this, title, from, healed, rows, stays,
                  revision = workspace_.document.revision()](const Error* error) {
         if (error != nullptr) return workspace_.report_end(*error);
-        if (workspace_.document.revision() == revision)
-            take_healed(title, from, *healed, stays ? rows : nullptr);
+        if (workspace_.document.revision() != revision) return;
+        if (stays) take_healed_place(*healed);
+        else take_healed(title, from, *healed, nullptr);
     };
     workspace_.jobs->start_work(JobKind::Place, {title, work, done, true});
 }
@@ -103,6 +116,18 @@ void PlaceController::take_healed(const std::string& title, const DocumentState&
     workspace_.document.apply(node.name, with_stack(state(), std::move(stack)));
     workspace_.toast_step(fmt::format("{} splats are deleted, {} fill the hole.{}{}", ui::count_text(removed),
                                       ui::count_text(added), healed.open.empty() ? "" : " ", healed.open));
+}
+
+/// The hole that the placed thing has left is healed, and its shadow goes along.
+void PlaceController::take_healed_place(const heal::Healed& healed) {
+    if (!thing_ || !step_) return;
+    const auto& shadow = healed.shadow_measured;
+    const Step step = *step_;
+    place(step.settings, &shadow);
+    heal::Healed shaded = healed;
+    shaded.added = thing_->in_its_shadow(healed.added, step.settings, shadow);
+    take_healed("Heal the place", thing_->before(), shaded,
+                std::make_shared<const std::vector<std::uint8_t>>(thing_->rows()));
 }
 
 namespace {
@@ -217,10 +242,9 @@ template <> void PlaceController::on(const command::PlaceThing& one) {
     if (one.settings == edit::RearrangeSettings{}) return goes_on ? workspace_.run(command::Undo{}) : void();
     if (!goes_on) step_ = Step{0, workspace_.next_edit_id++};
     try {
-        auto next = thing_->placed(one.settings, step_->id);
-        const std::string name = next.stack.back().name;
-        workspace_.document.apply(name, std::move(next), fmt::format("place{}", step_->id));
-        step_->revision = workspace_.document.revision();
+        place(one.settings, nullptr);
+        step_->settings = one.settings;
+        step_->shadow_due = one.drag_ends;
         view_.set_camera(view_.camera());  // the resolution may drop, as while it moves
     } catch (const Error& error) {
         if (!goes_on) step_.reset();
@@ -228,13 +252,45 @@ template <> void PlaceController::on(const command::PlaceThing& one) {
     }
 }
 
+/// Throws Error (InvalidArgument).
+void PlaceController::place(const edit::RearrangeSettings& settings, const heal::Shadow* shadow) {
+    auto next = thing_->placed(settings, step_->id, shadow);
+    const std::string name = next.stack.back().name;
+    workspace_.document.apply(name, std::move(next), fmt::format("place{}", step_->id));
+    step_->revision = workspace_.document.revision();
+}
+
+/// Measures the shadow beside the frames; while that thread has other work, not yet.
+void PlaceController::measure_shadow() {
+    const auto measured = std::make_shared<Measured>();
+    const auto rows = std::make_shared<const std::vector<std::uint8_t>>(thing_->rows());
+    auto work = [measured, healing = healing_of(thing_->before(), rows, true)](const JobControl& control) {
+        measured->healed = healing(control);
+    };
+    auto done = [measured](const Error* error) {
+        if (error != nullptr) log::info("the shadow stays where it is: {}", error->message());
+        measured->done = true;
+    };
+    if (workspace_.jobs->counter.start({"Measure the shadow", work, done})) measured_ = measured;
+}
+
+void PlaceController::take_shadow_along() {
+    if (!step_->shadow_due || workspace_.jobs->works() || workspace_.results) return;
+    if (!measured_) return measure_shadow();
+    if (!measured_->done) return;
+    step_->shadow_due = false;
+    if (const auto& shadow = measured_->healed.shadow_measured; !shadow.rows.empty())
+        place(step_->settings, &shadow);
+}
+
 void PlaceController::refresh() {
     const bool goes_on = step_ && step_->revision == workspace_.document.revision();
-    if (goes_on) return;
+    if (goes_on) return take_shadow_along();
     step_.reset();
     const NamedLabel* label = workspace_.active_label();
     if (!used_ || label == nullptr || count_labelled(*label) == 0) return thing_.reset();
     if (thing_ && thing_->is_of(state(), label->bits)) return;
+    measured_.reset();
     thing_.emplace(state(), label->bits, front());
     if (!thing_->found()) thing_.reset();
 }

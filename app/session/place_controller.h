@@ -28,6 +28,13 @@ private:
     /// Placement that is the last step, while more of it changes it.
     struct Step {
         std::uint64_t revision = 0, id = 0;  // of the step, and of its edit
+        edit::RearrangeSettings settings = {};
+        bool shadow_due = false;  // the drag has ended, and the shadow is where it was
+    };
+    /// The thing healed away, with its shadow, as a thread measures it once.
+    struct Measured {
+        heal::Healed healed;
+        bool done = false;
     };
     template <class C> void on(const C& command);
     const DocumentState& state() const { return workspace_.document.state(); }
@@ -36,6 +43,9 @@ private:
     /// The labelled rows; null, and said, where there are none or the stack cannot be changed.
     const NamedLabel* labelled();
     Vec3 front() const;
+    void place(const edit::RearrangeSettings& settings, const heal::Shadow* shadow);
+    void measure_shadow();
+    void take_shadow_along();
     void heal(const DocumentState& from, std::shared_ptr<const std::vector<std::uint8_t>> rows, bool stays);
     void start_healing(const std::string& title, const DocumentState& from,
                        std::shared_ptr<const std::vector<std::uint8_t>> rows, bool stays,
@@ -43,12 +53,14 @@ private:
     /// `stays`: rows that are not deleted; null = none.
     void take_healed(const std::string& title, const DocumentState& from, const heal::Healed& healed,
                      const std::shared_ptr<const std::vector<std::uint8_t>>& stays);
+    void take_healed_place(const heal::Healed& healed);
 
     Workspace& workspace_;
     ViewController& view_;
     bool used_ = false;  // the artist places the labelled thing
     std::optional<Placing> thing_;
     std::optional<Step> step_;
+    std::shared_ptr<Measured> measured_;  // of thing_; null until it is wanted
 };
 
 }  // namespace gse::app

@@ -62,6 +62,21 @@ nlohmann::ordered_json targets_state(const ui::ViewModel& model) {
     return state;
 }
 
+/// The active label, the one that the next edit changes (empty = a search finds it), and for each edit with
+/// variations its identity and the index of the applied one.
+nlohmann::ordered_json labels_state(const ui::ViewModel& model) {
+    const bool open = model.document != nullptr && !model.document->empty();
+    const int active = open ? model.document->state().active_label : -1;
+    nlohmann::ordered_json state = {
+        {"active", active < 0 ? "" : model.document->state().labels[static_cast<std::size_t>(active)].name},
+        {"changes", model.scope.by_label ? model.scope.label : ""},
+        {"variations", nlohmann::ordered_json::array()}};
+    for (const auto& one : model.variations)
+        state["variations"].push_back(
+            {{"edit", one.edit}, {"applied", one.applied}, {"results", one.results.size()}});
+    return state;
+}
+
 /// The window and everything in it.
 class Editor {
 public:
@@ -209,6 +224,7 @@ private:
                            {"problem", model.server.problem},
                            {"lora", model.server.choice.lora}};
         state["labelled"] = model.labelled;
+        state["labels"] = labels_state(model);
         state["splats"] = app_.document().empty() ? 0 : app_.document().state().current.size();
         state["stack"] = app_.document().empty() ? 0 : app_.document().state().stack.size();
         state["undo_position"] = app_.document().empty() ? 0 : app_.document().position();

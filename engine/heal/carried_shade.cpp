@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <unordered_map>
 
+#include "engine/base/check.h"
 #include "engine/math/sh.h"
 
 namespace gse::heal {
@@ -94,6 +96,20 @@ std::vector<Vec3> carried_shade(const Shadow& shadow, const Affine& placement, c
     return factors;
 }
 
+namespace {
+
+/// Coefficients of one row [(d+1)^2,3], its colours times `light`. 1 keeps their bits.
+void light_row(std::span<float> sh, const Vec3& light) {
+    for (std::size_t k = 0; k < sh.size(); ++k) {
+        const double value = sh[k], factor = light[static_cast<int>(k % 3)];
+        if (factor != 1)
+            sh[k] =
+                static_cast<float>(k < 3 ? sh_from_colour(colour_from_sh(value) * factor) : value * factor);
+    }
+}
+
+}  // namespace
+
 void append_lit(const GaussianSet& set, std::size_t row, const Vec3& light, GaussianData& added) {
     const std::size_t to = added.size(), stride = added.sh_stride();
     added.resize(to + 1);
@@ -105,12 +121,18 @@ void append_lit(const GaussianSet& set, std::size_t row, const Vec3& light, Gaus
     copy(set.rotation(), added.rotation, 4);
     copy(set.opacity_logit(), added.opacity_logit, 1);
     copy(set.sh(), added.sh, stride);
-    for (std::size_t k = 0; k < stride; ++k) {
-        const double value = added.sh[to * stride + k], factor = light[static_cast<int>(k % 3)];
-        if (factor != 1)
-            added.sh[to * stride + k] =
-                static_cast<float>(k < 3 ? sh_from_colour(colour_from_sh(value) * factor) : value * factor);
-    }
+    light_row(std::span(added.sh).subspan(to * stride, stride), light);
+}
+
+GaussianSet lit(const GaussianSet& set, std::span<const Vec3> light) {
+    GSE_CHECK_EQ(light.size(), set.size());
+    auto buffers = set.buffers();
+    auto sh = *buffers.sh;
+    const std::size_t stride = set.size() > 0 ? sh.size() / set.size() : 0;
+    for (std::size_t row = 0; row < light.size(); ++row)
+        light_row(std::span(sh).subspan(row * stride, stride), light[row]);
+    buffers.sh = std::make_shared<const std::vector<float>>(std::move(sh));
+    return GaussianSet(std::move(buffers));
 }
 
 }  // namespace gse::heal

@@ -1,6 +1,7 @@
 // The shadow of a thing, on the ground of another place.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "engine/heal/heal.h"
@@ -15,5 +16,8 @@ std::vector<Vec3> carried_shade(const Shadow& shadow, const Affine& placement, c
 
 /// Appends a copy of the row with its colours times `light`. 1 keeps their bits.
 void append_lit(const GaussianSet& set, std::size_t row, const Vec3& light, GaussianData& added);
+
+/// The set with the colours of each row times its `light` [N]. 1 keeps their bits.
+GaussianSet lit(const GaussianSet& set, std::span<const Vec3> light);
 
 }  // namespace gse::heal

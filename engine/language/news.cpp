@@ -107,8 +107,12 @@ std::string guess_of(const Sentence& sentence, const Terms& terms, const std::st
         if (is_new(candidate.head)) return candidate.head;
     for (const auto& candidate : candidates)  // "a red hat" where the hat was blue
         if (std::any_of(candidate.phrase.begin(), candidate.phrase.end(), is_new)) return candidate.head;
-    if (!candidates.empty()) return candidates.front().head;
-    return !terms.empty() && !sentence.contains(source) ? terms.back() : source;
+    if (candidates.empty()) return !terms.empty() && !sentence.contains(source) ? terms.back() : source;
+    const auto& first = candidates.front().head;
+    // "a bear wearing a hat in the snow" where it wears the hat: no second one is put on
+    for (std::size_t i = 0; has_usual_place(first) && i < terms.size(); ++i)
+        if (is_ground(terms[i]) && is_new(terms[i])) return terms[i];
+    return first;
 }
 
 }  // namespace

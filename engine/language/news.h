@@ -11,7 +11,7 @@ namespace gse::language {
 /// Guess of the one new word of the sentence. It is the word that the source is "wearing", "with", "in" or
 /// "made of", else the word before it ("golden" statue). If the sentence does not name the source, it is the
 /// first object it names. Words that the scene shows already (`said`) are no news if the sentence has other
-/// ones.
+/// ones, of the source before those of what is around it.
 std::string guessed_target(const Sentence& sentence, const std::string& source,
                            const std::vector<std::string>& said = {});
 

@@ -77,6 +77,13 @@ DocumentState with_edit(const DocumentState& before, EditNode node, const std::s
     return state;
 }
 
+std::optional<std::size_t> EditVariations::applied(const std::vector<EditNode>& stack) const {
+    for (const auto& node : stack)
+        for (std::size_t index = 0; index < nodes.size(); ++index)
+            if (node.id == edit && node.delta == nodes[index].delta) return index;
+    return std::nullopt;
+}
+
 namespace {
 
 std::vector<RowId> sorted_union(const std::vector<RowId>& a, const std::vector<RowId>& b) {

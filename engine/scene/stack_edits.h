@@ -1,7 +1,9 @@
 // Edits for the stack: rows removed, colours adjusted by hand, results of finished runs.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -30,6 +32,17 @@ DocumentState with_adjustment(const DocumentState& before, std::span<const std::
 /// with apart[i] != 0 stay out of labels: they fill a hole. `apart` may be empty.
 DocumentState with_edit(const DocumentState& state, EditNode node, const std::string& target, bool beside,
                         std::span<const std::uint8_t> apart = {});
+
+/// Results of one edit of the stack, made with several seeds, any of which can take its place.
+struct EditVariations {
+    std::uint64_t edit = 0;            // identity on the stack, which all of them have
+    std::vector<EditNode> nodes;       // in the order in which they were made
+    std::vector<std::uint64_t> seeds;  // [nodes]
+
+    /// Index of the one that the stack holds, by its delta. Nothing where it holds another one, or the edit
+    /// is not on it.
+    std::optional<std::size_t> applied(const std::vector<EditNode>& stack) const;
+};
 
 /// Names of later edits, switched on, that change or remove rows which the edit `id` added or changed. They
 /// build on it: with it switched off, some of them is not seen. Oldest first.

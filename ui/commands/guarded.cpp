@@ -198,6 +198,13 @@ std::string why_not_export(const Context& context, const std::string& path) {
     return {};
 }
 
+void export_picture(Context& context) {
+    const auto& viewport = context.state.viewport;
+    const float width = viewport.high.x - viewport.low.x;
+    const float pixels = static_cast<float>(context.model.camera.width) / std::max(1.0f, width);
+    context.emit(command::ExportPicture{width > 1 && pixels > 0 ? context.em * pixels : context.em});
+}
+
 std::string views_text(const Context& context) {
     const auto there = static_cast<int>(context.document().views.size()), used = context.request.views;
     if (there < static_cast<int>(LeastViewpoints))
@@ -311,6 +318,10 @@ void cancel_job(Context& context) {
 }
 
 void open_path(Context& context, const std::string& path) {
+    if (names_model(path_of(path))) {
+        context.commands.push(command::OpenModel{path_of(path)});
+        return show_panel(context.state, PanelId::Models);
+    }
     auto& commands = context.commands;
     if (has_extension(path, std::vector<std::string>{".png"}))
         return commands.push(command::Open{path_of(path)});  // a prompt, no scene
@@ -325,7 +336,8 @@ std::string why_not_put_in(const Context& context) { return why_not_work(context
 bool can_be_put_in(const Context& context, const std::vector<std::string>& paths) {
     if (!why_not_put_in(context).empty() || paths.size() != 1) return false;
     const auto& path = paths.front();
-    return !has_extension(path, std::vector<std::string>{".png", ".gsep"}) && !only_cameras(path_of(path));
+    return !has_extension(path, std::vector<std::string>{".png", ".gsep"}) && !only_cameras(path_of(path)) &&
+           !names_model(path_of(path));
 }
 
 namespace {

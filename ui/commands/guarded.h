@@ -34,6 +34,8 @@ std::string why_not_vote(const Context& context);
 /// Excludes the view of the search, or includes it. The label is voted again.
 void toggle_vote(Context& context, int index);
 std::string why_not_export(const Context& context, const std::string& path);
+/// Saves a screenshot, with letters of the size that they have in the viewport.
+void export_picture(Context& context);
 
 /// Views that an edit will look from, of all: "24 of 63 views", "24 automatic views".
 std::string views_text(const Context& context);
@@ -48,7 +50,7 @@ void cancel_job(Context& context);
 void ask_open(Context& context);
 /// Asks where the scene of the project is that could not be opened.
 void ask_lost_scene(Context& context);
-/// Opens. Asks first when there is unsaved work.
+/// Opens. Asks first when there is unsaved work. Weights are opened in the Models panel.
 void open_path(Context& context, const std::string& path);
 /// Opens the path; of several, asks which.
 void open_one_of(Context& context, const std::vector<std::string>& paths);

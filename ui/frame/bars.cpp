@@ -189,7 +189,7 @@ void draw_tool_bar(Context& context) {
                               .icon = Icon::Camera,
                               .tooltip = with_key(context, "Save screenshot", Shortcut::Screenshot),
                               .why_off = why_not_export(context, context.exports.picture_path)}))
-        context.emit(command::ExportPicture{});
+        export_picture(context);
 }
 
 void draw_job_bar(Context& context) {

@@ -214,7 +214,7 @@ void prompt_menu(Context& context) {
 void render_menu(Context& context) {
     if (item(context, {"menu.screenshot", "Save screenshot", keys_of(context, Shortcut::Screenshot),
                        why_not_export(context, context.exports.picture_path)}))
-        context.emit(command::ExportPicture{});
+        export_picture(context);
     if (item(context, {"menu.turntable", "Write turntable", keys_of(context, Shortcut::Turntable),
                        why_not_export(context, context.exports.film_path)}))
         context.emit(command::ExportTurntable{});

@@ -23,7 +23,7 @@ bool hit(const Context& context, Shortcut command) {
 }
 
 void export_shot(Context& context) {
-    if (why_not_export(context, context.exports.picture_path).empty()) context.emit(command::ExportPicture{});
+    if (why_not_export(context, context.exports.picture_path).empty()) export_picture(context);
 }
 
 void export_turn(Context& context) {

@@ -185,9 +185,10 @@ struct UsePlacing {
     bool on = false;
 };
 /// Moves, turns, resizes or copies the labelled thing. Several in a row start from its common place and are
-/// one step of undo. The settings' defaults take them back.
+/// one step of undo. The settings' defaults take them back. Where a drag ends, the thing's shadow goes along.
 struct PlaceThing {
     edit::RearrangeSettings settings;
+    bool drag_ends = true;
 };
 /// Removes what was painted over, and fills the place with what is around it.
 struct HealStroke {
@@ -281,6 +282,11 @@ struct SetViewportSize {
 struct SetModelSettings {
     ModelSettings settings;
 };
+/// Uses a file or folder of weights by its kind: as the model, a LoRA, or a segmenter. Says in one sentence
+/// why another kind is of no use here, and what is.
+struct OpenModel {
+    std::filesystem::path path;
+};
 /// Tries a model, lists it, and uses it if it loads.
 struct ChooseModel {
     std::string path;
@@ -329,7 +335,10 @@ struct ForgetServer {};
 struct SetExports {
     ExportSettings settings;
 };
-struct ExportPicture {};
+/// `em_px`: size of the window's letters in pixels of the viewport's camera, for what lies over the picture.
+struct ExportPicture {
+    float em_px = 15;
+};
 struct ExportTurntable {};
 struct ExportScene {};
 struct ExportViewpoints {};
@@ -392,9 +401,9 @@ using ViewCommand =
                  command::SetViewSettings, command::SetComparison, command::CompareWith, command::LookThrough,
                  command::AddView, command::DeleteView, command::RenameView, command::DrawView,
                  command::PickColour, command::SetViewportSize>;
-using ModelCommand =
-    std::variant<command::SetModelSettings, command::ChooseModel, command::AddLora, command::SetLoraStrength,
-                 command::RemoveLora, command::ChooseSegmenter, command::SetCacheMb, command::ClearCache>;
+using ModelCommand = std::variant<command::SetModelSettings, command::OpenModel, command::ChooseModel,
+                                  command::AddLora, command::SetLoraStrength, command::RemoveLora,
+                                  command::ChooseSegmenter, command::SetCacheMb, command::ClearCache>;
 using ServerCommand = std::variant<command::SetServer, command::KeepServerPassword, command::TestServer,
                                    command::UseServer, command::ForgetServer>;
 using ExportCommand = std::variant<command::SetExports, command::ExportPicture, command::ExportTurntable,

@@ -144,7 +144,7 @@ void draw_picture(Context& context) {
                          .why_off = why,
                          .tooltip = "F12",
                          .look = Look::Primary}))
-        context.emit(command::ExportPicture{});
+        export_picture(context);
 }
 
 std::string film_text(const ExportSettings& settings) {

@@ -15,8 +15,12 @@ namespace gse::ui {
 void follow_placing(Context& context) {
     auto& place = context.state.by_hand.place;
     // Another step: the next one begins from there.
-    if (place.placing && !context.model.placing) place.values = {};
+    if (place.placing && !context.model.placing) place.values = {}, place.ends = false;
     place.placing = context.model.placing;
+    if (place.ends && !place.dragged && !ImGui::IsMouseDown(0) && !ImGui::IsAnyItemActive()) {
+        context.emit(command::PlaceThing{place.values});
+        place.ends = false;
+    }
     const bool wanted = context.state.viewport.tool == Tool::Place;
     if (wanted != place.used) context.emit(command::UsePlacing{place.used = wanted});
 }
@@ -55,7 +59,11 @@ void draw_place(Context& context) {
                          .why_off = context.model.placing ? "" : "Place the thing first",
                          .tooltip = "Fills the hole where the thing stood with what is around it"}))
         context.emit(command::HealPlace{});
-    if (changed) context.emit(command::PlaceThing{place.values});
+    if (changed) {
+        context.emit(command::PlaceThing{place.values, false});
+        place.ends = place.values != edit::RearrangeSettings{};
+        context.state.animating = true;  // the end is seen in the frame after
+    }
     if (place.frames_to_bring <= 0) return;
     --place.frames_to_bring;
     ImGui::SetScrollHereY(1);  // what has unfolded comes into view

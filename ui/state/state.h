@@ -150,7 +150,8 @@ struct PlaceState {
     bool used = false;     // command::UsePlacing as it was sent last
     int handle = -1;       // that is dragged, or under the mouse; -1 = none
     bool dragged = false;
-    ImVec2 start{};  // of the drag
+    bool ends = false;  // a change was sent that is not told to be the drag's last one
+    ImVec2 start{};     // of the drag
     edit::RearrangeSettings start_values;
     int frames_to_bring = 0;  // as in PickState
 };

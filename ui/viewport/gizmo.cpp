@@ -239,7 +239,10 @@ bool use_gizmo(Context& context, bool hovered) {
         place.start_values = place.values;
     }
     const auto values = dragged(context, *thing, mouse);
-    if (values != place.values) context.emit(command::PlaceThing{place.values = values});
+    if (values != place.values) {
+        context.emit(command::PlaceThing{place.values = values, false});
+        place.ends = true;
+    }
     if (!ImGui::IsMouseDown(0)) place.dragged = false;
     context.state.animating = true;
     return true;

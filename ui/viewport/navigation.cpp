@@ -7,6 +7,7 @@
 #include "ui/commands/guarded.h"
 #include "ui/keys/keys.h"
 #include "ui/state/state.h"
+#include "ui/viewport/scene_lines.h"
 #include "ui/viewport/viewport.h"
 
 namespace gse::ui {

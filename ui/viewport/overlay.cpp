@@ -8,41 +8,29 @@
 #include "ui/commands/guarded.h"
 #include "ui/model/glyphs.h"
 #include "ui/state/state.h"
+#include "ui/viewport/scene_lines.h"
 #include "ui/viewport/viewport.h"
 #include "ui/widgets/controls.h"
 
 namespace gse::ui {
 namespace {
 
-constexpr std::array<ImU32, 3> AxisColours{IM_COL32(226, 104, 98, 255), IM_COL32(124, 196, 104, 255),
-                                           IM_COL32(98, 150, 232, 255)};
-constexpr double FrustumShare = 0.07;  // length of a camera's drawn frustum, of the scene's radius
-constexpr double RateSeconds = 1;      // the frame rate is shown this long after the last move
-constexpr float AxesEm = 2.05f;        // from the middle of the axes to a ball
-constexpr float AxisBallEm = 0.47f;    // radius of a ball
-constexpr float FarEndShare = 0.8f;    // of that radius, where an axis ends
+constexpr double RateSeconds = 1;  // the frame rate is shown this long after the last move
 constexpr float PickRadiusEm = 0.8f;
 
 double near_of(const Context& context) { return std::max(1e-9, context.model.orbit.radius * 1e-3); }
 
 /// A line of the world, cut at the near plane; nothing when it is behind.
-void world_line(const Context& context, ImDrawList* list, const Vec3& a, const Vec3& b, ImU32 colour,
-                float width) {
-    const Camera& camera = context.model.camera;
-    Vec3 from = camera.to_camera(a), to = camera.to_camera(b);
-    const double near = near_of(context);
-    if (from.z < near && to.z < near) return;
-    if (from.z < near) from = from + (to - from) * ((near - from.z) / (to.z - from.z));
-    if (to.z < near) to = to + (from - to) * ((near - to.z) / (from.z - to.z));
-    const auto project = [&](const Vec3& p) {
-        return to_screen(context, camera.fx * p.x / p.z + camera.cx, camera.fy * p.y / p.z + camera.cy);
-    };
-    list->AddLine(project(from), project(to), colour, width);
+void draw_world_line(const Context& context, ImDrawList* list, const WorldLine& line, ImU32 colour,
+                     float width) {
+    if (const auto seen = seen_line(context.model.camera, line, context.model.orbit.radius))
+        list->AddLine(to_screen(context, (*seen)[0], (*seen)[1]), to_screen(context, (*seen)[2], (*seen)[3]),
+                      colour, width);
 }
 
 ImVec2 axes_centre(const Context& context) {
     const auto& state = context.state.viewport;
-    const float away = context.em * AxesEm * 1.5f;
+    const float away = context.em * AxesEm * AxesAway;
     const bool covered = state.foot_low.x < state.low.x + 2 * away;
     return {state.low.x + away, (covered ? std::min(state.high.y, state.foot_low.y) : state.high.y) - away};
 }
@@ -50,16 +38,11 @@ ImVec2 axes_centre(const Context& context) {
 /// "x", "-x" and so on.
 std::string axis_name(int end) { return fmt::format("{}{}", end < 3 ? "" : "-", "xyz"[end % 3]); }
 
-/// How far an end points away from the eye, -1 to 1.
-double axis_depth(const Context& context, int end) {
-    return (context.model.camera.rotation * axis_direction(end)).z;
-}
-
 /// An end of a world axis: a ball with its letter, or a ring at the negative one.
 void draw_axis_end(Context& context, ImDrawList* list, int end, bool under_mouse) {
     const ImVec2 centre = axes_centre(context), at = axis_ball(context, end);
-    const bool positive = end<3, behind = axis_depth(context, end)> 0.2;
-    const ImU32 colour = with_alpha(AxisColours[static_cast<std::size_t>(end % 3)], behind ? 0.55f : 1);
+    const bool positive = end < 3;
+    const ImU32 colour = axis_colour(context.model.camera, end);
     const float line = std::max(1.5f, context.em * 0.13f);
     const float r = context.em * AxisBallEm * (positive ? 1.0f : FarEndShare);
     if (positive) list->AddLine(centre, at, colour, line);
@@ -77,51 +60,29 @@ void draw_axis_end(Context& context, ImDrawList* list, int end, bool under_mouse
 
 /// The world's axes in the lower left corner, turned as the camera is. Each end is a button.
 void draw_axes(Context& context, ImDrawList* list) {
-    std::array<int, AxisEnds> order{0, 1, 2, 3, 4, 5};
-    std::sort(order.begin(), order.end(), [&](int a, int b) {
-        return axis_depth(context, a) > axis_depth(context, b);  // far ones first
-    });
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const int chosen = axis_end_at(context, mouse);
-    for (const int end : order) draw_axis_end(context, list, end, end == chosen);
+    for (const int end : axes_by_depth(context.model.camera))
+        draw_axis_end(context, list, end, end == chosen);
     if (chosen < 0 || context.state.viewport.stroke || context.state.viewport.drag_button >= 0) return;
     shaded_text(context, list, {mouse.x + context.em, mouse.y - context.em * 2},
                 fmt::format("Look from {}", axis_name(chosen)));
 }
 
 void draw_bounds(Context& context, ImDrawList* list) {
-    const Vec3 low = context.model.statistics.robust_low, high = context.model.statistics.robust_high;
-    const auto corner = [&](int bits) {
-        return Vec3{bits & 1 ? high.x : low.x, bits & 2 ? high.y : low.y, bits & 4 ? high.z : low.z};
-    };
-    for (int from = 0; from < 8; ++from)
-        for (const int bit : {1, 2, 4})
-            if ((from & bit) == 0)
-                world_line(context, list, corner(from), corner(from | bit), with_alpha(palette::Text, 0.45f),
-                           1);
+    const auto& statistics = context.model.statistics;
+    for (const auto& line : box_lines(statistics.robust_low, statistics.robust_high))
+        draw_world_line(context, list, line, with_alpha(palette::Text, BoundsAlpha), 1);
 }
 
 void draw_view(Context& context, ImDrawList* list, const View& view, bool selected) {
-    const Camera& camera = view.camera;
-    const Mat3 to_world = camera.rotation.transposed();
-    const Vec3 eye = camera.centre();
-    const double length = context.model.orbit.radius * FrustumShare;
-    // From inside a frustum only stray lines would be seen.
-    if (gse::length(eye - context.model.camera.centre()) < 1.5 * length) return;
-    std::array<Vec3, 4> corners;
-    for (std::size_t at = 0; at < 4; ++at) {
-        const double x = at == 0 || at == 3 ? 0 : camera.width, y = at < 2 ? 0 : camera.height;
-        corners[at] =
-            eye + to_world * (Vec3{(x - camera.cx) / camera.fx, (y - camera.cy) / camera.fy, 1} * length);
-    }
-    const ImU32 colour = selected ? palette::Accent : with_alpha(palette::Text, 0.55f);
-    const float width = selected ? std::max(2.0f, context.em * 0.14f) : std::max(1.0f, context.em * 0.07f);
-    for (std::size_t at = 0; at < 4; ++at) {
-        world_line(context, list, eye, corners[at], colour, width);
-        world_line(context, list, corners[at], corners[(at + 1) % 4], colour, width);
-    }
-    const auto apex = screen_point(context, eye);
-    if (apex) list->AddCircleFilled(*apex, context.em * (selected ? 0.26f : 0.18f), colour);
+    const auto lines = frustum_lines(view.camera, context.model.orbit.radius, context.model.camera);
+    if (lines.empty()) return;
+    const ImU32 colour = selected ? palette::Accent : with_alpha(palette::Text, FrustumAlpha);
+    const float width = selected ? std::max(2.0f, context.em * 0.14f) : frustum_width(context.em);
+    for (const auto& line : lines) draw_world_line(context, list, line, colour, width);
+    const auto apex = screen_point(context, view.camera.centre());
+    if (apex) list->AddCircleFilled(*apex, context.em * (selected ? 0.26f : EyeEm), colour);
     if (apex && selected)
         list->AddText({apex->x + context.em * 0.5f, apex->y - context.em * 0.5f}, palette::Text,
                       std::string(Shown(view.name).text()).c_str());
@@ -249,12 +210,6 @@ ImVec2 to_screen(const Context& context, double x_px, double y_px) {
         state.low.y + static_cast<float>(y_px / std::max(1, camera.height)) * (state.high.y - state.low.y)};
 }
 
-Vec3 axis_direction(int end) {
-    Vec3 direction;
-    direction[end % 3] = end < 3 ? 1 : -1;
-    return direction;
-}
-
 ImVec2 axis_ball(const Context& context, int end) {
     const Vec3 seen = context.model.camera.rotation * axis_direction(end);
     const ImVec2 centre = axes_centre(context);
@@ -267,7 +222,8 @@ int axis_end_at(const Context& context, ImVec2 point) {
     for (int end = 0; end < AxisEnds; ++end) {
         const ImVec2 ball = axis_ball(context, end);
         if (std::hypot(ball.x - point.x, ball.y - point.y) > context.em * AxisBallEm * 1.1f) continue;
-        if (nearest < 0 || axis_depth(context, end) < axis_depth(context, nearest)) nearest = end;
+        if (nearest < 0 || axis_depth(context.model.camera, end) < axis_depth(context.model.camera, nearest))
+            nearest = end;
     }
     return nearest;
 }

@@ -59,10 +59,7 @@ void shaded_text(Context& context, ImDrawList* list, ImVec2 at, const std::strin
                  ImU32 colour = palette::Text);
 /// Place in the window of a pixel of the shown camera.
 ImVec2 to_screen(const Context& context, double x_px, double y_px);
-/// Ends of the world's axes in the corner: x, y, z, -x, -y, -z.
-constexpr int AxisEnds = 6;
-/// Unit vector of an end, and the place of its ball in the window.
-Vec3 axis_direction(int end);
+/// Place in the window of the ball of an axis's end (scene_lines.h).
 ImVec2 axis_ball(const Context& context, int end);
 /// End whose ball lies under the point, the nearest to the eye; -1 = none.
 int axis_end_at(const Context& context, ImVec2 point);

@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <system_error>
 
+#include "engine/base/safetensors_header.h"
+
 namespace gse::ui {
 namespace {
 
@@ -106,6 +108,16 @@ std::string completed_path(const std::string& typed) {
     }
     if (fitting == 0) return typed;
     return folder_text + common + (fitting == 1 && only_folder ? "/" : "");
+}
+
+bool names_model(const std::filesystem::path& path) {
+    for (const char* of_cameras : {"cameras.bin", "images.bin", "points3D.bin", "rigs.bin", "frames.bin"})
+        if (path.filename() == of_cameras) return false;
+    std::error_code ignored;
+    return is_safetensors_name(path) || is_pickle_name(path) ||
+           has_extension(path.string(), std::vector<std::string>{".gguf"}) ||
+           std::filesystem::is_regular_file(path / "model_index.json", ignored) ||
+           std::filesystem::is_regular_file(path / "adapter_config.json", ignored);
 }
 
 }  // namespace gse::ui

@@ -36,5 +36,8 @@ std::string utf8_of(const std::filesystem::path& path);
 std::filesystem::path path_of(const std::string& utf8);
 /// True when the name ends in one of them, in any case.
 bool has_extension(const std::string& name, std::span<const std::string> extensions);
+/// True for weights by their file's name (COLMAP's binaries are none), and for a folder that holds a model or
+/// a LoRA by a file of its settings.
+bool names_model(const std::filesystem::path& path);
 
 }  // namespace gse::ui

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/edit/placement/rearrangement.h"
+#include "engine/heal/heal.h"
 #include "engine/scene/document.h"
 #include "ui/model/view_model.h"
 
@@ -25,10 +26,19 @@ public:
     bool found() const { return thing_.found(); }
     /// Place and size before the change, for the handles in the viewport.
     ui::PlacedThing shown() const;
-    /// The state with an edit of that identity on top of the stack. Throws Error (InvalidArgument).
-    DocumentState placed(const edit::RearrangeSettings& settings, std::uint64_t id) const;
+    /// The state with an edit of that identity on top of the stack. `shadow`: of the thing where it stood,
+    /// which goes along on the ground; null = it stays. Throws Error (InvalidArgument).
+    DocumentState placed(const edit::RearrangeSettings& settings, std::uint64_t id,
+                         const heal::Shadow* shadow = nullptr) const;
+    /// Rows of the ground in the light that the placed thing leaves them.
+    GaussianData in_its_shadow(const GaussianData& ground, const edit::RearrangeSettings& settings,
+                               const heal::Shadow& shadow) const;
 
 private:
+    edit::Rearrangement places(const edit::RearrangeSettings& settings) const;
+    bool shadow_leaves(const edit::Rearrangement& places) const;
+    std::vector<Affine> shadow_maps(const edit::Rearrangement& places) const;
+
     DocumentState before_;
     std::shared_ptr<const std::vector<std::uint8_t>> rows_;  // [current of before_]
     edit::ThingFrame thing_;

@@ -18,7 +18,7 @@ EditNode as_node(const PendingResult& result, const DocumentState& before, std::
     return node;
 }
 
-std::size_t kept_bytes(const Variations& variations) {
+std::size_t kept_bytes(const EditVariations& variations) {
     std::size_t bytes = 0;
     for (const auto& node : variations.nodes) bytes += node.delta->byte_size();
     return bytes;
@@ -41,16 +41,9 @@ bool holds_any(const NamedLabel& label, const std::vector<std::uint8_t>& rows) {
 
 }  // namespace
 
-std::optional<std::size_t> Variations::applied(const std::vector<EditNode>& stack) const {
-    for (const auto& node : stack)
-        for (std::size_t index = 0; index < nodes.size(); ++index)
-            if (node.id == edit && node.delta == nodes[index].delta) return index;
-    return std::nullopt;
-}
-
 void KeptVariations::keep(const WaitingResults& results, const EditNode& node, const DocumentState& before) {
     if (results.all().size() < 2 || !results.shown()) return;
-    Variations variations;
+    EditVariations variations;
     variations.edit = node.id;
     for (std::size_t index = 0; index < results.all().size(); ++index) {
         const auto& result = results.all()[index];
@@ -69,10 +62,23 @@ void KeptVariations::keep(const WaitingResults& results, const EditNode& node, c
     }
 }
 
-const Variations* KeptVariations::of(std::uint64_t edit) const {
-    const auto found = std::find_if(all_.begin(), all_.end(),
-                                    [&](const Variations& variations) { return variations.edit == edit; });
+const EditVariations* KeptVariations::of(std::uint64_t edit) const {
+    const auto found = std::find_if(
+        all_.begin(), all_.end(), [&](const EditVariations& variations) { return variations.edit == edit; });
     return found == all_.end() ? nullptr : &*found;
+}
+
+std::vector<EditVariations> KeptVariations::stored(const std::vector<EditNode>& stack) const {
+    std::vector<EditVariations> some;
+    std::size_t bytes = 0;
+    for (auto newest = all_.rbegin(); newest != all_.rend(); ++newest) {
+        if (!newest->applied(stack)) continue;
+        bytes += kept_bytes(*newest);
+        if (bytes > MostStored) break;
+        some.push_back(*newest);
+    }
+    std::reverse(some.begin(), some.end());
+    return some;
 }
 
 DocumentState with_variation(const DocumentState& state, const EditNode& variation) {

@@ -3,39 +3,34 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
+#include <utility>
 #include <vector>
 
 #include "app/session/state/waiting_results.h"
-#include "engine/scene/document.h"
+#include "engine/scene/stack_edits.h"
 
 namespace gse::app {
 
-/// Results of one edit as edits of the stack, each with the identity of that edit.
-struct Variations {
-    std::uint64_t edit = 0;       // identity on the stack
-    std::vector<EditNode> nodes;  // in the order in which they were made
-    std::vector<std::uint64_t> seeds;
-
-    /// Index of the one that the stack holds; none = another one, or the edit is not on the stack.
-    std::optional<std::size_t> applied(const std::vector<EditNode>& stack) const;
-};
-
-/// Variations of the edits of one document, the newest last. Lost when the document is closed.
+/// Variations of the edits of one document, the newest last. Its project keeps them.
 class KeptVariations {
 public:
     static constexpr std::size_t MostBytes = std::size_t{1}
                                              << 30;  // of splats; the oldest are dropped beyond
+    static constexpr std::size_t MostStored = std::size_t{256} << 20;  // the same, in a project, unpacked
 
     /// Keeps the results beside the applied one, which is `node`. `before`: the state that they are results
     /// of. One result alone has no variations.
     void keep(const WaitingResults& results, const EditNode& node, const DocumentState& before);
-    const Variations* of(std::uint64_t edit) const;
-    const std::vector<Variations>& all() const { return all_; }
+    const EditVariations* of(std::uint64_t edit) const;
+    const std::vector<EditVariations>& all() const { return all_; }
+    /// Those that a project of this stack holds: of its edits, the newest within MostStored bytes.
+    std::vector<EditVariations> stored(const std::vector<EditNode>& stack) const;
+    /// Takes those of a project that was opened.
+    void take(std::vector<EditVariations> stored) { all_ = std::move(stored); }
     void forget() { all_.clear(); }
 
 private:
-    std::vector<Variations> all_;
+    std::vector<EditVariations> all_;
 };
 
 /// The state with another variation of an edit of its stack. Switch and strength stay. Labels that hold what

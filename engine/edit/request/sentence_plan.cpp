@@ -25,6 +25,7 @@ struct Refusal {
     const char* hint;
 };
 
+constexpr auto Articles = language::WordClass::IndefiniteArticle | language::WordClass::DefiniteArticle;
 constexpr const char* DescribeScene = "describe the scene after the edit in one English sentence";
 constexpr std::array<Refusal, 9> Refusals{{
     {plan::reason::Empty, "the sentence says nothing", DescribeScene},
@@ -108,11 +109,24 @@ std::string bare_thing(const language::Sentence& sentence, const std::string& so
     const auto& words = sentence.words();
     auto at = sentence.position_of(source);
     if (at >= words.size()) return {};
-    constexpr auto Articles = WordClass::IndefiniteArticle | WordClass::DefiniteArticle;
     while (at > 0 && (language::is_a(words[at - 1], Articles) || words[at - 1] == "any")) --at;
     if (at > 1 && words[at - 1] == "no" && words[at - 2] == "with") at -= 1;
     else if (at == 0 || words[at - 1] != "without") return {};
     return at > 1 ? words[at - 2] : std::string();
+}
+
+/// "statue" of "a statue on a white pedestal", of a pedestal: what a support carries is there before. Empty
+/// for other sentences, and where the support has no new look.
+std::string carried_thing(const language::Sentence& sentence, const std::string& source) {
+    using language::WordClass;
+    const auto& words = sentence.words();
+    const auto support = sentence.position_of(source);
+    if (support >= words.size() || !plan::names_support(source)) return {};
+    if (!language::is_a(words.front(), WordClass::IndefiniteArticle)) return {};
+    std::size_t joint = 1;
+    while (joint < support && words[joint] != "on" && words[joint] != "in") ++joint;
+    const bool has_look = joint + 2 < support && language::is_a(words[joint + 1], Articles);
+    return joint == 2 && has_look ? words[1] : std::string();
 }
 
 Error several(const std::vector<plan::Step>& steps) {
@@ -144,6 +158,7 @@ plan::SceneWords assumed_scene(const EditRequest& request, const std::vector<std
         if (!ground && i > 1 && is_place(words[i - 2], words[i])) add(words[i], false);
     }
     if (const auto whole = bare_thing(sentence, source); !whole.empty()) add(whole, false);
+    if (const auto carried = carried_thing(sentence, source); !carried.empty()) add(carried, false);
     if (about_ground)  // what stands on it is there, too
         for (const auto& thing : sentence.things())
             if (!language::is_a(thing, language::WordClass::Ground)) {
@@ -220,6 +235,7 @@ bool is_caption(const EditRequest& request) { return is_description(language::Se
 bool says_itself(const EditRequest& request, const plan::StepSentence& words, const News& news) {
     if (!words.part_of.empty() || words.whole_scene || !words.instruction.empty()) return false;
     if (!is_drawn(words.mode)) return false;
+    if (!carried_thing(language::Sentence(request.prompt), words.source).empty()) return false;
     const auto guessed = with_target(request, news);
     const language::EditSentence sentence(language::Sentence(request.prompt),
                                           language::normalised_prompt(request.source), guessed.target);

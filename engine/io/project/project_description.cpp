@@ -26,9 +26,9 @@ using Json = nlohmann::json;
 constexpr std::size_t MostEntries = 100000;  // edits, labels, views
 constexpr std::uint64_t MostEdits = std::uint64_t{1} << 32;
 constexpr std::array<const char*, 3> BaseNames{"file", "kept", "whole"};
-constexpr std::array<const char*, 14> KnownFields{"format", "version", "program",      "scene",  "info",
-                                                  "stack",  "labels",  "active_label", "views",  "ui",
-                                                  "jobs",   "rows",    "thumbnail",    "columns"};
+constexpr std::array<const char*, 15> KnownFields{
+    "format", "version", "program", "scene", "info",      "stack",   "labels",    "active_label",
+    "views",  "ui",      "jobs",    "rows",  "thumbnail", "columns", "variations"};
 
 constexpr const char* DamagedProject = "the file is damaged; open an older copy or an autosave";
 
@@ -246,6 +246,30 @@ ProjectDescription::Edit read_edit(const Json& json, const std::string& name) {
     return edit;
 }
 
+Json to_json(const ProjectDescription::VariationsEntry& entry) {
+    Json json{{"edit", entry.edit}, {"results", Json::array()}};
+    for (std::size_t i = 0; i < entry.results.size(); ++i) {
+        json["results"].push_back(to_json(entry.results[i]));
+        json["results"].back()["seed"] = entry.seeds[i];
+    }
+    return json;
+}
+
+ProjectDescription::VariationsEntry read_variations(const Json& json, const std::string& name) {
+    const Fields fields(json, name);
+    ProjectDescription::VariationsEntry entry;
+    fields.whole("edit", entry.edit, 1, MostEdits - 1);
+    const Json* results = fields.list("results");
+    for (std::size_t i = 0; results != nullptr && i < results->size(); ++i) {
+        const auto of = fmt::format("{}.results[{}]", name, i);
+        entry.results.push_back(read_edit((*results)[i], of));
+        if (entry.results.back().node.id != entry.edit) throw_field(of, "is of another edit");
+        entry.seeds.push_back(0);
+        Fields((*results)[i], of).whole("seed", entry.seeds.back(), 0, ~std::uint64_t{0});
+    }
+    return entry;
+}
+
 Json to_json(const ProjectDescription::LabelEntry& entry) {
     Json json{{"name", entry.label.name},
               {"threshold", any_number(static_cast<double>(entry.label.threshold))},
@@ -380,6 +404,10 @@ void read_work(const Fields& fields, ProjectDescription& description) {
                 throw_field("stack", "names an edit twice");
         }
     }
+    if (const Json* variations = fields.list("variations"))
+        for (std::size_t i = 0; i < variations->size(); ++i)
+            description.variations.push_back(
+                read_variations((*variations)[i], fmt::format("variations[{}]", i)));
     if (const Json* labels = fields.list("labels"))
         for (std::size_t i = 0; i < labels->size(); ++i)
             description.labels.push_back(read_label((*labels)[i], fmt::format("labels[{}]", i)));
@@ -407,6 +435,7 @@ std::string write_description(const ProjectDescription& description) {
     };
     if (!description.extra.empty()) list("columns", description.extra);
     list("stack", description.stack);
+    if (!description.variations.empty()) list("variations", description.variations);
     list("labels", description.labels);
     list("views", description.views);
     json["active_label"] = description.active_label;

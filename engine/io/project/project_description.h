@@ -49,7 +49,15 @@ struct ProjectDescription {
         std::string probability, coverage;  // of what the views said
         LabelRule rule;
     };
+    /// Results of an edit of the stack, each with the seed that made it. The delta of the one on the stack
+    /// is the stack's member.
+    struct VariationsEntry {
+        std::uint64_t edit = 0;
+        std::vector<Edit> results;
+        std::vector<std::uint64_t> seeds;  // [results]
+    };
     std::vector<Edit> stack;
+    std::vector<VariationsEntry> variations;
     std::vector<LabelEntry> labels;
     int active_label = -1;
     std::vector<View> views;

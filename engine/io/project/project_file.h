@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "engine/scene/document.h"
+#include "engine/scene/stack_edits.h"
 
 namespace gse {
 
@@ -34,6 +35,7 @@ struct ProjectData {
     SceneSource source;
     bool embeds = false;                                // the project holds its scene, whatever `source` is
     std::shared_ptr<const Image> thumbnail;             // a small picture of the scene; may be null
+    std::vector<EditVariations> variations;             // of edits of the stack, which hold one of them
     nlohmann::json ui = nlohmann::json::object();       // of the window; not looked into
     nlohmann::json jobs = nlohmann::json::object();     // what ran or waits; not looked into
     nlohmann::json unknown = nlohmann::json::object();  // fields of newer versions, kept on saving

@@ -100,7 +100,38 @@ public:
         return state;
     }
 
+    /// Variations of edits of that stack. Those that cannot be read are left out, with a warning: they are
+    /// no reason to lose the work.
+    std::vector<EditVariations> variations(const std::vector<EditNode>& stack) {
+        std::vector<EditVariations> all;
+        for (const auto& entry : description_.variations) try {
+                all.push_back(read_variations(entry, stack));
+            } catch (const Error& error) {
+                warnings_.push_back(
+                    fmt::format("the variations of edit {} cannot be read and are left out", entry.edit));
+                log::debug("variations of edit {}: {}", entry.edit, error.message());
+            }
+        std::erase_if(all, [&](const EditVariations& one) { return !one.applied(stack); });
+        return all;
+    }
+
 private:
+    EditVariations read_variations(const io::ProjectDescription::VariationsEntry& entry,
+                                   const std::vector<EditNode>& stack) {
+        EditVariations variations{entry.edit, {}, entry.seeds};
+        for (const auto& result : entry.results) {
+            std::shared_ptr<const SceneDelta> of_stack;
+            for (std::size_t i = 0; i < stack.size(); ++i)
+                if (stack[i].id == entry.edit && description_.stack[i].delta == result.delta)
+                    of_stack = stack[i].delta;
+            variations.nodes.push_back(of_stack ? result.node : read_edit(result));
+            if (!of_stack) continue;
+            variations.nodes.back().delta = of_stack;
+            variations.nodes.back().thumbnail = picture(result.thumbnail);
+        }
+        return variations;
+    }
+
     io::ProjectDescription read_description() const {
         if (!zip_.has("project.json"))
             throw Error(ErrorCode::Malformed, "this is not a project of GSEditPro",
@@ -303,6 +334,7 @@ ProjectData finish(OpenProject& open, ProjectData project, Scene file) {
     project.source.loaded = file.gaussians;
     const Scene base = open.base(file);
     project.state = open.state(base);
+    project.variations = open.variations(project.state.stack);
     for (const std::string& warning : open.warnings()) warn(project, warning);
     if (project.source.loaded.empty()) project.source.loaded = base.gaussians;
     project.thumbnail = open.picture(description.thumbnail);

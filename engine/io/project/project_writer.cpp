@@ -1,6 +1,7 @@
 // Packs projects. A member is compressed once per array.
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cstring>
 #include <optional>
 #include <utility>
@@ -38,6 +39,7 @@ public:
         add_scene(state.base, project.source, project.embeds);
         if (description_.base == io::BaseKind::Whole) add_extra(state.extra);
         for (const EditNode& edit : state.stack) add_edit(edit);
+        for (const EditVariations& variations : project.variations) add_variations(variations, state.stack);
         for (std::size_t i = 0; i < state.labels.size(); ++i) add_label(state.labels[i], i);
         if (project.thumbnail != nullptr)
             description_.thumbnail = picture("thumbnail.png", project.thumbnail);
@@ -98,6 +100,28 @@ private:
         if (node.thumbnail != nullptr)
             edit.thumbnail = picture(fmt::format("edits/{}.png", node.id), node.thumbnail);
         description_.stack.push_back(std::move(edit));
+    }
+
+    /// Variations of an edit that is not on the stack are left out.
+    void add_variations(const EditVariations& variations, const std::vector<EditNode>& stack) {
+        const auto applied = variations.applied(stack);
+        if (!applied) return;
+        const auto& of_stack = *std::find_if(
+            description_.stack.begin(), description_.stack.end(),
+            [&](const io::ProjectDescription::Edit& edit) { return edit.node.id == variations.edit; });
+        io::ProjectDescription::VariationsEntry entry{variations.edit, {}, variations.seeds};
+        for (std::size_t i = 0; i < variations.nodes.size(); ++i) {
+            const EditNode& node = variations.nodes[i];
+            io::ProjectDescription::Edit edit{node, of_stack.delta, of_stack.thumbnail};
+            const auto name = fmt::format("variations/{}.{}", variations.edit, i);
+            if (i != *applied) {
+                edit.delta = add(name + ".delta", "delta", node.delta,
+                                 [&] { return io::pack_member(io::encode_delta(*node.delta), 4); });
+                edit.thumbnail = node.thumbnail != nullptr ? picture(name + ".png", node.thumbnail) : "";
+            }
+            entry.results.push_back(std::move(edit));
+        }
+        description_.variations.push_back(std::move(entry));
     }
 
     void add_label(const NamedLabel& label, std::size_t index) {

@@ -257,15 +257,14 @@ std::string methods_table(const Json& edit) {
 }
 
 std::string servers_table(const Json& rows) {
-    std::vector<Cells> cells{
-        {"agreement", "disagreement", "PSNR, dB", "rejected", "requests", "megapixels", "seconds"}};
+    std::vector<Cells> cells{{"agreement", "disagreement", "PSNR, dB", "rejected", "requests", "megapixels"}};
     const auto number = [](const Json& value, int digits) {
         return fmt::format("{:.{}f}", value.get<double>(), digits);
     };
     for (const auto& row : rows)
         cells.push_back({row["agreement"].get<std::string>(), number(row["disagreement"], 4),
                          number(row["psnr_db"], 1), number(row["rejected"], 1), number(row["requests"], 1),
-                         number(row["megapixels"], 2), number(row["seconds"], 1)});
+                         number(row["megapixels"], 2)});
     return markdown_table(cells);
 }
 

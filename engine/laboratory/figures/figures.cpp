@@ -24,6 +24,7 @@
 #include "engine/laboratory/eval/real/real_eval.h"
 #include "engine/laboratory/figures/figure_tables.h"
 #include "engine/laboratory/figures/real_tables.h"
+#include "engine/laboratory/figures/reliability_table.h"
 #include "engine/pipeline/models/installed.h"
 #include "engine/pipeline/models/recipe_model.h"
 
@@ -93,8 +94,8 @@ public:
     }
 
     std::string text() {
-        const auto sections = edits() + words() + searches() + encoder() + methods() + servers() +
-                              stability() + speed() + scans();
+        const auto sections = edits() + words() + reliability() + searches() + encoder() + methods() +
+                              servers() + stability() + speed() + scans();
         return head() + sections;
     }
 
@@ -196,6 +197,12 @@ private:
         return section("Colours without a word", command_of(Dyes), of(Dyes), seeds_text()) +
                section("Things that are drawn and not looked for", command_of(DrawnWords), of(DrawnWords),
                        seeds_text());
+    }
+
+    std::string reliability() {
+        return section("How right a label is, by its confidence", command_of(Standard),
+                       reliability_table(evaluations(Standard, "edits"), scans_report()),
+                       seeds_text() + ", and `gseditpro-lab eval --real SUITE` by word");
     }
 
     std::string searches() {

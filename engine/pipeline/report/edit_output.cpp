@@ -194,6 +194,7 @@ void add_search(nlohmann::ordered_json& report, const EditJob& job) {
         for (const auto& part : confidence.parts) report["confidence_of"][part.key] = part.value;
     }
     report["confidence_text"] = edit::confidence_text(confidence);
+    if (!job.label_doubt().empty()) report["label_doubt"] = job.label_doubt();
     if (located.problem != edit::SearchProblem::None) {
         report["problem"] = located.message;
         report["remedy"] = located.remedy;

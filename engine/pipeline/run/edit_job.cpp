@@ -52,15 +52,17 @@ std::vector<std::uint8_t> label_of(const Scene& scene, const std::filesystem::pa
                 "use a PLY whose float column \"label\" is 1 where the edit may change something", path);
 }
 
-/// Label in the box of --cut-out.
-std::vector<std::uint8_t> labelled_by_box(const Scene& scene, const CheckedRecipe& recipe,
-                                          edit::Segmenter* segmenter, const JobControl& control) {
+/// Thing in the box of --cut-out.
+CutOutThing labelled_by_box(const Scene& scene, const CheckedRecipe& recipe, edit::Segmenter* segmenter,
+                            const JobControl& control) {
     const auto& job = recipe.job;
     auto request = cut_out_request(job.cut_out, scene, job.up);
     request.ground = language::names_ground(recipe.request.source());
     request.nature = edit::nature_of(recipe.request.source());
-    auto bits = cut_out(drawable(scene.gaussians), request, segmenter, control);
-    if (std::find(bits.begin(), bits.end(), std::uint8_t{1}) != bits.end()) return bits;
+    auto thing = cut_out(drawable(scene.gaussians), request, segmenter, control);
+    if (const auto text = cut_text(thing); !text.empty())
+        log::warning("\"{}\": {}", recipe.request.source(), text);
+    if (std::find(thing.rows.begin(), thing.rows.end(), std::uint8_t{1}) != thing.rows.end()) return thing;
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("nothing is seen in the box \"{}\" of --cut-out", job.cut_out),
                 "look at what gseditpro render shows with the same azimuth, elevation and zoom");
@@ -186,7 +188,9 @@ EditJob::EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCach
     times_.end();
     if (!recipe_.job.cut_out.empty()) {
         times_.begin("cut_out");
-        hints_.label = labelled_by_box(scene, recipe_, segmenters.clicks.get(), control_);
+        auto thing = labelled_by_box(scene, recipe_, segmenters.clicks.get(), control_);
+        hints_.label_doubt = cut_text(thing);
+        hints_.label = std::move(thing.rows);
         times_.end();
     } else if (!recipe_.job.at.empty() || recipe_.job.the_thing) {
         times_.begin("cut_out");

@@ -18,6 +18,7 @@
 #include "engine/language/grammar.h"
 #include "engine/localize/clusters.h"
 #include "engine/pipeline/scene/label_names.h"
+#include "engine/pipeline/scene/placed_shadow.h"
 #include "engine/scene/delta.h"
 #include "engine/scene/transform/joined_sets.h"
 #include "engine/scene/transform/transformed.h"
@@ -175,51 +176,11 @@ Bits moving_rows(const SceneEdit& edit) {
     return heal::with_held_parts({edit.scene, edit.plan.label, edit.located.views.orbit.up, edit.control});
 }
 
-/// Height along `up` that few of the rows are below.
-double lowest_of(const GaussianSet& set, const Bits& rows, const Vec3& up) {
-    std::vector<double> heights;
-    for (std::size_t row = 0; row < rows.size(); ++row) {
-        const auto p = set.position().subspan(row * 3, 3);
-        if (const double height = dot(up, Vec3{p[0], p[1], p[2]}); rows[row] != 0 && std::isfinite(height))
-            heights.push_back(height);
-    }
-    return heights.empty() ? 0 : edit::quantile(std::move(heights), edit::BoundsTrim);
-}
-
-/// Map of the shadow of a thing under a map of the thing. It moves and grows, and does not turn: the light
-/// stays where it is.
-Affine map_of_shadow(const SceneEdit& edit, const Bits& thing, const Vec3& foot, const Affine& place) {
-    const Vec3 up = normalized(edit.located.views.orbit.up);
-    const double lifted =
-        lowest_of(transformed(edit.scene, thing, place), thing, up) - lowest_of(edit.scene, thing, up);
-    const Vec3 shift = place(foot) - foot;
-    return Affine::move_by(shift + up * (lifted - dot(shift, up))) *
-           Affine::scale_about(std::cbrt(std::abs(place.determinant())), foot);
-}
-
-/// True for a map under which a thing stands where it stood, as large as before.
-bool keeps_foot(const edit::UprightBounds& thing, const Affine& place) {
-    constexpr double Near = 0.02;  // of the height, and of the size
-    return length(place(thing.foot) - thing.foot) < Near * thing.height &&
-           std::abs(std::cbrt(std::abs(place.determinant())) - 1) < Near;
-}
-
-/// Light of each row of the set in the shadows that the thing has at all its new places.
-std::vector<Vec3> light_on(const GaussianSet& set, const heal::Shadow& shadow,
-                           const std::vector<Affine>& places) {
-    std::vector<Vec3> light(set.size(), Vec3(1));
-    for (const auto& place : places) {
-        const auto shade = heal::carried_shade(shadow, place, set);
-        for (std::size_t row = 0; row < light.size(); ++row) light[row] = light[row] * shade[row];
-    }
-    return light;
-}
-
 /// Puts darker copies of rows in the place of those that come to lie in the shadow of the thing.
 void take_shadow_along(const SceneEdit& edit, const heal::Shadow& shadow, const std::vector<Affine>& places,
                        RowChange& change) {
-    const auto on_healing = light_on(GaussianSet(change.healing), shadow, places),
-               on_scene = light_on(edit.scene, shadow, places);
+    const auto on_healing = light_in_shadows(GaussianSet(change.healing), shadow, places),
+               on_scene = light_in_shadows(edit.scene, shadow, places);
     GaussianData healing;
     healing.sh_degree = edit.scene.sh_degree();
     const GaussianSet filled(std::move(change.healing));
@@ -248,7 +209,7 @@ RowChange transformation(const SceneEdit& edit) {
     RowChange change{Bits(label.size(), 0), edit.scene, label, no_rows(edit)};
     std::vector<Affine> shadows;
     for (const auto& place : places.copies)
-        shadows.push_back(map_of_shadow(edit, label, thing.standing.foot, place));
+        shadows.push_back(map_of_shadow(edit.scene, label, up, thing.standing.foot, place));
     heal::Shadow shadow;
     if (heals(edit) && (places.leaves_place || !shadows.empty())) {
         const bool lit = !shadows.empty() || !keeps_foot(thing.standing, places.thing);
@@ -256,7 +217,7 @@ RowChange transformation(const SceneEdit& edit) {
         shadow = std::move(healing.shadow_measured);
         if (places.leaves_place) {
             tell(healing);
-            shadows.push_back(map_of_shadow(edit, label, thing.standing.foot, places.thing));
+            shadows.push_back(map_of_shadow(edit.scene, label, up, thing.standing.foot, places.thing));
             change.healing = std::move(healing.added);
             for (std::size_t row = 0; row < label.size(); ++row)
                 if (label[row] == 0) change.gone[row] = healing.removed[row];

@@ -18,6 +18,7 @@ struct Hints {
     std::vector<std::string> said;    // words that the scene is known to show: no news
     // [N] the source, as an earlier search found it: it is not looked for again. Empty = it is.
     std::vector<std::uint8_t> found = {};
+    std::string label_doubt = {};  // reason to check the label; empty = none is known
     bool by_differences = false;  // the server of the run is asked where the thing is, and not the model here
 };
 

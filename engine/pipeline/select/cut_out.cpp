@@ -1,6 +1,5 @@
 // Picture, box, mask, votes.
 #include "engine/pipeline/select/cut_out.h"
-#include "engine/edit/search/thing_parts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,9 +11,12 @@
 #include "engine/base/printable.h"
 #include "engine/edit/placement/ground_rows.h"
 #include "engine/edit/search/grabcut_segmenter.h"
+#include "engine/edit/search/thing_parts.h"
 #include "engine/localize/back_projection.h"
 #include "engine/localize/clusters.h"
 #include "engine/pipeline/scene/scene_tools.h"
+#include "engine/pipeline/select/box_cut.h"
+#include "engine/pipeline/select/box_support.h"
 #include "engine/pipeline/select/cut_out_sides.h"
 #include "engine/pipeline/select/named_picture.h"
 
@@ -165,30 +167,6 @@ std::array<float, 3> telling_background(const raster::ForwardOutput& picture,
     return best;
 }
 
-/// Pixels that are opaque at about the depths of the mask's pixels.
-Mask level_with(const Mask& mask, const raster::ForwardOutput& picture, double focal) {
-    constexpr double trim = 0.02, gap = 0.1;  // of the depths; of the mask's longer side
-    std::vector<float> depths;
-    for (std::size_t i = 0; i < mask.data.size(); ++i)
-        if (mask.data[i] != 0 && picture.alpha.data[i] > Opaque)
-            depths.push_back(picture.depth.data[i] / picture.alpha.data[i]);
-    Mask level(mask.width, mask.height);
-    if (depths.empty()) return level;
-    std::sort(depths.begin(), depths.end());
-    const auto at = [&](double share) {
-        return static_cast<double>(
-            depths[static_cast<std::size_t>(share * static_cast<double>(depths.size() - 1))]);
-    };
-    const auto box = localize::bounds_of(mask);
-    const double reach = gap * std::max(box.width, box.height) / focal * at(0.5);
-    for (std::size_t i = 0; i < level.data.size(); ++i) {
-        if (!(picture.alpha.data[i] > Opaque)) continue;
-        const auto depth = static_cast<double>(picture.depth.data[i] / picture.alpha.data[i]);
-        level.data[i] = depth > at(trim) - reach && depth < at(1 - trim) + reach ? 1 : 0;
-    }
-    return level;
-}
-
 /// Tells whether a row's centre lies in the mask or just beside it.
 bool centred(const GaussianSet& set, std::size_t row, const Camera& camera, const Mask& mask) {
     const auto positions = set.spans().position;
@@ -271,10 +249,10 @@ CutOutRequest cut_out_request(const std::string& text, const Scene& scene, const
 
 double azimuth_of_box(const std::string& text) { return picture_of_box(text).parameters.azimuth; }
 
-std::vector<std::uint8_t> cut_out(const GaussianSet& set, const CutOutRequest& request,
-                                  edit::Segmenter* segmenter, const JobControl& control) {
+CutOutThing cut_out(const GaussianSet& set, const CutOutRequest& request, edit::Segmenter* segmenter,
+                    const JobControl& control) {
     const auto section = section_of(request);
-    if (!section) return std::vector<std::uint8_t>(set.size(), 0);
+    if (!section) return {std::vector<std::uint8_t>(set.size(), 0), {}};
     Painter painter;
     auto settings = request.settings;
     // The painter's own: the last picture.
@@ -298,7 +276,9 @@ std::vector<std::uint8_t> cut_out(const GaussianSet& set, const CutOutRequest& r
     const Mask whole = mask_of(*section);
     for (std::size_t i = 0; i < seen.mask.data.size(); ++i) seen.mask.data[i] &= whole.data[i];
     if (seen.mask.count() == 0) seen.mask = whole;
-    close_holes(seen.mask, level_with(seen.mask, painted, section->camera.fx));
+    const Mask level = level_with(seen.mask, painted, section->camera.fx);
+    auto sides = sides_text(cut_sides(seen.mask, level, section->box));
+    close_holes(seen.mask, level);
     seen.front = seen_rows(set, section->camera, seen.mask, settings, painter);
     PickOptions options;
     options.pool = &painter.pool();
@@ -306,8 +286,20 @@ std::vector<std::uint8_t> cut_out(const GaussianSet& set, const CutOutRequest& r
     options.mask = &wide;
     seen.cone = rows_in_area(set, section->camera, section->area, options);
     auto bits = follow_around(set, seen, settings, *segmenter, painter, control);
-    if (request.ground) return edit::lowest_layer(set, bits, request.up);
-    return edit::without_parts_beside(set, std::move(bits), request.nature, request.up);
+    if (request.ground) return {edit::lowest_layer(set, bits, request.up), {}};
+    const double extent = request.camera.height / request.camera.fy;
+    bits = without_support(set, std::move(bits), {seen.camera, seen.mask, extent, request.up}, settings,
+                           painter);
+    auto parted = edit::without_parts_beside(set, bits, request.nature, request.up);
+    if (parted != bits) sides.clear();  // its shape told it from what goes on beyond the box
+    return {std::move(parted), std::move(sides)};
+}
+
+std::string cut_text(const CutOutThing& thing) {
+    if (thing.cut_sides.empty()) return {};
+    return "the thing goes on beyond the box (" + thing.cut_sides +
+           "), and the label may hold a part of something else; draw the box around the whole thing, or "
+           "correct the label";
 }
 
 }  // namespace gse::pipeline

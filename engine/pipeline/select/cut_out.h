@@ -33,11 +33,19 @@ CutOutRequest cut_out_request(const std::string& text, const Scene& scene, const
 /// Azimuth of that picture, degrees.
 double azimuth_of_box(const std::string& text);
 
-/// Byte per row of `set`: 1 for the object, from all sides. `segmenter` cuts it out of a picture of the view,
-/// prompted by the box around the area. Then it cuts it out of views around the object (cut_out_sides.h).
-/// Null = the segmenter without weights. If the first cut is empty, the area itself is the outline. Throws
-/// Error (Cancelled).
-std::vector<std::uint8_t> cut_out(const GaussianSet& set, const CutOutRequest& request,
-                                  edit::Segmenter* segmenter, const JobControl& control = {});
+/// An object that was cut out.
+struct CutOutThing {
+    std::vector<std::uint8_t> rows;  // [N] 1 for the object, from all sides
+    std::string cut_sides;           // sides of the box that cut through it ("above"); box_cut.h
+};
+
+/// Cuts an object out of `set`. `segmenter` cuts it out of a picture of the view, prompted by the box around
+/// the area. Then it cuts it out of views around the object (cut_out_sides.h). Null = the segmenter without
+/// weights. If the first cut is empty, the area itself is the outline. Throws Error (Cancelled).
+CutOutThing cut_out(const GaussianSet& set, const CutOutRequest& request, edit::Segmenter* segmenter,
+                    const JobControl& control = {});
+
+/// Sentence about a box that cuts through the thing; empty where none does.
+std::string cut_text(const CutOutThing& thing);
 
 }  // namespace gse::pipeline

@@ -65,6 +65,26 @@ void check_stack(const DocumentState& state, const std::vector<std::string>& say
     check_names(names, say);
 }
 
+/// Checks which worn thing, if any, the window asks about before it makes the next edit of the bear.
+void check_asked_about(Session& session) {
+    struct Next {
+        const char *sentence, *asked_about;
+    };
+    for (const auto& [sentence, asked_about] :
+         {Next{"a golden bear", ""}, Next{"make the bear golden", ""},
+          Next{"a golden bear wearing a red hat", ""}, Next{"a golden bear wearing a hat", ""},
+          Next{"a golden bear with its red hat", ""}, Next{"a bear wearing a green scarf", ""},
+          Next{"a bear wearing a red hat and a green scarf", ""}, Next{"a bear in the snow", ""},
+          Next{"a bear wearing a red hat in the snow", ""}, Next{"a bear wearing a golden hat", ""},
+          Next{"put another hat on the bear", ""}, Next{"a bear wearing a red hat", "hat"}}) {
+        auto request = session.app.model().request;
+        request.prompt = sentence;
+        session.app.run(command::SetRequest{request});
+        session.app.update(session.preview);
+        DOCTEST_CHECK_MESSAGE(session.app.model().scope.present == asked_about, sentence);
+    }
+}
+
 }  // namespace
 
 DOCTEST_TEST_CASE("two changes of one sentence wait as one result, and are two edits of the stack") {
@@ -103,6 +123,7 @@ DOCTEST_TEST_CASE("two changes of one sentence wait as one result, and are two e
     const auto blue = mean_colour(both, *bear), red = mean_colour(both, *hat);
     DOCTEST_CHECK(blue[2] > blue[0]);  // the bear was red
     DOCTEST_CHECK(red[0] > red[2]);    // and the hat did not become blue
+    check_asked_about(session);
 
     app.run(command::Undo{});
     app.update(session.preview);

@@ -9,6 +9,7 @@
 #include "engine/base/file.h"
 #include "engine/base/safetensors_header.h"
 #include "tests/ui/app/session.h"
+#include "tests/unit/prompt/header_file.h"
 
 namespace lora_test {
 
@@ -38,7 +39,7 @@ void write_ones(const fs::path& path, const std::map<std::string, std::vector<st
 
 /// A LoRA for one layer of the starter, of rank 1.
 void write_starter_lora(const fs::path& path) {
-    const std::string layer = "mid_block.attentions.0.transformer_blocks.0.attn2.to_q";
+    const std::string layer = "down_blocks.0.attentions.0.transformer_blocks.0.attn2.to_k";
     const auto header =
         safetensors_header(app::starter_model_path() / "unet/diffusion_pytorch_model.safetensors");
     const auto shape = header[layer + ".weight"]["shape"].get<std::vector<std::size_t>>();
@@ -107,6 +108,58 @@ DOCTEST_TEST_CASE(
     DOCTEST_REQUIRE(last.settled());
     DOCTEST_CHECK(last.app.model().loras.empty());
     DOCTEST_CHECK(last.app.model().toasts.back().text.find("without them") != std::string::npos);
+}
+
+DOCTEST_TEST_CASE(
+    "weights that are opened are used by their kind, or refused in one sentence with what to do") {
+    if (!networks()) return;
+    const Place place;
+    const auto lora = place.folder / "style.safetensors", unknown = place.folder / "other.safetensors",
+               pickle = place.folder / "old.ckpt", gguf = place.folder / "flux.gguf",
+               adapter = place.folder / "adapter", model = place.folder / "model";
+    write_starter_lora(lora);
+    fs::create_directories(adapter);
+    write_starter_lora(adapter / "adapter_model.safetensors");
+    write_file(adapter / "adapter_config.json", "{\"lora_alpha\": 1, \"r\": 1}");
+    write_ones(unknown, {{"some.layer.weight", {2, 2}}});
+    write_file(pickle, "PK\x03\x04 and so on");
+    write_file(gguf, GgufBytes()
+                             .magic(1, 1)
+                             .statement("general.architecture", "flux")
+                             .tensor("double_blocks.0.img_attn.qkv.weight", {32, 32}, 2)
+                             .bytes() +
+                         std::string(4096, '\0'));
+    fs::copy(app::starter_model_path(), model, fs::copy_options::recursive);
+    Session session;
+    session.open_bear();
+    auto& app = session.app;
+    const auto said = [&](const fs::path& path) {
+        app.run(command::OpenModel{path});
+        DOCTEST_REQUIRE(session.settled());
+        return app.model().toasts.empty() ? std::string() : app.model().toasts.back().text;
+    };
+    const auto in_use = [&] {
+        for (const auto& row : app.model().models)
+            if (row.chosen) return fs::path(row.path);
+        return fs::path();
+    };
+    said(lora);
+    DOCTEST_REQUIRE(app.model().loras.size() == 1);
+    DOCTEST_CHECK(app.model().loras[0].name == "style");
+    said(adapter);
+    DOCTEST_CHECK(app.model().loras.size() == 2);
+    for (const auto& [path, remedy] :
+         {std::pair{gguf, "image server"}, std::pair{pickle, "convert it"}, std::pair{unknown, "no model"}}) {
+        const auto text = said(path);
+        DOCTEST_CHECK_MESSAGE(text.find(path.filename().string()) != std::string::npos, text);
+        DOCTEST_CHECK_MESSAGE(text.find(remedy) != std::string::npos, text);
+        DOCTEST_CHECK(text.find(". ") == std::string::npos);  // one sentence
+        DOCTEST_CHECK(app.model().toasts.back().is_error);
+        DOCTEST_CHECK(app.model().loras.size() == 2);
+    }
+    said(model);
+    DOCTEST_CHECK(in_use() == model);
+    app.shut_down();
 }
 
 }  // namespace lora_test

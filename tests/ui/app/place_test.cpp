@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/heal/heal.h"
 #include "engine/io/project/load_scene.h"
 #include "engine/io/scene/scene_file.h"
 #include "engine/pipeline/models/installed.h"
+#include "engine/pipeline/scene/placed_shadow.h"
 #include "engine/scene/label_ops.h"
 #include "tests/ui/app/session.h"
 
@@ -20,16 +22,24 @@ bool says_error(const app::Application& app) {
     return std::any_of(toasts.begin(), toasts.end(), [](const auto& toast) { return toast.is_error; });
 }
 
-/// The sample with a label of its bear's splats, by colour.
+enum class LabelledBy { Colour, Search };
+
+/// The sample with a label of its bear's splats: most of them, by colour, or all that a search finds.
 struct Labelled : Session {
-    Labelled() {
+    explicit Labelled(LabelledBy way = LabelledBy::Colour) {
         open_bear();
+        if (way == LabelledBy::Search) app.run(command::Locate{});
+        else label_by_colour();
+        DOCTEST_REQUIRE(settled());
+        DOCTEST_REQUIRE(app.model().labelled > 0);
+        app.run(command::UsePlacing{true});
+        app.update(preview);
+    }
+    void label_by_colour() {
         app.run(command::PickRows{{localize::RowProperty::Colour, {0.8f, 0.1f, 0.1f}, 0.25f, false, false}});
         DOCTEST_REQUIRE(until([&] { return app.model().picked.count > 0; }));
         app.run(command::UsePicked{ui::PickedUse::NewLabel});
         app.run(command::DropPicked{});
-        app.update(preview);
-        app.run(command::UsePlacing{true});
         app.update(preview);
     }
     const DocumentState& state() const { return app.document().state(); }
@@ -48,7 +58,7 @@ struct Labelled : Session {
         return sum * (1 / count);
     }
     void place(const edit::RearrangeSettings& settings) {
-        app.run(command::PlaceThing{settings});
+        app.run(command::PlaceThing{settings, false});
         app.update(preview);
     }
 };
@@ -87,6 +97,84 @@ DOCTEST_TEST_CASE("a thing that is dragged is one edit and one step of undo, and
     DOCTEST_CHECK(app.document().position() == at);
     DOCTEST_CHECK_FALSE(app.model().placing);
     DOCTEST_CHECK(length(session.centre() - centre) < Rounding);
+}
+
+namespace {
+
+/// Rows of the ground whose colour differs between two states with the same rows: those that are darker, and
+/// those that are lighter, each with its mean position.
+struct LightChange {
+    std::size_t darker = 0, lighter = 0;
+    Vec3 dark{}, light{};
+
+    LightChange(const GaussianSet& before, const GaussianSet& after, const std::vector<std::uint8_t>& thing) {
+        const auto stride = before.sh().size() / before.size();
+        for (std::size_t row = 0; row < before.size(); ++row) {
+            const auto p = before.position().subspan(row * 3, 3);
+            const float change = after.sh()[row * stride] - before.sh()[row * stride];
+            if (thing[row] != 0 || change == 0) continue;
+            (change < 0 ? dark : light) = (change < 0 ? dark : light) + Vec3{p[0], p[1], p[2]};
+            ++(change < 0 ? darker : lighter);
+        }
+        dark = dark * (1.0 / std::max<double>(1, static_cast<double>(darker)));
+        light = light * (1.0 / std::max<double>(1, static_cast<double>(lighter)));
+    }
+};
+
+}  // namespace
+
+DOCTEST_TEST_CASE("where a drag has ended, the thing's shadow has gone along, in the same step of undo") {
+    if (!networks()) return;
+    const Place place;
+    Labelled session(LabelledBy::Search);
+    auto& app = session.app;
+    const auto before = session.state().current;
+    const auto bits = session.bits();
+    const auto at = app.document().position();
+    const auto thing = *app.model().placed;
+    session.place(to_the_right(1.2));
+    const auto dragged = session.state().current;
+    DOCTEST_CHECK(LightChange(before, dragged, bits).darker == 0);
+    app.run(command::PlaceThing{to_the_right(1.2)});
+    DOCTEST_REQUIRE(
+        session.until([&] { return LightChange(before, session.state().current, bits).darker > 0; }, 60));
+    DOCTEST_CHECK(app.document().position() == at + 1);
+    DOCTEST_CHECK(session.state().stack.size() == 1);
+    DOCTEST_CHECK(app.model().placing);
+    const LightChange change(before, session.state().current, bits);
+    const auto right = [&](const Vec3& where) { return dot(where - thing.foot, thing.side); };
+    DOCTEST_REQUIRE(change.lighter > 0);
+    DOCTEST_CHECK(right(change.dark) - right(change.light) > 0.6);  // of 1.2
+    std::size_t moved_back = 0;  // the thing itself is where the drag has left it
+    for (std::size_t row = 0; row < bits.size(); ++row)
+        moved_back += bits[row] != 0 && !same_row(dragged.spans(), row, session.state().current.spans(), row);
+    DOCTEST_CHECK(moved_back == 0);
+
+    session.place(to_the_right(1.0));  // dragged on: the shadow waits for the end
+    DOCTEST_CHECK(LightChange(before, session.state().current, bits).darker == 0);
+    app.run(command::PlaceThing{to_the_right(1.0)});
+    app.update(session.preview);
+    DOCTEST_CHECK(LightChange(before, session.state().current, bits).darker > 0);  // measured already
+    app.run(command::HealPlace{});
+    app.update(session.preview);
+    DOCTEST_REQUIRE(session.state().stack.size() == 2);
+    app.run(command::Undo{});
+    app.run(command::Undo{});
+    app.update(session.preview);
+    DOCTEST_CHECK(session.state().current.shares_all_with(before));
+}
+
+DOCTEST_TEST_CASE("the shadow of a thing that is put back where it stood changes nothing") {
+    if (!networks()) return;
+    const Place place;
+    Labelled session(LabelledBy::Search);
+    const auto& set = session.state().current;
+    const auto healed = heal::remove_and_heal({set, session.bits(), session.state().info.up, {}});
+    const std::vector<Affine> here{Affine{}};
+    const auto light = pipeline::light_after(set, session.bits(), healed.shadow_measured, here, true);
+    DOCTEST_CHECK(std::all_of(light.begin(), light.end(), [](const Vec3& one) { return one == Vec3(1); }));
+    const auto copied = pipeline::light_after(set, session.bits(), healed.shadow_measured, here, false);
+    DOCTEST_CHECK(std::any_of(copied.begin(), copied.end(), [](const Vec3& one) { return one.x < 0.9; }));
 }
 
 DOCTEST_TEST_CASE("copies join the label; a change that cannot be made is said and changes nothing") {

@@ -130,6 +130,19 @@ DOCTEST_TEST_CASE("variations stay after Apply, and one is exchanged for the app
     app.run(command::Redo{});
     app.update(session.preview);
     DOCTEST_CHECK(app.model().variations.size() == 1);
+    app.run(command::SaveProject{place.folder / "with.gsep"});
+    DOCTEST_REQUIRE(session.idle());
+    {
+        Session again;  // the project keeps them
+        again.app.run(command::Open{place.folder / "with.gsep"});
+        DOCTEST_REQUIRE(again.until([&] { return again.app.model().variations.size() == 1; }, 60));
+        DOCTEST_CHECK(again.app.model().variations[0].applied == 1);
+        DOCTEST_REQUIRE(again.app.model().variations[0].results.size() == 2);
+        DOCTEST_CHECK(again.app.model().variations[0].results[0].thumbnail != nullptr);
+        again.app.run(command::ExchangeVariation{edit, 0});
+        again.app.update(again.preview);
+        DOCTEST_CHECK(colours(again.app.document().state().current) == colours(first));
+    }
     app.run(command::SetEditStrength{edit, 0.5, true});
     app.run(command::ExchangeVariation{edit, 0});
     DOCTEST_CHECK(app.document().state().stack[0].strength == 0.5);  // the artist's

@@ -69,6 +69,83 @@ DOCTEST_TEST_CASE("a screenshot shows what the viewport shows: its size, its tin
     app.shut_down();
 }
 
+namespace {
+
+/// Pixels within `reach` of a place at which two pictures differ clearly.
+int differing_near(const Image& a, const Image& b, double x, double y, int reach) {
+    int count = 0;
+    for (int py = std::max(0, static_cast<int>(y) - reach); py <= std::min(a.height - 1.0, y + reach); ++py)
+        for (int px = std::max(0, static_cast<int>(x) - reach); px <= std::min(a.width - 1.0, x + reach);
+             ++px)
+            for (int c = 0; c < 3; ++c)
+                if (std::abs(a.at(px, py, c) - b.at(px, py, c)) > 0.1f) {
+                    ++count;
+                    break;
+                }
+    return count;
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("a screenshot has the axes, the bounds and the cameras that the viewport shows") {
+    const Place place;
+    Session session;
+    session.open_bear();
+    auto& app = session.app;
+    auto exports = app.model().exports;
+    const auto written = [&](const char* name, auto&& change) {
+        exports.picture_path = (place.folder / name).string();
+        app.run(command::SetExports{exports});
+        auto view = app.model().view;
+        view.show_axes = view.show_bounds = view.show_views = false;
+        change(view);
+        app.run(command::SetViewSettings{view});
+        app.update(session.preview);
+        app.run(command::ExportPicture{});
+        DOCTEST_REQUIRE(session.idle());
+        return read_image(place.folder / name);
+    };
+    Camera camera = app.model().camera;
+    camera.translation.z += 2 * app.model().orbit.radius;  // from afar all of the bounds are in the picture
+    DOCTEST_REQUIRE(session.until([&] { return app.model().statistics.count > 0; }, 30));
+    Camera other = camera;  // seen by the first one, in the middle of its picture
+    const Vec3 aside = camera.centre() + camera.forward() * (0.5 * app.model().orbit.radius);
+    other.translation = other.rotation * aside * -1.0;
+    app.run(command::SetCamera{other});
+    app.update(session.preview);
+    app.run(command::AddView{});
+    app.run(command::SetCamera{camera});
+    app.update(session.preview);
+    const Image plain = written("plain.png", [](auto&) {});
+    const Image axes = written("axes.png", [](auto& view) { view.show_axes = true; });
+    const Image bounds = written("bounds.png", [](auto& view) { view.show_bounds = true; });
+    const Image views = written("views.png", [](auto& view) { view.show_views = true; });
+    exports.transparent = true;
+    const Image clear = written("clear.png", [](auto& view) { view.show_axes = true; });
+    const auto at = [&](const Vec3& world) { return camera.to_camera(world); };
+    // Axes: in the lower left corner, and nowhere else.
+    constexpr double Corner = 46;  // of letters of 15 pixels
+    DOCTEST_CHECK(differing_near(axes, plain, Corner, 240 - Corner, 45) > 100);
+    DOCTEST_CHECK(differing_near(axes, plain, 220, 100, 100) == 0);
+    DOCTEST_CHECK(differing_near(clear, plain, Corner, 240 - Corner, 45) > 100);
+    // Bounds: at every corner of the box that is in the picture.
+    const auto& statistics = app.model().statistics;
+    int corners = 0;
+    for (int bits = 0; bits < 8; ++bits) {
+        const Vec3& low = statistics.robust_low;
+        const Vec3& high = statistics.robust_high;
+        const Vec3 p = at({bits & 1 ? high.x : low.x, bits & 2 ? high.y : low.y, bits & 4 ? high.z : low.z});
+        const double x = camera.fx * p.x / p.z + camera.cx, y = camera.fy * p.y / p.z + camera.cy;
+        if (p.z <= 0 || x < 2 || y < 2 || x > 317 || y > 237) continue;
+        ++corners;
+        DOCTEST_CHECK(differing_near(bounds, plain, x, y, 2) > 0);
+    }
+    DOCTEST_CHECK(corners == 8);
+    // Cameras: where the stored one stands.
+    DOCTEST_CHECK(differing_near(views, plain, camera.cx, camera.cy, 6) > 8);
+    app.shut_down();
+}
+
 DOCTEST_TEST_CASE("views have names and pictures, and so have recent files") {
     const Place place;
     Session session;

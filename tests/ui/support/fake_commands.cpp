@@ -85,9 +85,9 @@ template <class C> std::string fields_of(const C& wanted) {
         [&](const command::PutIn& one) { return text(one.path.string()); },
         [&](const command::UsePlacing& one) { return text(one.on ? "on" : "off"); },
         [&](const command::PlaceThing& one) {
-            return fmt::format(" {:.2f} {:.2f} {:.2f} turn {:.0f} size {:.2f}", one.settings.move_right,
+            return fmt::format(" {:.2f} {:.2f} {:.2f} turn {:.0f} size {:.2f}{}", one.settings.move_right,
                                one.settings.move_up, one.settings.move_forward, one.settings.turn,
-                               one.settings.resize);
+                               one.settings.resize, end_of(one.drag_ends));
         },
         [&](const command::PickRows& one) {
             return text(localize::choice_text(one.choice)) + (one.choice.within_label ? " within" : "");
@@ -110,6 +110,7 @@ template <class C> std::string fields_of(const C& wanted) {
         [&](const command::DrawView& one) { return text(one.view); },
         [&](const command::PickColour& one) { return two(one.x, one.y); },
         [&](const command::SetViewportSize& one) { return two(one.width, one.height); },
+        [&](const command::OpenModel& one) { return text(one.path.string()); },
         [&](const command::ChooseModel& one) { return text(one.path); },
         [&](const command::AddLora& one) { return text(one.text); },
         [&](const command::SetLoraStrength& one) { return two(one.index, std::to_string(one.strength)); },

@@ -409,6 +409,24 @@ DOCTEST_TEST_CASE("a scene that is dropped on another one can be put into it, wi
     DOCTEST_CHECK(harness.asks("question.1", "open /tmp/work.gsep"));
 }
 
+DOCTEST_TEST_CASE("weights that are dropped are opened in the Models panel, whatever is unsaved") {
+    Harness harness({Wide, High, 1, Situation::Scene, false});
+    harness.application.model().unsaved = true;
+    for (const char* name : {"/tmp/style.safetensors", "/tmp/flux.gguf", "/tmp/old.ckpt", "/tmp/B.SFT"}) {
+        harness.application.calls.clear();
+        harness.shell.show(ui::PanelId::Prompt);
+        harness.shell.request_open({name});
+        harness.frame(4);
+        DOCTEST_CHECK(harness.application.asked(std::string("open_model ") + name));
+        DOCTEST_CHECK(harness.find("panel.Models") != nullptr);
+        DOCTEST_CHECK_FALSE(harness.shell.state().question.pending);
+    }
+    harness.application.calls.clear();
+    harness.shell.request_open({"/tmp/sparse/0/cameras.bin"});  // of COLMAP
+    harness.frame(3);
+    DOCTEST_CHECK_FALSE(harness.application.asked("open_model"));
+}
+
 DOCTEST_TEST_CASE("of several files that are dropped, the artist says which is opened") {
     Harness harness({Wide, High, 1, Situation::Scene, false});
     harness.application.model().unsaved = false;

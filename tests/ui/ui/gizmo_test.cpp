@@ -60,6 +60,25 @@ DOCTEST_TEST_CASE("each handle changes its own numbers") {
     DOCTEST_CHECK(placing.harness.application.asked("place_thing"));
 }
 
+DOCTEST_TEST_CASE("the end of a drag, and no frame before it, is told as its last change") {
+    Placing placing;
+    const auto ends = [&] {
+        const auto& calls = placing.harness.application.calls;
+        return std::count_if(calls.begin(), calls.end(), [](const std::string& call) {
+            return call.starts_with("place_thing") && call.ends_with(" end");
+        });
+    };
+    const ImVec2 from = placing.middle("gizmo.side");
+    placing.harness.move(from.x, from.y);
+    placing.harness.press();
+    placing.harness.move(from.x + 30, from.y);
+    DOCTEST_CHECK(placing.harness.application.asked("place_thing"));
+    DOCTEST_CHECK(ends() == 0);
+    placing.harness.release();
+    placing.harness.frame(3);
+    DOCTEST_CHECK(ends() == 1);
+}
+
 DOCTEST_TEST_CASE("the thing follows the mouse over the ground") {
     Placing placing;
     placing.drag("gizmo.ground", 60, 30);

@@ -43,6 +43,7 @@ class Steps(WindowTest):
         window.wait(lambda s: s["stack"] == 0 and s["splats"] == splats, "the colour was not taken back", 10)
 
         window.click("tab.Prompt")
+        window.scroll_to("prompt.sentence", "panel.Prompt")
         for sentence in ("leave the bear as it is", "gib ihm einen roten Hut"):
             window.write("prompt.sentence", sentence)
             window.wait(lambda s: not window.widgets()["prompt.edit"]["enabled"], "Edit is on", 10)

@@ -1,5 +1,5 @@
 """Words in the real window: a clicked target does not outlive its sentence, an unknown thing is labelled by
-hand, a search that finds nothing shows its evidence."""
+hand, a search that finds nothing shows its evidence, a thing that was added is not added twice."""
 import time
 import unittest
 
@@ -51,6 +51,75 @@ class Words(WindowTest):
         again.wait(lambda s: s["target"] == "golden", "the old word is still the target", 10)
         again.wait_widget("prompt.edit", enabled=True)
         again.close()
+
+    def run_edit(self, window):
+        window.wait_widget("prompt.edit", enabled=True)
+        window.click("prompt.edit")
+        window.wait(lambda s: s["job"]["running"], "the edit did not start", 20)
+        self.result(window)
+
+    def result(self, window):
+        window.wait(lambda s: s["result_waiting"] and not s["job"]["running"], "no result waits", 300)
+        self.assertEqual(window.state()["job"]["error"], "")
+
+    def apply(self, window, stack):
+        window.click("result.apply")
+        window.wait(lambda s: s["stack"] == stack, f"{stack} edits are not on the stack", 20)
+
+    def test_a_hat_is_added_then_the_bear_and_the_hat_are_edited(self):
+        window = self.open()
+        window.click("start.sample")
+        window.wait(lambda s: s["splats"] > 0 and not s["busy"], "the sample did not open")
+        splats = window.state()["splats"]
+        window.write("prompt.source", "bear")
+        window.write("prompt.sentence", "a bear wearing a blue hat")
+        window.scroll_to("prompt.quality.draft", "panel.Prompt")
+        window.click("prompt.quality.draft")
+        self.run_edit(window)
+        for text in window.state()["toasts"]:    # nothing was corrected before the first hat
+            self.assertNotIn("by hand", text)
+        window.click("result.another")
+        window.wait(lambda s: s["job"]["running"], "no other result is made", 20)
+        self.result(window)
+        self.apply(window, 1)
+        state = window.state()
+        with_hat = state["splats"]
+        self.assertGreater(with_hat, splats)
+        self.assertEqual(state["labels"]["active"], "hat")
+        # Variations stay, and are exchanged by a click.
+        kept = state["labels"]["variations"]
+        self.assertEqual([(one["applied"], one["results"]) for one in kept], [(1, 2)])
+        window.click("tab.History")
+        name = f"history.variation.{kept[0]['edit']}.0"
+        window.scroll_to(name, "panel.History")
+        window.picture("words_07_variations")
+        window.click(name)
+        window.wait(lambda s: s["labels"]["variations"][0]["applied"] == 0, "it was not exchanged", 10)
+        with_hat = window.state()["splats"]
+        few = (with_hat - splats) // 4    # an edit may add some splats, another hat would be as many again
+        # The next sentence about the bear is not about the hat, and asks nothing.
+        window.click("tab.Prompt")
+        window.write("prompt.sentence", "a golden bear")
+        window.wait(lambda s: s["labels"]["changes"] == "bear", "the bear's label is not used", 10)
+        self.run_edit(window)
+        self.assertNotIn("question.0", window.widgets())
+        self.assertEqual(window.state()["labels"]["active"], "bear")
+        self.apply(window, 2)
+        self.assertLess(abs(window.state()["splats"] - with_hat), few)
+        # The hat once more: the one that is there can be changed.
+        window.click("tab.Prompt")
+        window.write("prompt.sentence", "a bear wearing a blue hat")
+        window.wait_widget("prompt.edit", enabled=True)
+        window.click("prompt.edit")
+        window.wait_widget("question.2")
+        window.picture("words_08_second_hat")
+        window.click("question.0")
+        window.wait(lambda s: s["source"] == "hat" and s["job"]["running"], "the hat is not edited", 20)
+        self.assertEqual(window.state()["sentence"], "a blue hat")
+        self.result(window)
+        self.apply(window, 3)
+        self.assertLess(abs(window.state()["splats"] - with_hat), few)
+        self.assertEqual(window.close(), 0)
 
     def test_an_unknown_thing_is_clicked(self):
         window = self.start()

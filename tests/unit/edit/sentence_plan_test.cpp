@@ -132,6 +132,29 @@ DOCTEST_TEST_CASE("a description of a thing without the source takes the source 
     }
 }
 
+DOCTEST_TEST_CASE("a new look of what carries a thing leaves the thing as it is") {
+    for (const auto& [prompt, source] :
+         {std::pair{"a statue on a white pedestal", "pedestal"},
+          std::pair{"a guitar on a golden stand", "stand"}, std::pair{"a plant in a red pot", "pot"}}) {
+        const std::string typed = prompt;
+        DOCTEST_CAPTURE(typed);
+        const auto wanted = request(typed, source);
+        const auto steps = edit::planned_steps(edit::plan_of(wanted, edit::assumed_scene(wanted)),
+                                               edit::assumed_scene(wanted));
+        DOCTEST_REQUIRE(steps.size() == 1);
+        DOCTEST_CHECK(plan::changes_look(steps[0].step.operation));
+        DOCTEST_CHECK(steps[0].step.subject.root() == source);
+        DOCTEST_REQUIRE(steps[0].words);
+        DOCTEST_CHECK(steps[0].words->mode == edit::EditMode::Modify);
+        const auto checked = edit::check(wanted);
+        DOCTEST_CHECK_FALSE(checked.target_open());
+        DOCTEST_CHECK(language::decide_mode(checked.sentence(), checked.mode).first ==
+                      edit::EditMode::Modify);
+    }
+    const auto added = request("a cactus in a pot", "pot");
+    DOCTEST_CHECK(edit::assumed_scene(added).things.size() == 1);
+}
+
 DOCTEST_TEST_CASE("an edit in which nothing is drawn needs its thing by name") {
     auto wanted = request("anything", "");
     wanted.mode = "remove";

@@ -155,6 +155,17 @@ DOCTEST_TEST_CASE("a thing that was pointed at is the vessel, the plant or both,
     for (const char* noun : {"statue", "chair"}) DOCTEST_CHECK(labelled(noun) == scene.rows.bits);
 }
 
+DOCTEST_TEST_CASE("a vessel that a box was drawn around is told from the stems in it") {
+    Scene scene;
+    scene.vessel(0.2, 0.2, 0.4).plant(0.4, 1.2, 0.5);
+    for (std::size_t row = WallRows; row < scene.rows.bits.size(); ++row)
+        scene.rows.bits[row] = scene.rows.set().position()[row * 3 + 1] > -0.45F ? 1 : 0;
+    const auto label =
+        edit::without_parts_beside(scene.rows.set(), scene.rows.bits, edit::nature_of("pot"), Up);
+    DOCTEST_CHECK(share(label, 0, WallRows) > 0.95);
+    DOCTEST_CHECK(share(label, WallRows, label.size()) == 0);
+}
+
 DOCTEST_TEST_CASE("empty labels and rows that are no numbers are told nothing") {
     Scene scene;
     scene.vessel(0.2, 0.2, 0.4).plant(0.4, 1.2, 0.5);

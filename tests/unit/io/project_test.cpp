@@ -99,6 +99,41 @@ DOCTEST_TEST_CASE(
     DOCTEST_CHECK(none->code() == ErrorCode::NotFound);
 }
 
+DOCTEST_TEST_CASE("variations come back, with the one on the stack shared, as long as it is on the stack") {
+    const Quiet quiet;
+    const ScratchFolder folder;
+    const auto source = saved_source(folder.path() / "scene.ply", 120, 3);
+    ProjectData project = random_project(source, 3);
+    const EditNode& applied = project.state.stack[1];
+    EditNode other = random_node(project.state, 77);
+    other.id = applied.id;
+    other.thumbnail = random_picture(9, 7, 8);
+    SceneDelta delta = *other.delta;
+    for (std::size_t i = 0; i < delta.added.size(); ++i) delta.added[i] = applied.id << EditIdShift | i;
+    other.delta = std::make_shared<const SceneDelta>(delta);
+    EditVariations gone{99, {other, other}, {1, 2}};  // of an edit that is not there
+    project.variations = {gone, {applied.id, {other, applied}, {7, 8}}};
+    const auto path = folder.path() / "work.gsep";
+    save_project(path, project);
+    const ProjectData loaded = load_project(path);
+    DOCTEST_CHECK(difference(project.state, loaded.state) == "");
+    DOCTEST_CHECK(loaded.warnings.empty());
+    DOCTEST_REQUIRE(loaded.variations.size() == 1);
+    const auto& variations = loaded.variations[0];
+    DOCTEST_CHECK(variations.edit == applied.id);
+    DOCTEST_CHECK(variations.seeds == std::vector<std::uint64_t>{7, 8});
+    DOCTEST_CHECK(variations.applied(loaded.state.stack) == 1);
+    DOCTEST_REQUIRE(variations.nodes.size() == 2);
+    DOCTEST_CHECK(same_edit(variations.nodes[0], other));
+    DOCTEST_CHECK(same_delta(*variations.nodes[1].delta, *applied.delta));
+    // Saved by a program that knows nothing of them: their names are kept, their arrays are not.
+    const std::string cut = with_description(ProjectWriter().pack(path, project), [](auto&) {});
+    const ProjectData left = parse_project(as_bytes(cut), &source.loaded);
+    DOCTEST_CHECK(difference(project.state, left.state) == "");
+    DOCTEST_CHECK(left.variations.empty());
+    DOCTEST_CHECK(left.warnings.size() == 1);
+}
+
 DOCTEST_TEST_CASE("a writer that knows the arrays writes the same bytes as a new one") {
     const ScratchFolder folder;
     ProjectData project = random_project(saved_source(folder.path() / "scene.ply", 200, 1), 1);

@@ -85,6 +85,16 @@ DOCTEST_TEST_CASE("745 sentences are read as they were") {
     DOCTEST_CHECK(count == 745);
 }
 
+DOCTEST_TEST_CASE("a sentence that repeats what is worn has its news in the ground") {
+    const Words said{"a", "bear", "wearing", "red", "hat"};
+    const auto guess = [&](const char* text) { return guessed_target(Sentence(text), "bear", said); };
+    DOCTEST_CHECK(guess("a bear wearing a red hat in the snow") == "snow");
+    DOCTEST_CHECK(guess("a golden bear wearing a red hat in the snow") == "golden");
+    DOCTEST_CHECK(guess("a bear wearing a scarf in the snow") == "scarf");
+    DOCTEST_CHECK(guess("a bear wearing a red hat") == "hat");
+    DOCTEST_CHECK(guessed_target(Sentence("a bear wearing a red hat in the snow"), "bear") == "hat");
+}
+
 DOCTEST_TEST_CASE("what a model is told and what is said to be left out agree") {
     const Words known{"a", "red", "and", "white", "bear", "hat"};
     const auto match = [&](const std::string& word) { return match_word(word, known); };

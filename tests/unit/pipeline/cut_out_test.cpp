@@ -10,6 +10,8 @@
 #include "engine/edit/search/grabcut_segmenter.h"
 #include "engine/laboratory/synth/synth.h"
 #include "engine/pipeline/scene/scene_tools.h"
+#include "engine/pipeline/select/box_cut.h"
+#include "engine/pipeline/select/box_support.h"
 #include "engine/pipeline/select/cut_out.h"
 #include "engine/pipeline/select/cut_out_sides.h"
 
@@ -123,11 +125,87 @@ public:
 
 }  // namespace
 
+DOCTEST_TEST_CASE("sides of a box cut where a thing goes on beyond them, and not where it ends or stands") {
+    const edit::BoxPrompt box{20, 20, 60, 60};
+    const auto filled = [](int left, int top, int right, int bottom) {
+        Mask mask(80, 80);
+        for (int y = top; y < bottom; ++y)
+            for (int x = left; x < right; ++x) mask.at(x, y) = 1;
+        return mask;
+    };
+    const Mask inside = filled(20, 20, 60, 60);
+    const auto text = [&](const Mask& mask, const Mask& level) {
+        return sides_text(cut_sides(mask, level, box));
+    };
+    DOCTEST_CHECK_FALSE(cut_sides(inside, inside, box).any());
+    DOCTEST_CHECK(text(inside, filled(20, 0, 60, 60)) == "above");
+    DOCTEST_CHECK(text(inside, filled(20, 0, 25, 60)).empty());  // a narrow neck
+    DOCTEST_CHECK(text(inside, filled(0, 20, 80, 60)) == "to the left and to the right");
+    DOCTEST_CHECK(text(filled(30, 30, 50, 57), filled(0, 0, 80, 80)).empty());
+    DOCTEST_CHECK(text(Mask(80, 80), inside).empty());
+    const auto standing = cut_sides(inside, filled(20, 20, 60, 80), box);
+    DOCTEST_CHECK(standing.below);
+    DOCTEST_CHECK(sides_text(standing).empty());
+    const Mask all = filled(0, 0, 80, 80);
+    DOCTEST_CHECK_FALSE(cut_sides(all, all, {0, 0, 80, 80}).any());  // the picture ends there
+}
+
+DOCTEST_TEST_CASE("what a boxed thing stands on is no part of it where it goes on beyond the box") {
+    const auto on_disc = [](double radius) {  // the ball on a green disc
+        auto data = ball_and_wall().to_data();
+        Random random(5);
+        for (std::size_t row = BallRows; row < BallRows + WallRows; ++row) {
+            const double turn = random.uniform(0, 6.2832), out = radius * std::sqrt(random.uniform(0, 1));
+            float* at = &data.position[row * 3];
+            at[0] = static_cast<float>(out * std::cos(turn)), at[1] = 0.52f,
+            at[2] = static_cast<float>(out * std::sin(turn));
+        }
+        return GaussianSet(std::move(data));
+    };
+    const auto labelled = [](const GaussianSet& set, double radius) {  // the ball and the disc so far out
+        std::vector<std::uint8_t> bits(set.size(), 0);
+        for (std::size_t row = 0; row < set.size(); ++row) {
+            const float* at = &set.position()[row * 3];
+            bits[row] = row < BallRows || std::hypot(at[0], at[2]) < static_cast<float>(radius) ? 1 : 0;
+        }
+        return bits;
+    };
+    Painter painter;
+    BoxedView view;
+    view.camera = Camera::look_at({0, -1, -3}, {0, 0, 0}, {0, -1, 0}, 0.9, 500, 400);
+    view.extent = view.camera.height / view.camera.fy;
+    const auto parted = [&](const GaussianSet& set, const std::vector<std::uint8_t>& bits, double half) {
+        const double reach = half * view.camera.fx / 3, cx = view.camera.cx, cy = view.camera.cy;
+        view.mask = Mask(view.camera.width, view.camera.height);
+        for (int y = 0; y < view.mask.height; ++y)
+            for (int x = 0; x < view.mask.width; ++x)
+                view.mask.at(x, y) = std::abs(x - cx) < reach && std::abs(y - cy) < reach ? 1 : 0;
+        return without_support(set, bits, view, {}, painter);
+    };
+    const auto table = on_disc(2);
+    const auto on_table = parted(table, labelled(table, 0.75), 0.6);
+    DOCTEST_CHECK(count(on_table, 0, BallRows) > BallRows * 95 / 100);
+    DOCTEST_CHECK(count(on_table, BallRows, table.size()) < 60);
+    const auto base = on_disc(0.75);
+    DOCTEST_CHECK(parted(base, labelled(base, 1), 1) == labelled(base, 1));  // boxed with what it stands on
+}
+
+DOCTEST_TEST_CASE("a box around half of a thing says so") {
+    if (!edit::grabcut_available()) return;
+    const auto set = ball_and_wall();
+    auto request = around_ball();
+    DOCTEST_CHECK(cut_text(cut_out(set, request, nullptr)).empty());
+    request.area.polygon[0][1] = request.area.polygon[1][1] = static_cast<float>(request.camera.cy);
+    const auto half = cut_out(set, request, nullptr);
+    DOCTEST_CHECK(half.cut_sides == "above");
+    DOCTEST_CHECK(cut_text(half).find("(above)") != std::string::npos);
+}
+
 DOCTEST_TEST_CASE("a box around a thing selects all its sides, and not what is behind") {
     if (!edit::grabcut_available()) return;
     const auto set = ball_and_wall();
     const auto request = around_ball();
-    const auto rows = cut_out(set, request, nullptr);
+    const auto rows = cut_out(set, request, nullptr).rows;
     DOCTEST_CHECK(count(rows, 0, BallRows) > BallRows * 95 / 100);
     DOCTEST_CHECK(count(rows, BallRows, rows.size()) < count(rows, 0, BallRows) / 50);  // at the soft outline
     // The box alone would have taken the wall behind and beside the ball, too.
@@ -153,7 +231,7 @@ DOCTEST_TEST_CASE("a thing that other views cannot see still has the side that t
         data.opacity_logit[row] = 4;
         for (int c = 0; c < 3; ++c) data.sh[row * 3 + static_cast<std::size_t>(c)] = 1.5f;
     }
-    const auto rows = cut_out(GaussianSet(std::move(data)), request, nullptr);
+    const auto rows = cut_out(GaussianSet(std::move(data)), request, nullptr).rows;
     DOCTEST_CHECK(count(rows, 0, BallRows) > BallRows / 3);  // nearly half of it faces the camera
     DOCTEST_CHECK(count(rows, BallRows, rows.size()) < count(rows, 0, BallRows) / 10);  // at the soft outline
 }
@@ -177,7 +255,7 @@ DOCTEST_TEST_CASE("things of all kinds are cut out whole from any side") {
         for (std::size_t row = 0; row < set.size(); ++row)
             thing[row] = scene.parts[row] == synth::Part::Object ? 1.0f : 0.0f;
         request.area.polygon = box_around(set, thing, request.camera);
-        const auto rows = cut_out(set, request, nullptr);
+        const auto rows = cut_out(set, request, nullptr).rows;
         const auto evidence = seen_from_around(scene);
         for (std::size_t row = 0; row < set.size(); ++row) {
             if (rows[row] != 0 || thing[row] > 0) any += evidence[row];
@@ -194,7 +272,7 @@ DOCTEST_TEST_CASE("what is dark before a dark nothing has an outline all the sam
     });
     std::vector<std::uint8_t> ball(set.size(), 0);
     std::fill_n(ball.begin(), BallRows, std::uint8_t{1});
-    const auto rows = cut_out(set.filtered(ball), around_ball(), nullptr);
+    const auto rows = cut_out(set.filtered(ball), around_ball(), nullptr).rows;
     DOCTEST_CHECK(count(rows, 0, BallRows) == BallRows);  // no crumbs are left: they would hang on nothing
 }
 
@@ -205,7 +283,7 @@ DOCTEST_TEST_CASE(
         return ball && !(std::hypot(at[0], at[1]) < 0.22 && at[2] < 0) ? Vec3{1.5, -1.2, -1.2}
                                                                        : Vec3{-1.2, -1.2, -1.2};
     };
-    const auto rows = cut_out(with_colours(ball_and_wall(), dark), around_ball(), nullptr);
+    const auto rows = cut_out(with_colours(ball_and_wall(), dark), around_ball(), nullptr).rows;
     DOCTEST_CHECK(count(rows, 0, BallRows) > BallRows * 95 / 100);
     DOCTEST_CHECK(count(rows, BallRows, rows.size()) < count(rows, 0, BallRows) / 50);
     auto data = ball_and_wall().to_data();
@@ -215,7 +293,7 @@ DOCTEST_TEST_CASE(
         const float to = (0.42f + 0.16f * (radius - 0.25f)) / radius;
         at[0] *= to, at[1] *= to, at[2] *= 0.15f;
     }
-    const auto ring = cut_out(GaussianSet(std::move(data)), around_ball(), nullptr);
+    const auto ring = cut_out(GaussianSet(std::move(data)), around_ball(), nullptr).rows;
     DOCTEST_CHECK(count(ring, 0, BallRows) > BallRows * 95 / 100);
     DOCTEST_CHECK(count(ring, BallRows, ring.size()) < count(ring, 0, BallRows) / 50);
 }
@@ -240,15 +318,15 @@ DOCTEST_TEST_CASE("where nothing is cut out the box counts, and a box of nothing
     const auto set = ball_and_wall();
     auto request = around_ball();
     Fails fails;
-    const auto rows = cut_out(set, request, &fails);
+    const auto rows = cut_out(set, request, &fails).rows;
     const auto box = rows_in_area(set, request.camera, request.area);
     DOCTEST_CHECK(count(rows, 0, BallRows) > 0);
     for (std::size_t row = 0; row < BallRows; ++row)
         if (box[row] == 0) DOCTEST_CHECK(rows[row] == 0);
     request.area.polygon = {{10, 10}, {10, 10}, {10, 10}};
-    DOCTEST_CHECK(cut_out(set, request, nullptr) == std::vector<std::uint8_t>(set.size(), 0));
+    DOCTEST_CHECK(cut_out(set, request, nullptr).rows == std::vector<std::uint8_t>(set.size(), 0));
     request.area.polygon.clear();
-    DOCTEST_CHECK(cut_out(set, request, nullptr) == std::vector<std::uint8_t>(set.size(), 0));
+    DOCTEST_CHECK(cut_out(set, request, nullptr).rows == std::vector<std::uint8_t>(set.size(), 0));
 }
 
 DOCTEST_TEST_CASE("cutting out stops when it is told to") {

@@ -117,6 +117,7 @@ private:
         edit_.up = pipeline::parse_up(job.recipe().job.up, job.scene().info);
         if (job.front_read()) edit_.front_read = *job.front_read() / pipeline::Degree;
         problem_ = located.problem;
+        if (!job.label_doubt().empty()) edit_.level = SureLevel::Amber;
         if (located.confidence.value < 0) return;
         const double value = located.confidence.value;
         edit_.confidence = edit_.confidence ? std::min(*edit_.confidence, value) : value;

@@ -212,7 +212,8 @@ bool Reader::related(const Target& subject) {
 bool Reader::usually_on(const Target& subject, const Target& found) const {
     if (!subject.thing || !found.thing) return true;
     const auto& things = d_.scene().things;
-    return things[*found.thing].is_ground || has(Class::furniture_flat, things[*found.thing].noun);
+    const auto& noun = things[*found.thing].noun;
+    return things[*found.thing].is_ground || has(Class::furniture_flat, noun) || has(Class::support, noun);
 }
 
 /// The other thing is there: the subject is beside it, or goes there.

@@ -58,7 +58,7 @@ constexpr std::string_view ClassNames[] = {
     "modal_not", "weather_goes", "complaint", "word_what", "cloth", "before_place",
     "stuff_of", "place_word", "stuff_noun", "quality_word", "swap_places",
     "past_be", "wholly", "aside", "present",
-    "vessel", "potted_plant"};
+    "vessel", "potted_plant", "support"};
 // clang-format on
 static_assert(std::size(ClassNames) == ClassCount);
 
@@ -349,6 +349,8 @@ bool names_figure(std::string_view noun) {
 }
 
 bool names_vessel(std::string_view noun) { return is_of(Class::vessel, noun); }
+
+bool names_support(std::string_view noun) { return names_vessel(noun) || is_of(Class::support, noun); }
 
 bool names_potted_plant(std::string_view noun) { return is_of(Class::potted_plant, noun); }
 

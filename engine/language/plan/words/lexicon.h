@@ -47,7 +47,7 @@ enum class Class : std::uint16_t {
     furniture_flat, word_into, word_years, word_both, ordinal, word_does, verb_need, quality, heap,
     facial_hair, liked, verb_toss, copy_name, modal_not, weather_goes, complaint, word_what,
     cloth, before_place, stuff_of, place_word, stuff_noun, quality_word, swap_places,
-    past_be, wholly, aside, present, vessel, potted_plant,
+    past_be, wholly, aside, present, vessel, potted_plant, support,
     Count
     // clang-format on
 };
@@ -105,6 +105,9 @@ bool names_figure(std::string_view noun);
 
 /// Tells whether a noun names a vessel that plants grow out of (a vase, a flowerpot).
 bool names_vessel(std::string_view noun);
+
+/// Tells whether a noun names what another thing stands on or in (a pedestal, a stand, a vessel).
+bool names_support(std::string_view noun);
 
 /// Tells whether a noun names a plant that may stand in a vessel.
 bool names_potted_plant(std::string_view noun);

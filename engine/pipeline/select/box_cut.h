@@ -1,0 +1,26 @@
+// Sides of a drawn box that cut through the thing in it.
+#pragma once
+
+#include <string>
+
+#include "engine/base/image.h"
+#include "engine/edit/interfaces/interfaces.h"
+
+namespace gse::pipeline {
+
+/// Sides of a box at which what it holds goes on.
+struct CutSides {
+    bool above = false, below = false, left = false, right = false;
+    bool any() const { return above || below || left || right; }
+};
+
+/// Sides of `box` that cut through what `mask` shows. `level` holds the pixels that are opaque at the mask's
+/// depths. A side cuts where it has the mask on its inner side and `level` beyond it, over at least 0.15 of
+/// the mask's width or height.
+CutSides cut_sides(const Mask& mask, const Mask& level, const edit::BoxPrompt& box);
+
+/// Names the sides ("above and to the left"), but not the one below: a thing stands on something. Empty =
+/// none.
+std::string sides_text(const CutSides& sides);
+
+}  // namespace gse::pipeline
