@@ -96,6 +96,7 @@ void Application::follow_document() {
     const Seen now{workspace_.opened, document.revision()};
     const Seen before = std::exchange(seen_, now);
     if (document.empty() || before == now) return;
+    if (before.opened != now.opened) servers_.take_document();
     if (before.opened == now.opened && now.revision < before.revision) forget_undone();
     view_.follow_document();
     search_.follow_document();

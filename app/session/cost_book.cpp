@@ -42,7 +42,7 @@ void CostBook::remember(const std::string& key, const CostProfile& measured) {
         entry = *entry < 0 ? news.erase(entry) : std::next(entry);
     if (known.work_mb > measured.work_mb) news.erase("work_mb");  // the largest job counts
     fields_from_json(known, news);
-    workspace_.settings_changed = true;
+    workspace_.settings_changed = stale_ = true;
 }
 
 PlannedMemory CostBook::memory() const {
@@ -63,7 +63,7 @@ PlannedMemory CostBook::memory() const {
     return memory;
 }
 
-void CostBook::estimate(const std::vector<PlannedEdit>& edits) {
+void CostBook::estimate(const std::vector<PlannedEdit>& edits, const ServerCost& server) {
     ui::Estimate sum;
     sum.seconds = sum.tflop = 0;
     sum.quality_seconds.fill(0);
@@ -81,9 +81,15 @@ void CostBook::estimate(const std::vector<PlannedEdit>& edits) {
         for (std::size_t i = 0; i < by_quality.size(); ++i)
             add(sum.quality_seconds[i], by_quality[i].seconds);
     }
+    if (server.pictures > 0) {
+        sum = {};
+        sum.server_pictures = server.pictures;
+        sum.server_seconds = server.seconds;
+    }
     sum.memory_mb = estimated_memory_mb(measured, memory());
     sum.memory_free_mb = static_cast<double>(free_memory()) / (1 << 20);
     estimate_ = std::move(sum);
+    stale_ = false;
 }
 
 void CostBook::settings_to_json(nlohmann::json& json) const {

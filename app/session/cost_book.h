@@ -23,9 +23,12 @@ public:
     void remember(const std::string& key, const CostProfile& measured);
     PlannedMemory memory() const;
 
-    /// Estimates edits that are made one after another; `edits` must not be empty.
-    void estimate(const std::vector<PlannedEdit>& edits);
+    /// Estimates edits that are made one after another; `edits` must not be empty. Where a server draws, the
+    /// work of the model here says nothing of the time: only the server's part is told.
+    void estimate(const std::vector<PlannedEdit>& edits, const ServerCost& server);
     void forget_estimate() { estimate_ = {}; }
+    /// True when something was measured since the last estimate.
+    bool is_stale() const { return stale_; }
     void show(ui::SearchPart& model) const { model.estimate = estimate_; }
 
     void settings_to_json(nlohmann::json& json) const;
@@ -36,6 +39,7 @@ private:
     const ModelController& models_;
     std::map<std::string, CostProfile> profiles_;
     ui::Estimate estimate_;
+    bool stale_ = false;
 };
 
 }  // namespace gse::app

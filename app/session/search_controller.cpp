@@ -417,7 +417,7 @@ void SearchController::refresh() {
     sentence_.set_known_words(models_.list().known_words(), servers_.on());
     if (workspace_.document.empty()) return;
     refresh_scope();
-    if (seconds_since(last_estimate_) <= EstimateSeconds) return;
+    if (!costs_.is_stale() && seconds_since(last_estimate_) <= EstimateSeconds) return;
     last_estimate_ = Clock::now();
     refresh_estimate();
 }
@@ -436,12 +436,15 @@ void SearchController::refresh_estimate() {
     work.traits = models_.traits();
     work.words =
         language::promptable_vocabulary(models_.list().known_words(), models_.list().generated_vocabulary());
-    if (sentence_.steps().size() > 1) return costs_.estimate(work_of_steps(sentence_, std::move(work)));
+    const auto estimate = [&](const std::vector<PlannedEdit>& edits) {
+        costs_.estimate(edits, servers_.cost_of(edits));
+    };
+    if (sentence_.steps().size() > 1) return estimate(work_of_steps(sentence_, std::move(work)));
     try {
         work.mode = edit::decide_mode(edit::check(sentence_.asked()), std::nullopt).first;
     } catch (const Error&) {  // not a sentence yet
     }
-    costs_.estimate({{request(), std::move(work)}});
+    estimate({{request(), std::move(work)}});
 }
 
 void SearchController::show(ui::SearchPart& model) const {

@@ -219,8 +219,10 @@ private:
         state["lost_scene"] = model.lost.scene;
         state["export_scene"] = model.exports.scene_path;
         state["question"] = model.question.title;
-        state["server"] = {
-            {"on", model.server.on}, {"facts", model.server.facts.size()}, {"problem", model.server.problem}};
+        state["server"] = {{"on", model.server.on},
+                           {"facts", model.server.facts.size()},
+                           {"problem", model.server.problem},
+                           {"lora", model.server.choice.lora}};
         state["labelled"] = model.labelled;
         state["labels"] = labels_state(model);
         state["splats"] = app_.document().empty() ? 0 : app_.document().state().current.size();

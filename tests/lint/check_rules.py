@@ -101,6 +101,7 @@ SUB_ROOMS = {
         "viewport": {"model", "keys", "widgets", "state", "commands"},
         "panels": {"model", "keys", "widgets", "state", "commands", "viewport"},
         "panels/prompt": {"model", "keys", "widgets", "state", "commands", "panels"},
+        "panels/server": {"model", "keys", "widgets", "state", "commands", "panels"},
         "panels/settings": {"model", "keys", "widgets", "state", "commands", "panels"},
         "frame": {"model", "keys", "widgets", "state", "commands", "viewport", "panels", "panels/settings"},
     },

@@ -15,6 +15,7 @@
 #include "ui/frame/menu.h"
 #include "ui/keys/keyboard.h"
 #include "ui/panels/panels.h"
+#include "ui/state/own_pictures.h"
 #include "ui/state/sentence.h"
 #include "ui/state/state.h"
 #include "ui/viewport/viewport.h"
@@ -250,7 +251,10 @@ void Shell::answer_requests(Context& context) {
     put_in_what_is_asked(context);
     const bool dropped = std::exchange(state_->asked.dropped, false);
     if (const auto paths = std::exchange(state_->asked.open, {}); !paths.empty()) {
-        if (dropped && can_be_put_in(context, paths)) ask_put_in_or_open(context, paths.front());
+        if (dropped && is_own_picture(context, paths))
+            context.emit(command::SetServer{
+                with_own_picture(context.model.server.choice, context.state.targets.view, paths.front())});
+        else if (dropped && can_be_put_in(context, paths)) ask_put_in_or_open(context, paths.front());
         else open_one_of(context, paths);
     }
     const auto& asked = context.model.question;

@@ -316,7 +316,7 @@ struct ClearCache {};
 // The image server.
 /// Takes settings of it. A name and a password in the address are kept in the user's file of passwords.
 struct SetServer {
-    ServerChoice choice;
+    remote::ServerSettings choice;
 };
 /// Keeps name and password for the server in the user's file of passwords.
 struct KeepServerPassword {

@@ -23,6 +23,7 @@
 #include "engine/math/framing.h"
 #include "engine/pipeline/models/model_catalogue.h"
 #include "engine/pipeline/report/evidence_pictures.h"
+#include "engine/remote/api/server_settings.h"
 #include "engine/scene/camera_key.h"
 #include "engine/scene/document.h"
 #include "ui/model/model_settings.h"
@@ -157,6 +158,8 @@ struct Estimate {
     double memory_free_mb = -1;
     std::array<double, edit::Qualities.size()> quality_seconds{-1, -1, -1};  // of each quality
     std::vector<double> step_seconds = {};  // of each step of a sentence with several changes; else empty
+    int server_pictures = 0;                // least number that the image server draws; 0 = it draws none
+    double server_seconds = -1;  // that they take; negative = none was drawn yet. Not in the other figures
 };
 
 /// A short message over the viewport, with an optional button.
@@ -451,24 +454,20 @@ struct ModelPart {
     std::uint64_t cache_bytes = 0;            // that they take
 };
 
-/// Settings of an image server that an artist makes in the window. Nothing secret is in them.
-struct ServerChoice {
-    std::string url, model;  // empty = none; the model that is loaded
-    std::string family = "auto", agreement = "auto";
-};
-
 /// Answer of an image server to the question what it is, and its use.
 struct ServerView {
     struct Fact {
         std::string name, value;
         std::string origin = {};  // of a value that could be another: "from the model's name"
     };
-    ServerChoice choice;
-    bool on = false;       // it draws the views of edits
-    bool testing = false;  // it is being asked
+    remote::ServerSettings choice;  // nothing secret is in them
+    remote::ServerSettings usual;   // as the family says: side, steps, guidance, strength; 0 = not asked yet
+    bool on = false;                // it draws the views of edits
+    bool testing = false;           // it is being asked
+    bool is_comfy = false;          // it draws by workflows
     std::vector<Fact> facts;
     std::vector<std::string> notes;             // of the server, or about it
-    std::vector<std::string> models;            // to choose from; empty = not told
+    std::vector<std::string> models, loras;     // to choose from; empty = not told
     std::vector<std::string> families{"auto"};  // to choose from
     std::string problem;  // why it cannot be used, with the remedy; empty = none is known
 };

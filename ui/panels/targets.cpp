@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/remote/api/server_settings.h"
 #include "ui/panels/panels.h"
+#include "ui/state/own_pictures.h"
 #include "ui/state/state.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/sheet.h"
@@ -57,6 +59,12 @@ void draw_pair(Context& context, const TargetView& target, const std::string& na
     ImGui::EndGroup();
     note(context, name);
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    const bool selected = context.model.server.on && context.state.targets.view == target.name;
+    if (context.model.server.on && ImGui::IsItemClicked())
+        context.state.targets.view = selected ? std::string() : target.name;
+    if (selected)
+        ImGui::GetWindowDrawList()->AddRect(low, high, palette::Good, context.em * 0.2f, 0,
+                                            std::max(2.0f, context.em * 0.2f));
     if (target.ordered || target.dropped)
         ImGui::GetWindowDrawList()->AddRect(low, high, target.ordered ? palette::Accent : palette::Warning,
                                             context.em * 0.2f, 0, std::max(1.0f, context.em * 0.1f));
@@ -76,8 +84,9 @@ void draw_pair(Context& context, const TargetView& target, const std::string& na
     ImGui::EndTooltip();
 }
 
-std::string state_text(const TargetView& target) {
+std::string state_text(const Context& context, const TargetView& target) {
     std::string text = target.name;
+    if (!own_picture_of(context.model.server.choice, target.name).empty()) text += ", yours next";
     if (target.attempt > 0) text += ", redrawn";
     if (target.dropped) text += ", dropped";
     return text;
@@ -116,6 +125,38 @@ void draw_choices(Context& context, const TargetRound& round, const TargetView& 
         order(TargetChoice::Redo);
 }
 
+constexpr const char* UsePicture = "Use my picture...";
+
+/// Asks for a picture of the artist's own, which the view of the next edit shall look like.
+void draw_own_choice(Context& context, const TargetView& target, const std::string& name) {
+    if (!context.model.server.on) return;
+    if (!button(context, {.name = name + ".own",
+                          .text = UsePicture,
+                          .tooltip = "The next edit takes your picture for this view, and the others follow "
+                                     "it. You can also click the view and drop the picture on the window."}))
+        return;
+    auto& commands = context.commands;
+    context.state.files.ask({.title = "A picture of your own for this view, as large as you like, but square",
+                             .confirm = "Use",
+                             .extensions = {".png", ".jpg", ".jpeg"},
+                             .answer = [&commands, choice = context.model.server.choice,
+                                        view = target.name](const std::filesystem::path& path) {
+                                 commands.push(
+                                     command::SetServer{with_own_picture(choice, view, utf8_of(path))});
+                             }});
+}
+
+/// Pictures for the next edit, each with a way to take it back.
+void draw_own_pictures(Context& context) {
+    const auto& choice = context.model.server.choice;
+    for (std::size_t i = 0; i < choice.target_picture.size(); ++i) {
+        const auto own = remote::target_picture_of(choice.target_picture[i]);
+        wrapped_text(fmt::format("The next edit draws {} like {}.", own.view, utf8_of(own.file.filename())));
+        if (button(context, {.name = fmt::format("targets.own.{}.clear", i), .text = "Without my picture"}))
+            context.emit(command::SetServer{with_own_picture(choice, own.view, {})});
+    }
+}
+
 void draw_target(Context& context, const TargetRound& round, std::size_t index, float side,
                  const std::string& why) {
     const auto& target = round.targets[index];
@@ -123,21 +164,24 @@ void draw_target(Context& context, const TargetRound& round, std::size_t index, 
     ImGui::PushID(static_cast<int>(index));
     ImGui::BeginGroup();
     draw_pair(context, target, name, side);
-    const std::string text = state_text(target);
+    const std::string text = state_text(context, target);
     dim_text(shortened(text, 2 * side));
     draw_choices(context, round, target, name, why);
+    draw_own_choice(context, target, name);
     ImGui::EndGroup();
     ImGui::PopID();
 }
 
 /// As many pairs beside each other as fit.
 void draw_sheet(Context& context, const TargetRound& round) {
+    const bool owns = context.model.server.on;
     const float gap = context.em * 0.6f,
                 least = std::max(context.em * 4.2f, button_width("Accept") * 0.5f +
                                                         button_width("Redo") * 0.5f + context.em * 0.5f);
     if (ImGui::BeginChild("sheet", {0, 0}, false, ImGuiWindowFlags_NavFlattened)) {
         const ImVec2 room = ImGui::GetContentRegionAvail();
-        const float below = ImGui::GetTextLineHeightWithSpacing() + ImGui::GetFrameHeightWithSpacing();
+        const float below = ImGui::GetTextLineHeightWithSpacing() +
+                            static_cast<float>(owns ? 2 : 1) * ImGui::GetFrameHeightWithSpacing();
         const auto [columns, side] = fitted_sheet({static_cast<int>(round.targets.size()), 2, below, gap},
                                                   room.x - 1, room.y, least, context.em * LargestEm);
         const std::string why = why_not_change(context, round);
@@ -203,6 +247,7 @@ void draw_targets_panel(Context& context) {
                      "The edit waits when views were redrawn, until you have looked at them.");
     };
     if (context.model.target_rounds.empty()) {
+        draw_own_pictures(context);
         dim_text(
             "An edit with method views or auto redraws views here: look at them, drop those that are wrong, "
             "have others redrawn.");
@@ -214,6 +259,7 @@ void draw_targets_panel(Context& context) {
         ImGui::BeginChild("about", {std::clamp(space.x * 0.27f, context.em * 13, context.em * 20), space.y},
                           false, ImGuiWindowFlags_NavFlattened);
     draw_wait(context);
+    draw_own_pictures(context);
     draw_rounds(context);
     dim_text(summary(shown_round(context)));
     draw_warnings(context);

@@ -179,6 +179,7 @@ struct ProgressState {
 struct TargetsState {
     int chosen = -1;      // round, -1 = the last
     int waited_for = -1;  // round whose fit waited in the last frame, -1 = none
+    std::string view;     // that a dropped picture is for; empty = none is selected
 };
 
 struct LogState {
@@ -208,6 +209,7 @@ struct ModelsState {
     std::string server_url, server_problem;      // as it is typed; why that is no address
     std::string server_shown;                    // address in use when the text was last taken from it
     std::string server_user, server_password;
+    std::string server_option, server_workflow, server_ca;
 };
 
 /// Requests to carry out before the next frame is drawn.

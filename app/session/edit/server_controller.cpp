@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <utility>
 
@@ -14,8 +16,11 @@
 #include "engine/edit/request/checked_request.h"
 #include "engine/edit/request/decide_mode.h"
 #include "engine/pipeline/models/remote_loader.h"
-#include "engine/pipeline/models/view_server.h"
+#include "engine/remote/api/server_lora.h"
+#include "engine/remote/api/server_option.h"
 #include "engine/remote/api/server_url.h"
+#include "engine/remote/views/picture_source.h"
+#include "engine/remote/views/view_frame.h"
 
 namespace gse::app {
 namespace {
@@ -44,6 +49,57 @@ int pictures_of(const edit::EditRequest& request) {
     return edit::round_plan(request, mode).views;
 }
 
+/// Throws Error for settings that no server takes.
+void check_settings(const remote::ServerSettings& settings) {
+    check_fields(settings);
+    remote::parse_server_loras(settings.lora);
+    remote::parse_server_options(settings.option);
+    for (const auto& text : settings.target_picture)
+        if (const auto own = remote::target_picture_of(text); !std::filesystem::is_regular_file(own.file))
+            throw Error(ErrorCode::NotFound,
+                        fmt::format("there is no picture \"{}\"", printable(own.file.string())),
+                        "choose a PNG or JPEG");
+}
+
+/// Views that have other pictures of the artist's own than before, in words; empty = none has.
+std::string said_of_pictures(const remote::ServerSettings& before, const remote::ServerSettings& now) {
+    for (const auto& text : now.target_picture)
+        if (const auto own = remote::target_picture_of(text);
+            std::find(before.target_picture.begin(), before.target_picture.end(), text) ==
+            before.target_picture.end())
+            return fmt::format("The next edit draws {} like {}.", printable(own.view),
+                               printable(own.file.filename().string()));
+    return before.target_picture.size() > now.target_picture.size() ? "The next edit draws that view itself."
+                                                                    : "";
+}
+
+/// Settings that a server's answer depends on: not the numbers.
+nlohmann::ordered_json asked_with(remote::ServerSettings settings) {
+    settings.side = settings.steps = 0;
+    settings.guidance = settings.strength = 0;
+    settings.target_picture.clear();
+    return fields_to_json(settings);
+}
+
+/// Settings that decide how long a picture takes, and how many are asked for.
+std::string cost_key(remote::ServerSettings settings) {
+    const bool follows = !settings.target_picture.empty();
+    settings.target_picture.clear();
+    settings.key_view.clear();
+    return fmt::format("{} {}", fields_to_json(settings).dump(), follows);
+}
+
+/// Pictures that are asked for to draw a round, where each is of use at once. `own` of the views are there.
+int pictures_for(int views, int own, remote::Agreement agreement) {
+    constexpr int cells = 4;  // of a sheet, the first of which shows the first view again
+    const int missing = std::max(0, views - own);
+    if (agreement == remote::Agreement::Sheet && missing > 0)
+        return own > 0 ? (missing + cells - 2) / (cells - 1) : 1 + std::max(0, (missing - 2) / (cells - 1));
+    if (agreement == remote::Agreement::Warp)  // filled, then closed; the first is drawn by itself
+        return own > 0 ? 2 * missing : std::max(0, 2 * missing - 1);
+    return missing;
+}
+
 /// Words about who can read what goes there.
 std::string said_of_way(const remote::ServerUrl& url) {
     if (remote::is_loopback(url.host)) return "That is this machine.";
@@ -68,11 +124,13 @@ std::string ServerController::consent_key() const {
 
 std::string ServerController::told(const edit::EditRequest& request) const {
     const auto url = remote::parse_server_url(settings_.url).url;
-    const auto size = side_ > 0 ? fmt::format(", {0} x {0} pixels", side_) : std::string();
+    const int side = view_.usual.side > 0 ? remote::sent_side(settings_.side, view_.usual.side) : 0;
+    const auto size = side > 0 ? fmt::format(", {0} x {0} pixels", side) : std::string();
     return fmt::format(
-        "{} pictures of your scene in each round{}, their masks and the sentence \"{}\" go to "
+        "{} pictures of your scene in each round{}, their masks{} and the sentence \"{}\" go to "
         "{} ({}{}). {}",
-        pictures_of(request), size, request.prompt, url.nickname(), kind_.empty() ? "an image server" : kind_,
+        pictures_of(request), size, settings_.target_picture.empty() ? "" : ", your own pictures",
+        request.prompt, url.nickname(), kind_.empty() ? "an image server" : kind_,
         url.encrypted() || remote::is_loopback(url.host) ? "" : ", not encrypted", said_of_way(url));
 }
 
@@ -98,11 +156,35 @@ void ServerController::mention(const remote::ServerSettings& named) {
                     printable(url)));
 }
 
+// Costs
+
+void ServerController::measure(const remote::ServerSettings& settings, const ViewServer* server) {
+    if (server == nullptr || server->use().requests == 0) return;
+    const auto& use = server->use();
+    measured_[cost_key(settings)] = {server->agreement(), use.seconds / static_cast<double>(use.requests)};
+}
+
+ServerCost ServerController::cost_of(const std::vector<PlannedEdit>& edits) const {
+    if (!on_ || !settings_.used()) return {};
+    const auto found = measured_.find(cost_key(settings_));
+    const auto agreement = found == measured_.end() ? remote::Agreement::None : found->second.agreement;
+    const auto own = static_cast<int>(settings_.target_picture.size());
+    ServerCost cost;
+    for (const auto& edit : edits) {
+        if (!edit.made || !edit::is_drawn(edit.work.mode)) continue;
+        const auto plan = edit::round_plan(edit.request, edit.work.mode);
+        cost.pictures += plan.rounds * pictures_for(plan.views, own, agreement);
+    }
+    if (found != measured_.end()) cost.seconds = cost.pictures * found->second.seconds;
+    return cost;
+}
+
 // Settings
 
 void ServerController::settings_to_json(nlohmann::json& json) const {
     if (!settings_.used()) return;
     json["server"] = fields_to_json(settings_);
+    json["server"].erase("target_picture");  // of this scene
     json["server"]["url"] = remote::without_secrets(settings_.url);
 }
 
@@ -111,6 +193,7 @@ void ServerController::settings_from_json(const nlohmann::json& json) {
     try {
         remote::ServerSettings read;
         fields_from_json(read, nlohmann::ordered_json(json["server"]));
+        check_settings(read);
         read.url = remote::parse_server_url(read.url).url.at("");
         settings_ = std::move(read);
     } catch (const std::exception& error) {  // of another version, or edited by hand
@@ -120,7 +203,8 @@ void ServerController::settings_from_json(const nlohmann::json& json) {
 
 void ServerController::show(ui::ServerPart& model) const {
     model.server = view_;
-    model.server.choice = {settings_.url, settings_.model, settings_.family, settings_.agreement};
+    model.server.choice = settings_;
+    if (!view_.facts.empty()) model.server.facts.push_back(values_fact(settings_, view_.usual));
     model.server.families = server_families();
     model.server.on = on_;
 }
@@ -130,34 +214,33 @@ void ServerController::show(ui::ServerPart& model) const {
 void ServerController::forget_facts() {
     view_ = {};
     kind_.clear();
-    side_ = 0;
 }
 
 /// Throws Error.
-void ServerController::take(const ui::ServerChoice& choice) {
-    auto next = settings_;
-    next.url = choice.url.empty() ? std::string() : remote::parse_server_url(choice.url).url.at("");
+void ServerController::take(const remote::ServerSettings& choice) {
+    check_settings(choice);
+    const auto url = choice.url.empty() ? std::string() : remote::parse_server_url(choice.url).url.at("");
     if (remote::without_secrets(choice.url) != choice.url) remote_api().keep_credentials(choice.url);
-    next.model = choice.model;
-    next.family = choice.family;
-    next.agreement = choice.agreement;
-    if (next.url != settings_.url) {
+    if (url == settings_.url) {
+        settings_ = choice;
+    } else {
         on_ = false;
-        next = {};
-        next.url = choice.url.empty() ? std::string() : remote::parse_server_url(choice.url).url.at("");
+        settings_ = {};
         forget_facts();
     }
-    settings_ = std::move(next);
+    settings_.url = url;
     workspace_.settings_changed = true;
 }
 
 template <> void ServerController::on(const command::SetServer& one) {
-    const auto url = settings_.url;
-    const bool known = !view_.facts.empty();
+    const auto before = settings_;
+    const bool asked = !view_.facts.empty() || !view_.problem.empty();
     try {
         take(one.choice);
     } catch (const Error& error) { return workspace_.notices.report(error); }
-    if (known && url == settings_.url && !workspace_.jobs->works()) ask();  // facts follow the choice
+    if (const auto said = said_of_pictures(before, settings_); !said.empty()) workspace_.notices.toast(said);
+    const bool answers_differ = asked_with(before) != asked_with(settings_);
+    if (asked && before.url == settings_.url && answers_differ && !workspace_.jobs->works()) ask();
 }
 
 template <> void ServerController::on(const command::KeepServerPassword& one) {
@@ -180,7 +263,11 @@ void ServerController::ask() {
     if (!settings_.used()) return;
     if (workspace_.jobs->works())
         return workspace_.notices.toast("The image server can be asked when the job is done.");
-    forget_facts();
+    auto known = std::exchange(view_, {});
+    view_.usual = known.usual;  // so that what was chosen wrongly can be taken off
+    view_.loras = std::move(known.loras);
+    view_.is_comfy = known.is_comfy;
+    kind_.clear();
     view_.testing = true;
     auto answer = std::make_shared<ServerAnswer>();
     auto work = [settings = settings_, answer](const JobControl& control) {
@@ -198,8 +285,10 @@ void ServerController::ask() {
         view_.facts = answer->facts;
         view_.notes = answer->notes;
         view_.models = answer->models;
+        view_.loras = answer->loras;
+        view_.is_comfy = answer->is_comfy;
+        view_.usual = answer->usual;
         kind_ = answer->kind;
-        side_ = answer->side;
     };
     workspace_.jobs->start_work(JobKind::Other, {"Test the image server", work, done});
 }
@@ -213,6 +302,7 @@ template <> void ServerController::on(const command::ForgetServer&) {
     settings_ = {};
     on_ = false;
     consents_.clear();
+    measured_.clear();
     forget_facts();
     workspace_.settings_changed = true;
 }

@@ -2,15 +2,20 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "app/engine_names.h"
 #include "app/session/edit/asked_sentence.h"
+#include "app/session/state/estimate.h"
 #include "app/session/state/workspace.h"
 #include "engine/edit/request/request.h"
+#include "engine/pipeline/models/view_server.h"
 #include "engine/remote/api/server_settings.h"
+#include "engine/remote/views/agreement.h"
 
 namespace gse::app {
 
@@ -28,6 +33,13 @@ public:
     /// True where the server may be sent what the sentence needs, or where none is needed. Otherwise asks the
     /// artist; with the consent, `then` is called later.
     bool may_send(const AskedSentence& sentence, std::function<void()> then);
+    /// Takes the time that the server of a run took for its pictures, where it drew any. Null = there was
+    /// none.
+    void measure(const remote::ServerSettings& settings, const ViewServer* server);
+    /// Part of these edits that the server would do as it is set now; none while it is off.
+    ServerCost cost_of(const std::vector<PlannedEdit>& edits) const;
+    /// Forgets pictures that were for views of another document.
+    void take_document() { settings_.target_picture.clear(); }
     /// Shows the server that a recipe names. It is neither asked nor switched on.
     void mention(const remote::ServerSettings& named);
 
@@ -36,7 +48,7 @@ public:
 
 private:
     template <class C> void on(const C& command);
-    void take(const ui::ServerChoice& choice);
+    void take(const remote::ServerSettings& choice);
     void forget_facts();
     void ask();
     std::string consent_key() const;
@@ -47,8 +59,13 @@ private:
     bool on_ = false;
     ui::ServerView view_;             // of the last answer
     std::string kind_;                // "sd-server"; empty = not asked yet
-    int side_ = 0;                    // of the pictures that are sent, px; 0 = not asked yet
     std::set<std::string> consents_;  // of this session
+    /// Way in which pictures were drawn, and seconds for one.
+    struct Measured {
+        remote::Agreement agreement;
+        double seconds = 0;
+    };
+    std::map<std::string, Measured> measured_;  // in this session, by settings
 };
 
 }  // namespace gse::app

@@ -3,9 +3,12 @@
 
 #include <fmt/format.h>
 
+#include "engine/base/error.h"
 #include "engine/base/printable.h"
 #include "engine/remote/api/server_kind.h"
+#include "engine/remote/api/server_lora.h"
 #include "engine/remote/views/remote_view_editor.h"
+#include "engine/remote/views/view_frame.h"
 
 namespace gse::app {
 namespace {
@@ -30,10 +33,22 @@ std::string origin_of_family(const remote::ServerSettings& settings, const std::
     return told_by_name(model) ? "from the model's name" : "a guess: the model's name tells nothing";
 }
 
-std::string values_of(const pipeline::ViewServer& server) {
-    const auto& family = server.family();
-    return fmt::format("{} steps, guidance {}, strength {}, {} x {} pixels", family.steps,
-                       family.guidance_scale, family.strength, server.side(), server.side());
+/// False for names that no setting can hold.
+bool is_lora_name(const std::string& name) {
+    try {
+        return remote::parse_server_lora(name + ":1").name == name;
+    } catch (const Error&) { return false; }
+}
+
+/// Numbers of the family where nobody chose others.
+remote::ServerSettings usual_of(const remote::ModelFamily& used) {
+    const auto& family = remote::family_named(used.name);
+    remote::ServerSettings usual;
+    usual.side = remote::sent_side(0, family.side);
+    usual.steps = family.steps;
+    usual.guidance = family.guidance_scale;
+    usual.strength = family.strength;
+    return usual;
 }
 
 }  // namespace
@@ -43,7 +58,8 @@ ServerAnswer answer_of(const pipeline::ViewServer& server, const remote::ServerS
     const auto model = settings.model.empty() ? facts.model : settings.model;
     ServerAnswer answer;
     answer.kind = printable(facts.product);
-    answer.side = server.side();
+    answer.is_comfy = facts.kind == remote::ServerKind::Comfy;
+    answer.usual = usual_of(server.family());
     answer.facts = {
         {"Server", fmt::format("{}{}{} ({})", answer.kind, facts.version.empty() ? "" : " ",
                                printable(facts.version), remote::server_kind_name(facts.kind))},
@@ -54,13 +70,27 @@ ServerAnswer answer_of(const pipeline::ViewServer& server, const remote::ServerS
          fmt::format("{}, {}", server.family().name,
                      server.family().instructed() ? "told what to do" : "told what the picture shows"),
          origin_of_family(settings, model)},
-        {"Values", values_of(server), "of the family"},
         {"Agreement", std::string(remote::agreement_name(server.agreement())),
          settings.agreement == "auto" ? "as it suits family and server" : "chosen by you"}};
     for (const auto& note : facts.notes) answer.notes.push_back(printable(note));
     if (!facts.repeats) answer.notes.emplace_back("The same edit will look different when it is made again.");
     answer.models = facts.models;
+    for (const auto& lora : facts.loras)
+        if (is_lora_name(lora)) answer.loras.push_back(lora);
     return answer;
+}
+
+ui::ServerView::Fact values_fact(const remote::ServerSettings& settings,
+                                 const remote::ServerSettings& usual) {
+    const int side = settings.side > 0 ? remote::sent_side(settings.side, usual.side) : usual.side;
+    const bool chosen =
+        settings.side > 0 || settings.steps > 0 || settings.guidance > 0 || settings.strength > 0;
+    return {"Values",
+            fmt::format("{} steps, guidance {}, strength {}, {} x {} pixels",
+                        settings.steps > 0 ? settings.steps : usual.steps,
+                        settings.guidance > 0 ? settings.guidance : usual.guidance,
+                        settings.strength > 0 ? settings.strength : usual.strength, side, side),
+            chosen ? "some chosen by you" : "of the family"};
 }
 
 std::vector<std::string> server_families() {

@@ -13,13 +13,17 @@ namespace gse::app {
 /// Facts about a server and its use, in plain values: they go from the job to the window.
 struct ServerAnswer {
     std::vector<ui::ServerView::Fact> facts;
-    std::vector<std::string> notes, models;
-    std::string kind;  // "sd-server"
-    int side = 0;      // of the pictures that are sent, px
+    std::vector<std::string> notes, models, loras;
+    std::string kind;              // "sd-server"
+    bool is_comfy = false;         // it draws by workflows
+    remote::ServerSettings usual;  // side, steps, guidance and strength of the family
 };
 
-/// Facts of a server that was asked, its family with the values that it is driven with, and their origins.
+/// Facts of a server that was asked and its family, with their origins.
 ServerAnswer answer_of(const pipeline::ViewServer& server, const remote::ServerSettings& settings);
+
+/// Numbers that the server is driven with, and their origin. `usual`: those of the family.
+ui::ServerView::Fact values_fact(const remote::ServerSettings& settings, const remote::ServerSettings& usual);
 
 /// "auto" and the names of all families.
 std::vector<std::string> server_families();

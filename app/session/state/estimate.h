@@ -111,6 +111,12 @@ struct PlannedEdit {
     bool made = true;  // false: it cannot be done, and costs nothing
 };
 
+/// Part of edits that an image server does.
+struct ServerCost {
+    int pictures = 0;     // that it draws, further attempts apart; 0 = none
+    double seconds = -1;  // that they take; negative = it has not drawn any yet
+};
+
 /// Until the result is there; negative = a part that is needed has not been measured.
 struct Cost {
     double seconds = -1;

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "engine/base/fields.h"
+#include "engine/io/image/image_file.h"
 #include "tests/ui/app/session.h"
 
 namespace stale_test {
@@ -126,6 +127,7 @@ Shown shown_by(Session& session) {
              static_cast<const ui::LabelPart&>(model), static_cast<const ui::PlacePart&>(model),
              static_cast<const ui::ExportPart&>(model), static_cast<const ui::NoticePart&>(model),
              static_cast<const ui::WindowPart&>(model));
+    for (const auto& text : model.server.choice.target_picture) shown["server.pictures"] += text;
     shown["models.front"] = model.model_settings.front;  // the rest is of the program
     return shown;
 }
@@ -175,9 +177,19 @@ void edit_quickly(Session& session) {
     DOCTEST_REQUIRE(session.app.model().result_waiting);
 }
 
+/// A picture for a view, as an artist chooses it.
+void use_picture(Session& session, const fs::path& file) {
+    write_png(file, Image(64, 64, 3));
+    auto choice = session.app.model().server.choice;
+    choice.target_picture = {"ring_00=" + file.string()};
+    session.app.run(command::SetServer{choice});
+    DOCTEST_CHECK(session.app.model().server.choice.target_picture.size() == 1);
+}
+
 /// Leaves behind whatever an artist can in a scene without an edit.
 void leave_traces(Session& session, const Place& place) {
     auto& app = session.app;
+    use_picture(session, place.folder / "own.png");
     app.run(command::AddLabel{"mine"});
     app.run(command::Select{stroke_over_the_middle(), ui::SetOperation::Add, true});
     app.run(command::HideLabel{});

@@ -119,7 +119,12 @@ template <class C> std::string fields_of(const C& wanted) {
             return two(one.role == ui::SegmenterRole::Clicks ? "clicks" : "words", one.path);
         },
         [&](const command::SetServer& one) {
-            return two(one.choice.url, one.choice.model) + two(one.choice.family, one.choice.agreement);
+            const auto& choice = one.choice;
+            return two(choice.url, choice.model) + two(choice.family, choice.agreement) +
+                   fmt::format(" {} {} {} {}", choice.side, choice.steps, choice.guidance, choice.strength) +
+                   fmt::format(" [{}] [{}] [{}]", fmt::join(choice.lora, ", "),
+                               fmt::join(choice.option, ", "), fmt::join(choice.target_picture, ", ")) +
+                   two(choice.workflow, choice.ca);
         },
         [&](const command::KeepServerPassword& one) { return two(one.name, one.password.size()); },
         [&](const command::UseServer& one) { return text(one.on ? "on" : "off"); },

@@ -80,6 +80,95 @@ DOCTEST_TEST_CASE("facts take room as they come, and models, family and agreemen
     DOCTEST_CHECK(panel.asks("models.server.model.second", "set_server http://127.0.0.1:1234 second auto"));
 }
 
+namespace {
+
+/// Drawing settings, unfolded, of a server that was asked and has two LoRAs.
+struct Drawing : Panel {
+    Drawing() : Panel("http://127.0.0.1:1234") {
+        auto& server = application.model().server;
+        server.facts = {{"Server", "sd-server 1.2 (sdcpp)"}};
+        server.usual.side = 512, server.usual.steps = 20;
+        server.usual.guidance = 7, server.usual.strength = 0.75;
+        server.loras = {"bronze", "clay"};
+        frame(3);
+        click("models.server.drawing");
+        frame(3);
+    }
+    ui::ServerView& server() { return application.model().server; }
+};
+
+}  // namespace
+
+DOCTEST_TEST_CASE("drawing settings are shown for a server that was asked; its numbers are the family's") {
+    Panel untested("http://127.0.0.1:1234");
+    DOCTEST_CHECK(untested.find("models.server.drawing") == nullptr);
+    Drawing panel;
+    for (const char* name : {"side", "steps", "guidance", "strength"})
+        DOCTEST_CHECK(panel.find(std::string("models.server.") + name + ".origin") != nullptr);
+    DOCTEST_CHECK_FALSE(panel.asked("set_server"));
+    const auto steps = panel.middle("models.server.steps");
+    panel.drag(steps, {steps.x + 60, steps.y});
+    DOCTEST_CHECK(panel.asked("set_server http://127.0.0.1:1234  auto auto 0 "));
+    DOCTEST_CHECK_FALSE(panel.asked("set_server http://127.0.0.1:1234  auto auto 0 0"));
+}
+
+DOCTEST_TEST_CASE("a number that was chosen goes back to the family's by a right click") {
+    Drawing panel;
+    panel.server().choice.steps = 33;
+    panel.frame(2);
+    panel.click("models.server.steps", 1);
+    panel.frame(2);
+    DOCTEST_CHECK(panel.asked("set_server http://127.0.0.1:1234  auto auto 0 0 0 0 []"));
+}
+
+DOCTEST_TEST_CASE("LoRAs of the server are picked from its list, weighed and taken off") {
+    Drawing panel;
+    panel.click("models.server.lora");
+    panel.frame(2);
+    DOCTEST_CHECK(panel.asks("models.server.lora.clay",
+                             "set_server http://127.0.0.1:1234  auto auto 0 0 0 0 [clay:1]"));
+    panel.server().choice.lora = {"clay:1"};
+    panel.frame(3);
+    panel.click("models.server.lora");
+    panel.frame(2);
+    DOCTEST_CHECK(panel.find("models.server.lora.clay") == nullptr);  // it is used already
+    Drawing other;
+    other.server().choice.lora = {"clay:1"};
+    other.frame(3);
+    DOCTEST_CHECK(other.asks("models.server.lora.0.remove",
+                             "set_server http://127.0.0.1:1234  auto auto 0 0 0 0 [] []"));
+}
+
+DOCTEST_TEST_CASE("options of the server are added one by one, and what is none is not") {
+    Drawing panel;
+    panel.write("models.server.option", "karras");
+    DOCTEST_CHECK_FALSE(panel.rect("models.server.option.add").enabled);
+    panel.shell.state().models.server_option.clear();
+    panel.frame(2);
+    Drawing other;
+    other.write("models.server.option", "scheduler=karras");
+    DOCTEST_CHECK(other.asks("models.server.option.add",
+                             "set_server http://127.0.0.1:1234  auto auto 0 0 0 0 [] [scheduler=karras]"));
+    DOCTEST_CHECK(other.shell.state().models.server_option.empty());
+    other.server().choice.option = {"scheduler=karras"};
+    other.frame(3);
+    DOCTEST_CHECK(other.asks("models.server.option.0.remove",
+                             "set_server http://127.0.0.1:1234  auto auto 0 0 0 0 [] [] []"));
+}
+
+DOCTEST_TEST_CASE("certificates are a file for every server, a workflow is one for ComfyUI") {
+    Drawing panel;
+    DOCTEST_CHECK(panel.find("models.server.workflow") == nullptr);
+    panel.server().is_comfy = true;
+    panel.frame(3);
+    panel.write("models.server.workflow", "/tmp/flow.json");
+    DOCTEST_CHECK(panel.asks("models.server.workflow.use",
+                             "set_server http://127.0.0.1:1234  auto auto 0 0 0 0 [] [] [] /tmp/flow.json"));
+    panel.click("models.server.ca.browse");
+    panel.frame(2);
+    DOCTEST_CHECK(panel.shell.state().files.is_open());
+}
+
 DOCTEST_TEST_CASE("a kept password is not shown again, and a server can be forgotten") {
     Panel panel("http://127.0.0.1:1234");
     panel.click("models.server.secret");
@@ -91,6 +180,57 @@ DOCTEST_TEST_CASE("a kept password is not shown again, and a server can be forgo
     DOCTEST_CHECK(panel.shell.state().models.server_password.empty());
     DOCTEST_CHECK(panel.asks("models.server.forget", "forget_server"));
     DOCTEST_CHECK(panel.shell.state().models.server_url.empty());
+}
+
+DOCTEST_TEST_CASE("the estimate is the server's where it draws, also before it has drawn anything") {
+    Harness harness({1600, 1000, 1, Situation::Scene, false});
+    auto& estimate = harness.application.model().estimate;
+    estimate = {};
+    harness.frame(3);
+    DOCTEST_CHECK(harness.find("prompt.estimate") == nullptr);
+    estimate.server_pictures = 8;
+    harness.frame(3);
+    const auto unknown = harness.rect("prompt.estimate");
+    DOCTEST_CHECK(unknown.visible);
+    estimate.server_seconds = 42;
+    harness.frame(3);
+    DOCTEST_CHECK(harness.rect("prompt.estimate").visible);
+    DOCTEST_CHECK(harness.rect("prompt.estimate").width < unknown.width);  // "about 42 s for 8 pictures"
+}
+
+DOCTEST_TEST_CASE(
+    "a view of the edit takes a picture of the artist's own, dropped or chosen, and gives it back") {
+    Harness harness({1920, 1080, 1, Situation::ResultWaiting, false});
+    harness.shell.show(ui::PanelId::Targets);
+    harness.frame(3);
+    DOCTEST_CHECK(harness.find("targets.1.own") == nullptr);  // the model here draws
+    auto& model = harness.application.model();
+    const auto view = model.target_rounds.back().targets[1].name;
+    model.server.on = true;
+    model.server.choice.url = "http://127.0.0.1:1234";
+    harness.frame(3);
+    harness.click("targets.1.own");
+    harness.frame(2);
+    DOCTEST_CHECK(harness.shell.state().files.is_open());
+    Harness other({1920, 1080, 1, Situation::ResultWaiting, false});
+    auto& shown = other.application.model();
+    shown.server = model.server;
+    other.shell.show(ui::PanelId::Targets);
+    other.frame(3);
+    other.shell.request_open({"/tmp/painted.png"});
+    other.frame(3);
+    DOCTEST_CHECK(other.application.asked("open /tmp/painted.png"));  // no view is selected
+    other.click("targets.1");
+    other.frame(2);
+    DOCTEST_CHECK(other.shell.state().targets.view == view);
+    other.shell.request_open({"/tmp/painted.png"});
+    other.frame(3);
+    DOCTEST_CHECK(other.application.asked("set_server http://127.0.0.1:1234  auto auto 0 0 0 0 [] [] [" +
+                                          view + "=/tmp/painted.png]"));
+    shown.server.choice.target_picture = {view + "=/tmp/painted.png"};
+    other.frame(3);
+    DOCTEST_CHECK(
+        other.asks("targets.own.0.clear", "set_server http://127.0.0.1:1234  auto auto 0 0 0 0 [] [] []"));
 }
 
 DOCTEST_TEST_CASE("with a server, words that the model cannot draw are no obstacle to an edit") {

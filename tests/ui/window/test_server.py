@@ -69,6 +69,30 @@ class Server(WindowTest):
         window.picture("server_04_result")
         self.assertGreaterEqual(len(server.drawings()), 8)
 
+    def test_a_lora_of_the_server_is_picked_and_goes_into_the_requests(self):
+        window, server = self.start()
+        window.click("tab.Models")
+        window.scroll_to("models.server.url", "panel.Models")
+        window.write("models.server.url", f"127.0.0.1:{server.port}")
+        window.click("models.server.test")
+        window.wait(lambda s: s["server"]["facts"] > 0, "the server was not asked", 30)
+        window.scroll_to("models.server.drawing", "panel.Models")
+        window.click("models.server.drawing")
+        window.scroll_to("models.server.lora", "panel.Models")
+        window.click("models.server.lora")
+        window.press("models.server.lora.bronze", lambda s: s["server"]["lora"] == ["bronze:1"],
+                     "the LoRA was not picked")
+        window.wait(lambda s: s["server"]["facts"] > 0 and not s["server"]["problem"], "it is not taken", 30)
+        window.picture("server_05_drawing")
+        window.scroll_to("models.server.on", "panel.Models")
+        window.press("models.server.on", lambda s: s["server"]["on"], "it is not on")
+        window.click("tab.Prompt")
+        window.press("prompt.edit", lambda s: s["question"], "nobody asks before pictures go")
+        window.press("question.0", lambda s: s["job"]["running"], "the edit did not start")
+        window.idle(400)
+        self.assertGreaterEqual(len(server.drawings()), 8)
+        self.assertTrue(all("bronze" in json.dumps(entry["json"]) for entry in server.drawings()))
+
     def test_an_edit_at_the_server_is_stopped(self):
         window, server = self.start()
         server.ask("set?draw_s=30")

@@ -306,12 +306,23 @@ double planned_seconds(const Context& context) {
     return any ? sum : -1;
 }
 
+/// Part of the image server in words; empty = it draws nothing.
+std::string server_estimate_text(const Estimate& estimate) {
+    if (estimate.server_pictures <= 0) return {};
+    const auto pictures =
+        fmt::format("{} picture{}", estimate.server_pictures, estimate.server_pictures == 1 ? "" : "s");
+    if (estimate.server_seconds < 0)
+        return fmt::format("Image server: {}, their time is known once it has drawn one", pictures);
+    return fmt::format("Image server: about {} for {}", duration_text(estimate.server_seconds), pictures);
+}
+
 std::string estimate_text(const Context& context) {
     const auto& estimate = context.model.estimate;
     const double seconds = planned_seconds(context);
-    if (seconds < 0 && estimate.memory_mb < 0) return {};
+    if (seconds < 0 && estimate.memory_mb < 0 && estimate.server_pictures <= 0) return {};
     std::string text = seconds >= 0 ? fmt::format("Estimate: about {}", duration_text(seconds))
                                     : "Time: measured with the first search";
+    if (estimate.server_pictures > 0) text = server_estimate_text(estimate);
     const auto& [draft, normal, fine] = estimate.quality_seconds;
     if (seconds >= 0 && context.state.prompt.left_out.empty() && draft >= 0 && fine > draft)
         text += fmt::format(" (draft {}, normal {}, fine {})", duration_text(draft), duration_text(normal),

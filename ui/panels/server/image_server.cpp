@@ -10,6 +10,7 @@
 #include "engine/remote/api/server_url.h"
 #include "ui/commands/guarded.h"
 #include "ui/panels/panels.h"
+#include "ui/panels/server/parts.h"
 #include "ui/state/state.h"
 #include "ui/widgets/controls.h"
 
@@ -174,6 +175,7 @@ void draw_image_server(Context& context) {
     draw_facts(context.model.server, context);
     if (context.model.server.choice.url.empty()) return;
     draw_choices(context);
+    draw_drawing_settings(context);
     draw_password(context);
 }
 
