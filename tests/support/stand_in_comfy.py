@@ -26,7 +26,8 @@ OUTPUTS = {"SaveImage", "PreviewImage"}
 COMBOS = {"ckpt_name": ["stand-in.safetensors"], "unet_name": ["flux-2-klein-4b.safetensors"],
           "clip_name": ["qwen_3_4b.safetensors"], "vae_name": ["flux2-vae.safetensors"],
           "sampler_name": ["euler"], "scheduler": ["normal", "simple"], "channel": ["alpha", "red"],
-          "lora_name": ["bronze.safetensors", "looks/oil paint.safetensors"], "type": ["flux2"], "weight_dtype": ["default"]}
+          "lora_name": ["bronze.safetensors", "looks/oil paint.safetensors"], "type": ["flux2"],
+          "weight_dtype": ["default"]}
 
 
 class Graph:
