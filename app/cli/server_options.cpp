@@ -37,10 +37,12 @@ void give_loras_to_server(const CLI::App& command, EditRecipe& recipe) {
 
 void settle_server(const CLI::App& command, remote::ServerSettings& settings) {
     const auto* option = command.get_option_no_throw("--server");
-    if (option != nullptr && !settings.used() &&
-        (!settings.target_picture.empty() || !settings.key_view.empty()))
+    const bool of_server = !settings.target_picture.empty() || !settings.key_view.empty() ||
+                           !settings.lora.empty() || !settings.option.empty();
+    if (option != nullptr && !settings.used() && of_server)
         throw Error(ErrorCode::InvalidArgument,
-                    "pictures of your own and a key view lead the views that an image server draws",
+                    "options and LoRAs of a server, pictures of your own and a key view count where an image "
+                    "server draws the views",
                     "name a server (--server)");
     if (option == nullptr || settings.url == "none") settings = {};
     if (!settings.used() || option->count() > 0) return;

@@ -199,8 +199,9 @@ class Servers(ProgramTest):
             refused = self.edit(self.folder / "no", "--server", server.url, "--target-picture", picture)
             self.assertNotEqual(refused.returncode, 0, refused.stderr)
             self.assertIn(words, refused.stderr)
-        alone = self.edit(self.folder / "no", "--target-picture", f"{most['view']}={own}")
-        self.assert_one_sentence(alone, "image server")
+        for option in (["--target-picture", f"{most['view']}={own}"], ["--key-view", most["view"]],
+                       ["--server-option", "scheduler=karras"], ["--server-lora", "bronze"]):
+            self.assert_one_sentence(self.edit(self.folder / "no", *option), "image server")
 
     def test_nothing_that_is_written_names_address_or_password(self):
         server = self.server()
