@@ -44,13 +44,18 @@ class Server(WindowTest):
         window.write("prompt.sentence", "a golden bear")
         return window, server
 
-    def test_a_server_is_tested_switched_on_agreed_to_and_draws(self):
+    def tested(self):
+        """A window whose server was tested."""
         window, server = self.start()
         window.click("tab.Models")
         window.scroll_to("models.server.url", "panel.Models")
         window.write("models.server.url", f"127.0.0.1:{server.port}")
         window.click("models.server.test")
         window.wait(lambda s: s["server"]["facts"] > 0, "the server was not asked", 30)
+        return window, server
+
+    def test_a_server_is_tested_switched_on_agreed_to_and_draws(self):
+        window, server = self.tested()
         window.scroll_to("models.server.agreement", "panel.Models")
         window.picture("server_01_facts")
         self.assertFalse(window.state()["server"]["on"])
@@ -70,12 +75,7 @@ class Server(WindowTest):
         self.assertGreaterEqual(len(server.drawings()), 8)
 
     def test_a_lora_of_the_server_is_picked_and_goes_into_the_requests(self):
-        window, server = self.start()
-        window.click("tab.Models")
-        window.scroll_to("models.server.url", "panel.Models")
-        window.write("models.server.url", f"127.0.0.1:{server.port}")
-        window.click("models.server.test")
-        window.wait(lambda s: s["server"]["facts"] > 0, "the server was not asked", 30)
+        window, server = self.tested()
         window.scroll_to("models.server.drawing", "panel.Models")
         window.click("models.server.drawing")
         window.scroll_to("models.server.lora", "panel.Models")
