@@ -83,7 +83,7 @@ class RealSuites(ProgramTest):
 
     def test_the_figures_are_those_of_the_script(self):
         scripts = self.script_results()
-        _, report = self.evaluate()
+        _, report = self.evaluate("--real-modes", "word box")
         measured = 0
         for task in report["tasks"]:
             self.assertEqual(set(task["runs"]), set(scripts[task["task"]]))
@@ -129,6 +129,13 @@ class RealSuites(ProgramTest):
         self.assertGreater(two["labelled"], 0)
         self.assertEqual((same["ending"], same["cause"]), ("refused", "other"))
         self.assertIn("there already", same["message"])
+
+    def test_a_click_on_the_thing_labels_what_the_model_has_no_word_for(self):
+        process, report = self.evaluate("--real-modes", "click", "--real-only", "skull")
+        run, = [task["runs"]["click"] for task in report["tasks"]]
+        self.assertEqual(run["ending"], "done", run)
+        self.assertGreater(run["opacity"]["recall"], 0.9)  # the truth is the upper half
+        self.assertIn("by click, unknown nouns: 1 runs, 1 done", process.stdout)
 
     def test_ctrl_c_keeps_the_tasks_that_are_done(self):
         arguments = [LABORATORY, "eval", "--real", self.suite, "--real-root", self.root, "--out",

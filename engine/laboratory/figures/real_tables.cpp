@@ -84,10 +84,11 @@ std::string run_text(const Json& task, const char* mode) {
 
 std::string real_tables(const Json& report) {
     const auto& summary = report["summary"];
-    std::vector<Cells> rows{{"task", "source", "sentence", "by word", "by box"}};
+    std::vector<Cells> rows{{"task", "source", "sentence", "by word", "by box", "by click"}};
     for (const auto& task : report["tasks"])
         rows.push_back({task["task"].get<std::string>(), task["source"].get<std::string>(),
-                        task["prompt"].get<std::string>(), run_text(task, "word"), run_text(task, "box")});
+                        task["prompt"].get<std::string>(), run_text(task, "word"), run_text(task, "box"),
+                        run_text(task, "click")});
     return groups_table(summary["groups"]) + scenes_text(summary) + markdown_table(rows);
 }
 

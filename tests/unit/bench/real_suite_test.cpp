@@ -195,7 +195,7 @@ DOCTEST_TEST_CASE("a wrong suite is refused in one sentence") {
 }
 
 DOCTEST_TEST_CASE("modes are named, and tasks have those that make sense for them") {
-    DOCTEST_CHECK(parse_modes("word, box") == std::vector{RealMode::Word, RealMode::Box});
+    DOCTEST_CHECK(parse_modes("word, click") == std::vector{RealMode::Word, RealMode::Click});
     DOCTEST_CHECK_THROWS_AS(parse_modes("word sideways"), Error);
     DOCTEST_CHECK_THROWS_AS(parse_modes(" "), Error);
     const SuiteFile file(tiny_suite());
@@ -207,6 +207,9 @@ DOCTEST_TEST_CASE("modes are named, and tasks have those that make sense for the
     task.cut_out = "0,0,1,1";
     DOCTEST_CHECK(has_mode(scene, task, RealMode::Box));
     DOCTEST_CHECK(has_mode(scene, task, RealMode::Upright));
+    DOCTEST_CHECK(has_mode(scene, task, RealMode::Click));
+    task.about.clear();
+    DOCTEST_CHECK(!has_mode(scene, task, RealMode::Click));
     scene.auto_up_right = true;
     DOCTEST_CHECK(!has_mode(scene, task, RealMode::Upright));
 }

@@ -14,6 +14,7 @@
 #include "engine/laboratory/eval/eval_sheet.h"
 #include "engine/laboratory/eval/real/real_run.h"
 #include "engine/laboratory/eval/real/real_summary.h"
+#include "engine/laboratory/eval/real/truth_click.h"
 #include "engine/pipeline/scene/scene_loading.h"
 
 namespace gse::bench {
@@ -139,7 +140,9 @@ private:
         for (const auto mode : modes_) {
             if (!has_mode(scene, task, mode)) continue;
             check_stop();
-            const auto edit = run_real_task(real_recipe(scene, task, mode, run_.settings), {{}, job_.stop});
+            const auto recipe = recipe_of(setting, mode);
+            if (!recipe) continue;
+            const auto edit = run_real_task(*recipe, {{}, job_.stop});
             check_stop();
             entry["runs"][mode_name(mode)] = figures(setting, edit, after[mode]);
         }
@@ -151,6 +154,17 @@ private:
         }
         sheets_.add(row, fmt::format("{}: {} > \"{}\"", task.name, task.source, task.prompt));
         return entry;
+    }
+
+    /// None for a click on a thing that its picture does not show.
+    std::optional<pipeline::EditRecipe> recipe_of(const Setting& setting, RealMode mode) {
+        const auto& scene = suite_.scene_of(setting.task);
+        auto recipe = real_recipe(scene, setting.task, mode, run_.settings);
+        if (mode != RealMode::Click) return recipe;
+        const auto click = truth_click(painter_, scene, setting.task, scene_, setting.truth.thing);
+        if (!click) return std::nullopt;
+        recipe.job.at = *click;
+        return recipe;
     }
 
     /// Figures of a run. `after` gets the pictures of what was made.

@@ -15,7 +15,7 @@ namespace gse::bench {
 /// Settings of an evaluation on scanned scenes.
 struct RealParameters {
     std::string real;
-    std::string real_modes = "word box";
+    std::string real_modes = "word box click";
     std::string real_only;
     std::vector<std::string> real_root;
     int real_rows = 8;
@@ -25,10 +25,9 @@ struct RealParameters {
           "Suite of scanned scenes with truth made by hand (JSON). It is measured in place of the edits of "
           "generated scenes.");
         f("real_modes", self.real_modes,
-          "Ways to make each edit of --real: word, upright, box. A word is the sentence alone. Upright adds "
-          "the "
-          "true up axis where the program guesses another. A box adds the true up axis and a box around the "
-          "thing.");
+          "Ways to make each edit of --real: word, upright, box, click. A word is the sentence alone. The others "
+          "add the true up axis: upright where the program guesses another. A box surrounds the thing, a click "
+          "points at it.");
         f("real_only", self.real_only, "Tasks of --real whose name contains this; empty = all.");
         f("real_root", self.real_root,
           "Folder of scenes in place of the one that the suite of --real names, as NAME=FOLDER. It may be "

@@ -20,7 +20,7 @@
 namespace gse::bench {
 namespace {
 
-constexpr std::array Modes{RealMode::Word, RealMode::Upright, RealMode::Box};
+constexpr std::array Modes{RealMode::Word, RealMode::Upright, RealMode::Box, RealMode::Click};
 
 /// A run, and how rows came to be what they are by now.
 class Run {
@@ -175,7 +175,13 @@ private:
 }  // namespace
 
 std::string mode_name(RealMode mode) {
-    return mode == RealMode::Word ? "word" : mode == RealMode::Upright ? "upright" : "box";
+    switch (mode) {
+        case RealMode::Word: return "word";
+        case RealMode::Upright: return "upright";
+        case RealMode::Box: return "box";
+        case RealMode::Click: return "click";
+    }
+    return {};
 }
 
 std::string ending_name(RealEnding ending) {
@@ -193,16 +199,17 @@ std::vector<RealMode> parse_modes(const std::string& text) {
             std::find_if(Modes.begin(), Modes.end(), [&](RealMode one) { return mode_name(one) == word; });
         if (mode == Modes.end())
             throw Error(ErrorCode::InvalidArgument, fmt::format("the mode \"{}\" is not known", word),
-                        "use some of word, upright, box");
+                        "use some of word, upright, box, click");
         modes.push_back(*mode);
     }
     if (modes.empty())
-        throw Error(ErrorCode::InvalidArgument, "no mode is named", "use some of word, upright, box");
+        throw Error(ErrorCode::InvalidArgument, "no mode is named", "use some of word, upright, box, click");
     return modes;
 }
 
 bool has_mode(const RealScene& scene, const RealTask& task, RealMode mode) {
     if (mode == RealMode::Box) return !task.cut_out.empty();
+    if (mode == RealMode::Click) return !task.about.empty();
     return mode == RealMode::Word || (!scene.auto_up_right && task.known_word);
 }
 

@@ -16,18 +16,19 @@ namespace gse::bench {
 enum class RealMode {
     Word,     // the sentence alone
     Upright,  // with the scene's true up axis
-    Box       // with the true up axis and the task's box around the thing
+    Box,      // with the true up axis and the task's box around the thing
+    Click     // with the true up axis and one click on the thing
 };
 
-/// "word", "upright", "box".
+/// "word", "upright", "box", "click".
 std::string mode_name(RealMode mode);
 /// Modes of a list with spaces or commas between. Throws Error (InvalidArgument) for another name.
 std::vector<RealMode> parse_modes(const std::string& text);
-/// True for a mode that a task is made in: "box" needs a box; "upright" a known word in a scene whose up axis
-/// the suite says is guessed wrong.
+/// True for a mode that a task is made in: "box" needs a box, "click" a thing with truth; "upright" a known
+/// word in a scene whose up axis the suite says is guessed wrong.
 bool has_mode(const RealScene& scene, const RealTask& task, RealMode mode);
 
-/// Recipe of a task; `settings` are of model, machine and edit.
+/// Recipe of a task; `settings` are of model, machine and edit. A click comes from truth_click().
 pipeline::EditRecipe real_recipe(const RealScene& scene, const RealTask& task, RealMode mode,
                                  pipeline::EditRecipe settings);
 

@@ -23,7 +23,9 @@ struct Group {
 constexpr Group Groups[] = {{"by word, known nouns", "word", 1, 0.85, 0.8},
                             {"by word, unknown nouns", "word", 0, 0.85, 0.8},
                             {"upright, known nouns", "upright", 1, 0, 0},
-                            {"by box", "box", -1, 0.92, 0.88}};
+                            {"by box", "box", -1, 0.92, 0.88},
+                            {"by click, known nouns", "click", 1, 0.85, 0.8},
+                            {"by click, unknown nouns", "click", 0, 0.85, 0.8}};
 constexpr double FrontNear = 15, FrontFar = 90;  // degrees
 
 double mean_of(const std::vector<double>& values) {
@@ -218,7 +220,7 @@ std::string scene_fronts_text(const Json& report) {
         for (const auto& task : report["tasks"])
             if (task["scene"] == scene["scene"])
                 for (const auto& [mode, run] : task["runs"].items())
-                    if (mode != "box" && run.contains("front_error"))
+                    if (mode != "box" && mode != "click" && run.contains("front_error"))
                         errors += " " + number(run["front_error"], 0);
         if (!errors.empty()) text += fmt::format("  {}:{}\n", scene["scene"].get<std::string>(), errors);
     }
