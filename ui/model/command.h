@@ -21,8 +21,8 @@ namespace gse::ui {
 
 /// A region of the viewport, in pixels of its texture, that splats are selected with.
 struct ScreenRegion {
-    std::vector<std::array<float, 2>> polygon;  // closed; empty = use the circles
-    std::vector<std::array<float, 2>> circles;  // centres of a brush stroke
+    std::vector<std::array<float, 2>> polygon = {};  // closed; empty = use the circles
+    std::vector<std::array<float, 2>> circles = {};  // centres of a brush stroke
     float radius_px = 0;
 };
 

@@ -18,7 +18,7 @@ struct FileQuestion {
     bool saves = false;                   // a name is asked for
     bool replaces = true;                 // a file that exists is written over: asked about
     bool folder_allowed = false;          // the folder itself may be the answer
-    std::string start;                    // file or folder to begin with; empty = where it was last
+    std::string start = {};               // file or folder to begin with; empty = where it was last
     std::function<void(const std::filesystem::path&)> answer;
 };
 

@@ -25,7 +25,7 @@ PartsBeside plant_in(const VesselRows& rows, const std::vector<std::uint8_t>& bi
 /// Label [N] with all that stands above it, as far again as `Rising` times its height.
 std::vector<std::uint8_t> with_rows_above(const GaussianSet& set, std::vector<std::uint8_t> bits,
                                           const Vec3& up) {
-    constexpr double Rising = 2, Trim = 0.005, Around = 0.35;  // of the height, the rows, the width
+    constexpr double Rising = 2, Trim = 0.005, Aside = 0.35;  // of the height, the rows, the width
     const Frame frame = make_frame(up, {});
     std::vector<Vec3> places, labelled;
     for (std::size_t row = 0; row < bits.size(); ++row) {
@@ -36,8 +36,8 @@ std::vector<std::uint8_t> with_rows_above(const GaussianSet& set, std::vector<st
     if (labelled.empty()) return bits;
     Box column = trimmed_box(labelled, Trim);
     const Vec3 size = column.size();
-    column.low = column.low - Vec3{Around * size.x, 0, Around * size.z};
-    column.high = column.high + Vec3{Around * size.x, Rising * size.y, Around * size.z};
+    column.low = column.low - Vec3{Aside * size.x, 0, Aside * size.z};
+    column.high = column.high + Vec3{Aside * size.x, Rising * size.y, Aside * size.z};
     for (std::size_t row = 0; row < bits.size(); ++row)
         if (column.has(places[row])) bits[row] = 1;
     return bits;

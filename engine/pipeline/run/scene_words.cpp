@@ -82,11 +82,11 @@ language::plan::SceneWords scene_words_shown(RunContext& context, const CheckedR
     for (const auto& image : images) pictures.push_back(&image);
     auto& thing = scene.things.front();
     if (!ground && !thing.is_ground) {  // a thing that was cut out stands on none
-        const auto ground = best_of(ranker, of_class(known, language::WordClass::Ground), pictures,
+        const auto best = best_of(ranker, of_class(known, language::WordClass::Ground), pictures,
                                     [&](const auto& word) { return "a " + thing.noun + " on the " + word; });
         const auto place = scene.ground();
-        if (place) scene.things[*place].noun = ground.word;
-        else if (!ground.word.empty()) scene.things.push_back({ground.word, {}, true, false});
+        if (place) scene.things[*place].noun = best.word;
+        else if (!best.word.empty()) scene.things.push_back({best.word, {}, true, false});
     }
     auto& subject = scene.things.front();
     if (subject.attributes.empty() && !subject.is_ground) {

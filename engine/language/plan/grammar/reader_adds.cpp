@@ -279,8 +279,8 @@ bool Reader::add_one() {
     Cursor more = c_;
     more.take_mark(',');
     if (more.take(Class::contrast)) {  // "but not a red one"
-        Phrase other;
-        if (more.take(Class::negation) && more.take_phrase(other)) c_.at = more.at;
+        Phrase unwanted;
+        if (more.take(Class::negation) && more.take_phrase(unwanted)) c_.at = more.at;
     }
     return true;
 }
@@ -388,10 +388,10 @@ bool Reader::give_clause() {
     Target receiver = first.naming == Naming::It ? d_.pronoun(Naming::It, true) : d_.resolve(first);
     const bool indirect = !receiver.found() || first.indefinite;
     if (indirect && first.naming == Naming::Thing && ahead.is(Class::word_to)) {  // "give a hat to the bear"
-        Phrase whom;
+        Phrase second;
         ++ahead.at;
-        if (!ahead.take_phrase(whom)) return fail(reason::Incomplete);
-        receiver = whom.naming == Naming::It ? d_.pronoun(Naming::It, true) : expect(whom);
+        if (!ahead.take_phrase(second)) return fail(reason::Incomplete);
+        receiver = second.naming == Naming::It ? d_.pronoun(Naming::It, true) : expect(second);
         if (!receiver.found()) return false;
         c_.at = ahead.at;
         return own(receiver, first, "with");
