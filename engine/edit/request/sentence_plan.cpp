@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string_view>
 #include <utility>
 
 #include "engine/language/grammar.h"
@@ -115,18 +116,26 @@ std::string bare_thing(const language::Sentence& sentence, const std::string& so
     return at > 1 ? words[at - 2] : std::string();
 }
 
-/// "statue" of "a statue on a white pedestal", of a pedestal: what a support carries is there before. Empty
-/// for other sentences, and where the support has no new look.
-std::string carried_thing(const language::Sentence& sentence, const std::string& source) {
-    using language::WordClass;
+/// True where `joint` says that the source is borne by what stands before it: on a support, worn, held.
+bool bears(const std::string& joint, const std::string& source) {
+    constexpr std::array<std::string_view, 10> Bearing{"with",    "wearing",  "wears", "holding", "holds",
+                                                       "has",     "having",   "wore",  "carries", "carrying"};
+    const bool worn = (plan::kinds_of(source) & plan::Worn) != 0;
+    if (joint == "on") return plan::names_support(source);
+    if (joint == "in") return plan::names_support(source) || worn;
+    return std::find(Bearing.begin(), Bearing.end(), joint) != Bearing.end();
+}
+
+/// "statue" of "a statue on a white pedestal", of a pedestal, or "bear" of "a bear wearing a red hat", of a
+/// hat: what the source carries, and what bears it, is there before. Empty for other sentences, and where the
+/// source has no new look.
+std::string linked_thing(const language::Sentence& sentence, const std::string& source) {
+    constexpr std::size_t Joint = 2;  // behind an article and a noun
     const auto& words = sentence.words();
-    const auto support = sentence.position_of(source);
-    if (support >= words.size() || !plan::names_support(source)) return {};
-    if (!language::is_a(words.front(), WordClass::IndefiniteArticle)) return {};
-    std::size_t joint = 1;
-    while (joint < support && words[joint] != "on" && words[joint] != "in") ++joint;
-    const bool has_look = joint + 2 < support && language::is_a(words[joint + 1], Articles);
-    return joint == 2 && has_look ? words[1] : std::string();
+    const auto place = sentence.position_of(source);
+    if (place >= words.size() || !language::is_a(words.front(), Articles)) return {};
+    const bool has_look = Joint + 2 < place && language::is_a(words[Joint + 1], Articles);
+    return has_look && bears(words[Joint], source) ? words[1] : std::string();
 }
 
 Error several(const std::vector<plan::Step>& steps) {
@@ -158,7 +167,7 @@ plan::SceneWords assumed_scene(const EditRequest& request, const std::vector<std
         if (!ground && i > 1 && is_place(words[i - 2], words[i])) add(words[i], false);
     }
     if (const auto whole = bare_thing(sentence, source); !whole.empty()) add(whole, false);
-    if (const auto carried = carried_thing(sentence, source); !carried.empty()) add(carried, false);
+    if (const auto linked = linked_thing(sentence, source); !linked.empty()) add(linked, false);
     if (about_ground)  // what stands on it is there, too
         for (const auto& thing : sentence.things())
             if (!language::is_a(thing, language::WordClass::Ground)) {
@@ -235,7 +244,9 @@ bool is_caption(const EditRequest& request) { return is_description(language::Se
 bool says_itself(const EditRequest& request, const plan::StepSentence& words, const News& news) {
     if (!words.part_of.empty() || words.whole_scene || !words.instruction.empty()) return false;
     if (!is_drawn(words.mode)) return false;
-    if (!carried_thing(language::Sentence(request.prompt), words.source).empty()) return false;
+    if (plan::names_support(words.source) &&
+        !linked_thing(language::Sentence(request.prompt), words.source).empty())
+        return false;
     const auto guessed = with_target(request, news);
     const language::EditSentence sentence(language::Sentence(request.prompt),
                                           language::normalised_prompt(request.source), guessed.target);

@@ -155,6 +155,26 @@ DOCTEST_TEST_CASE("a new look of what carries a thing leaves the thing as it is"
     DOCTEST_CHECK(edit::assumed_scene(added).things.size() == 1);
 }
 
+DOCTEST_TEST_CASE("a new look of what a thing wears, holds or has is no wish for that thing") {
+    for (const auto& [prompt, source] :
+         {std::pair{"a bear wearing a red hat", "hat"}, std::pair{"a man holding a white helmet", "helmet"},
+          std::pair{"a bulldozer with a green bucket", "bucket"},
+          std::pair{"the bear wears a red hat", "hat"}, std::pair{"a cat in a blue scarf", "scarf"},
+          std::pair{"a kitchen with a red oven", "oven"}}) {
+        const std::string typed = prompt;
+        DOCTEST_CAPTURE(typed);
+        const auto wanted = request(typed, source);
+        const auto scene = edit::assumed_scene(wanted);
+        const auto steps = edit::planned_steps(edit::plan_of(wanted, scene), scene);
+        DOCTEST_REQUIRE(steps.size() == 1);
+        DOCTEST_CHECK(steps[0].step.operation == plan::Operation::Recolour);
+        DOCTEST_CHECK(steps[0].step.subject.root() == source);
+    }
+    // Without a new look of the source the other thing is what is new.
+    const auto beside = request("a cat with a ball", "ball");
+    DOCTEST_CHECK(edit::assumed_scene(beside).things.size() == 1);
+}
+
 DOCTEST_TEST_CASE("an edit in which nothing is drawn needs its thing by name") {
     auto wanted = request("anything", "");
     wanted.mode = "remove";
