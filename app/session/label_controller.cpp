@@ -9,6 +9,7 @@
 
 #include "app/session/state/located_label.h"
 #include "app/session/state/screen_area.h"
+#include "engine/edit/request/sentence_plan.h"
 #include "engine/edit/search/thing_parts.h"
 #include "engine/language/grammar.h"
 #include "engine/pipeline/models/segmenters.h"
@@ -166,10 +167,13 @@ CutOutRows clicked(const GaussianSet& set, const CutOutRequest& request, const J
                                        request.settings,
                                        request.up,
                                        request.ground,
-                                       request.nature};
+                                       request.nature,
+                                       request.part};
     auto thing = pipeline::thing_at(set, click, control);
     const bool any = std::find(thing.rows.begin(), thing.rows.end(), std::uint8_t{1}) != thing.rows.end();
     if (!any) return {{}, "There is nothing under the click."};
+    const auto doubt = pipeline::part_doubt(thing, click);
+    if (!doubt.empty()) return {std::move(thing.rows), fmt::format("Check the label: {}.", doubt)};
     const auto parted = pipeline::parted_text(thing);
     return {std::move(thing.rows), parted.empty() ? "The thing is labelled; drag a box around a part of it."
                                                   : fmt::format("The thing is labelled, {}.", parted)};
@@ -195,7 +199,8 @@ template <> void LabelController::on(const command::CutOut& one) {
                           {},
                           state().info.up,
                           language::names_ground(recipe.request.source),
-                          edit::nature_of(recipe.request.source)};
+                          edit::nature_of(recipe.request.source),
+                          edit::is_about_part(recipe.request)};
     request.settings.background = parse_colour(view_.settings().background);
     request.settings.antialiased = state().info.antialiased;
     auto found = std::make_shared<CutOutRows>();

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "engine/localize/linked_part.h"
 #include "engine/localize/support_layers.h"
 
 namespace gse::localize {
@@ -126,6 +127,13 @@ public:
         keep(without(set_, split_at(grid_, set_, above->first - 1, highest_undecided(*above), true)));
         thing.from_above = true;
     }
+    void cut_part() {
+        if (thing.from_above || thing.from_thread) return;  // it is parted already
+        const auto part = linked_part(grid_, set_, seed_);
+        if (part.empty()) return;
+        keep(part);
+        thing.from_whole = true;
+    }
     void keep_ground() { keep(ground_at(grid_, set_, seed_)); }
     const VoxelSet& set() const { return set_; }
 
@@ -158,6 +166,7 @@ GrownThing grown_at(const GaussianSpans& gaussians, const GrowRequest& request) 
     Growth growth(grid, seed, grid.connected(VoxelSet(grid.size(), 1), seed));
     if (request.ground) growth.keep_ground();
     else growth.cut_threads(), growth.cut_supports();
+    if (request.part) growth.cut_part();
     auto thing = std::move(growth.thing);
     const auto count = std::count(growth.set().begin(), growth.set().end(), std::uint8_t{1});
     thing.rows = static_cast<double>(count) >= NearlyAll * static_cast<double>(grid.size())
@@ -171,16 +180,18 @@ GrownThing grown_at(const GaussianSpans& gaussians, const GrowRequest& request) 
 GrownThing grow_thing(const GaussianSpans& gaussians, const GrowRequest& request) {
     GrownThing thing;
     std::vector<int> votes(gaussians.size, 0);
-    int support = 0, above = 0, thread = 0;
+    int support = 0, above = 0, thread = 0, whole = 0;
     for (const double size : VoxelSizes) {
         GrowRequest scaled = request;
         scaled.voxel_size = size;
         const auto one = grown_at(gaussians, scaled);
         for (std::size_t row = 0; row < votes.size(); ++row) votes[row] += one.rows[row];
         support += one.from_support, above += one.from_above, thread += one.from_thread;
+        whole += one.from_whole;
     }
     const auto most = [](int count) { return 2 * count > static_cast<int>(VoxelSizes.size()); };
     thing.from_support = most(support), thing.from_above = most(above), thing.from_thread = most(thread);
+    thing.from_whole = most(whole);
     for (const int count : votes) thing.rows.push_back(most(count) ? 1 : 0);
     return thing;
 }

@@ -15,6 +15,7 @@ struct GrowRequest {
     Vec3 up{0, -1, 0};      // of the world
     double extent = 1;      // height of the picture at the seed, world units: how fine the thing is looked at
     bool ground = false;    // the seed lies on the ground, which is what is meant
+    bool part = false;      // a part of what is linked is meant
     double voxel_size = 1;  // of the usual one
 };
 
@@ -24,6 +25,7 @@ struct GrownThing {
     bool from_support = false;       // from what it stands on
     bool from_above = false;         // from what stands on it
     bool from_thread = false;        // from what hangs on it, or what it hangs on
+    bool from_whole = false;         // from the rest of what it is a part of
 };
 
 /// Grows a thing around the seed, on all its sides (METHOD.md, Things from a click). Voxels linked with the

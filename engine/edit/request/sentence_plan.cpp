@@ -118,17 +118,17 @@ std::string bare_thing(const language::Sentence& sentence, const std::string& so
 
 /// True where `joint` says that the source is borne by what stands before it: on a support, worn, held.
 bool bears(const std::string& joint, const std::string& source) {
-    constexpr std::array<std::string_view, 10> Bearing{"with",    "wearing",  "wears", "holding", "holds",
-                                                       "has",     "having",   "wore",  "carries", "carrying"};
+    constexpr std::array<std::string_view, 10> Bearing{"with", "wearing", "wears", "holding", "holds",
+                                                       "has",  "having",  "wore",  "carries", "carrying"};
     const bool worn = (plan::kinds_of(source) & plan::Worn) != 0;
     if (joint == "on") return plan::names_support(source);
     if (joint == "in") return plan::names_support(source) || worn;
     return std::find(Bearing.begin(), Bearing.end(), joint) != Bearing.end();
 }
 
-/// "statue" of "a statue on a white pedestal", of a pedestal, or "bear" of "a bear wearing a red hat", of a
-/// hat: what the source carries, and what bears it, is there before. Empty for other sentences, and where the
-/// source has no new look.
+/// "statue" of "a statue on a white pedestal", or "bear" of "a bear wearing a red hat". What the source
+/// carries, and what bears it, is there before. Empty for other sentences, and where the source has no new
+/// look.
 std::string linked_thing(const language::Sentence& sentence, const std::string& source) {
     constexpr std::size_t Joint = 2;  // behind an article and a noun
     const auto& words = sentence.words();
@@ -237,6 +237,22 @@ std::vector<PlannedStep> changes_of(const EditRequest& request, const plan::Scen
 bool is_planned(const EditRequest& request) {
     return request.target.empty() && request.mode == "auto" && request.instruction.empty() &&
            !request.source.empty() && request.part_of.empty() && !request.whole_scene;
+}
+
+bool is_borne(const language::Sentence& sentence, const std::string& source) {
+    const auto& words = sentence.words();
+    const auto place = sentence.position_of(source);
+    if (plan::names_support(source)) return true;
+    const bool part = plan::has(plan::Class::part, source) || plan::has(plan::Class::body_place, source);
+    if (!part && (plan::kinds_of(source) & (plan::Animal | plan::Person)) != 0) return false;
+    for (std::size_t joint = 1; joint < place && place < words.size(); ++joint)
+        if (bears(words[joint], source)) return true;
+    return false;
+}
+
+bool is_about_part(const EditRequest& request) {
+    return !request.part_of.empty() ||
+           is_borne(language::Sentence(request.prompt), language::normalised_prompt(request.source));
 }
 
 bool is_caption(const EditRequest& request) { return is_description(language::Sentence(request.prompt)); }

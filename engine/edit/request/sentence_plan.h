@@ -60,6 +60,12 @@ bool is_planned(const EditRequest& request);
 /// or one of what is around the source.
 bool is_told_as_typed(const EditRequest& request, const language::plan::Plan& plan);
 
+/// True where the sentence says that another thing wears, holds or has the source, or stands on it. Animals
+/// and persons are things of their own.
+bool is_borne(const language::Sentence& sentence, const std::string& source);
+/// True for a request about a part, or about something borne by another thing.
+bool is_about_part(const EditRequest& request);
+
 /// True for a sentence in the form of a caption ("a blue bear on the grass"), and no order or telegram.
 bool is_caption(const EditRequest& request);
 

@@ -1,12 +1,14 @@
 // Loads, locates, edits.
 #include "engine/pipeline/run/edit_job.h"
 #include "engine/edit/request/edit_method.h"
+#include "engine/edit/request/sentence_plan.h"
 #include "engine/edit/search/thing_parts.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "engine/base/check.h"
@@ -68,19 +70,24 @@ CutOutThing labelled_by_box(const Scene& scene, const CheckedRecipe& recipe, edi
                 "look at what gseditpro render shows with the same azimuth, elevation and zoom");
 }
 
-/// Label of --at or --the-thing.
-std::vector<std::uint8_t> labelled_by_pointing(const Scene& scene, const CheckedRecipe& recipe,
-                                               const JobControl& control) {
+/// Rows of --at or --the-thing, and the reason to look at them, if any.
+std::pair<std::vector<std::uint8_t>, std::string> labelled_by_pointing(const Scene& scene,
+                                                                       const CheckedRecipe& recipe,
+                                                                       const JobControl& control) {
     const auto& job = recipe.job;
     const auto set = drawable(scene.gaussians);
     localize::GrownThing thing;
+    std::string doubt;
     if (job.at.empty()) {
         thing = largest_thing(set, parse_up(job.up, scene.info), control);
     } else {
         auto request = click_request(job.at, scene, job.up);
         request.ground = language::names_ground(recipe.request.source());
         request.nature = edit::nature_of(recipe.request.source());
+        request.part = !recipe.request.part_of().empty() ||
+                       edit::is_borne(recipe.request.sentence().sentence(), recipe.request.source());
         thing = thing_at(set, request, control);
+        doubt = part_doubt(thing, request);
     }
     const auto rows = std::count(thing.rows.begin(), thing.rows.end(), std::uint8_t{1});
     if (rows == 0)
@@ -92,7 +99,8 @@ std::vector<std::uint8_t> labelled_by_pointing(const Scene& scene, const Checked
     log::info("\"{}\" is {}: {} of {} splats{}{}", recipe.request.source(),
               job.at.empty() ? "the largest thing that stands alone" : "what was clicked", rows, set.size(),
               parted.empty() ? "" : ", ", parted);
-    return std::move(thing.rows);
+    if (!doubt.empty()) log::warning("\"{}\": {}", recipe.request.source(), doubt);
+    return {std::move(thing.rows), std::move(doubt)};
 }
 
 /// More than one word of what may change contradict each other. Throws Error.
@@ -194,7 +202,7 @@ EditJob::EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCach
         times_.end();
     } else if (!recipe_.job.at.empty() || recipe_.job.the_thing) {
         times_.begin("cut_out");
-        hints_.label = labelled_by_pointing(scene, recipe_, control_);
+        std::tie(hints_.label, hints_.label_doubt) = labelled_by_pointing(scene, recipe_, control_);
         times_.end();
     }
     begin(std::move(scene), std::move(model), std::move(segmenters), std::move(server), given);

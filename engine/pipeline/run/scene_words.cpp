@@ -83,7 +83,7 @@ language::plan::SceneWords scene_words_shown(RunContext& context, const CheckedR
     auto& thing = scene.things.front();
     if (!ground && !thing.is_ground) {  // a thing that was cut out stands on none
         const auto best = best_of(ranker, of_class(known, language::WordClass::Ground), pictures,
-                                    [&](const auto& word) { return "a " + thing.noun + " on the " + word; });
+                                  [&](const auto& word) { return "a " + thing.noun + " on the " + word; });
         const auto place = scene.ground();
         if (place) scene.things[*place].noun = best.word;
         else if (!best.word.empty()) scene.things.push_back({best.word, {}, true, false});

@@ -23,6 +23,7 @@ struct CutOutRequest {
     Vec3 up{0, -1, 0};                        // of the world: the other sides are looked at around it
     bool ground = false;                      // not what stands on it
     ThingNature nature = ThingNature::Other;  // of the thing that is meant
+    bool part = false;                        // a click means a part of what is linked there
 };
 
 /// Box of --cut-out: "LEFT,TOP,RIGHT,BOTTOM", shares of the picture that `render` makes of the scene by

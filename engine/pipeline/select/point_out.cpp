@@ -60,6 +60,12 @@ localize::GrownThing without_ground(const GaussianSet& set, localize::GrownThing
     return thing;
 }
 
+/// Vessels and plants are told by their shapes.
+bool means_part(const ClickRequest& request) {
+    return request.part && !request.ground && request.nature != ThingNature::Vessel &&
+           request.nature != ThingNature::Plant;
+}
+
 void require_going(const JobControl& control) {
     if (control.stop_requested()) throw Error(ErrorCode::Cancelled, "labelling the thing was stopped");
 }
@@ -99,6 +105,7 @@ localize::GrownThing thing_at(const GaussianSet& set, const ClickRequest& reques
     grow.up = request.up;
     grow.extent = depth * request.camera.height / request.camera.fy;
     grow.ground = request.ground;
+    grow.part = means_part(request);
     auto thing = localize::grow_thing(set.spans(), grow);
     if (request.ground) return thing;
     thing = without_ground(set, std::move(thing), request.up);
@@ -118,11 +125,22 @@ localize::GrownThing largest_thing(const GaussianSet& set, const Vec3& up, const
     return without_ground(set, localize::grow_thing(set.spans(), grow), up);
 }
 
+std::string part_doubt(const localize::GrownThing& thing, const ClickRequest& request) {
+    if (!means_part(request)) return {};
+    if (thing.from_whole)
+        return "a click does not tell where a part ends; look at the label, and put a box around the part or "
+               "correct the label where it is wrong";
+    if (thing.from_above || thing.from_thread) return {};
+    return "the whole thing is labelled, for nothing parts what was clicked from the rest; put a box around "
+           "the part, or correct the label";
+}
+
 std::string parted_text(const localize::GrownThing& thing) {
     std::vector<std::string_view> from;
     if (thing.from_support) from.emplace_back("what it stands on");
     if (thing.from_above) from.emplace_back("what stands on it");
     if (thing.from_thread) from.emplace_back("what a thin part joins it to");
+    if (thing.from_whole) from.emplace_back("the rest of what it is a part of");
     return from.empty() ? std::string() : fmt::format("parted from {}", fmt::join(from, " and from "));
 }
 

@@ -18,6 +18,7 @@ struct ClickRequest {
     Vec3 up{0, -1, 0};                        // of the world
     bool ground = false;                      // the ground is meant, not what stands on it
     ThingNature nature = ThingNature::Other;  // of the thing that is meant
+    bool part = false;                        // a part of what is linked there is meant
 };
 
 /// Click of --at: "X,Y", shares of the picture that `render` makes of the scene by default. Another picture
@@ -34,6 +35,10 @@ localize::GrownThing thing_at(const GaussianSet& set, const ClickRequest& reques
 
 /// The largest thing that stands alone. No row in an empty scene. Throws Error (Cancelled).
 localize::GrownThing largest_thing(const GaussianSet& set, const Vec3& up, const JobControl& control = {});
+
+/// Reason to look at the label of a click that means a part: it may end elsewhere, or nothing parts it from
+/// the rest. Empty for a thing of its own.
+std::string part_doubt(const localize::GrownThing& thing, const ClickRequest& request);
 
 /// "the thing was parted from what it stands on", and so on; empty where nothing was cut.
 std::string parted_text(const localize::GrownThing& thing);

@@ -175,6 +175,19 @@ DOCTEST_TEST_CASE("a new look of what a thing wears, holds or has is no wish for
     DOCTEST_CHECK(edit::assumed_scene(beside).things.size() == 1);
 }
 
+DOCTEST_TEST_CASE("what another thing wears, holds or has is told from things of their own") {
+    const auto borne = [](const std::string& prompt, const std::string& source) {
+        return edit::is_borne(language::Sentence(prompt), source);
+    };
+    DOCTEST_CHECK(borne("a man wearing a red hat", "hat"));
+    DOCTEST_CHECK(borne("a bulldozer with a green bucket", "bucket"));
+    DOCTEST_CHECK(borne("a statue with golden wings", "wings"));
+    DOCTEST_CHECK(borne("a guitar on a golden stand", "stand"));
+    DOCTEST_CHECK_FALSE(borne("a red hat", "hat"));
+    DOCTEST_CHECK_FALSE(borne("a man with a golden dog", "dog"));
+    DOCTEST_CHECK_FALSE(borne("a blue guitar", "guitar"));
+}
+
 DOCTEST_TEST_CASE("an edit in which nothing is drawn needs its thing by name") {
     auto wanted = request("anything", "");
     wanted.mode = "remove";

@@ -78,6 +78,12 @@ GrownThing grown(const Scene& scene, const Vec3& seed, bool ground = false) {
     return grow_thing(spans(scene.data), {seed, Up, Extent, ground});
 }
 
+GrownThing part_at(const Scene& scene, const Vec3& seed) {
+    GrowRequest request{seed, Up, Extent};
+    request.part = true;
+    return grow_thing(spans(scene.data), request);
+}
+
 /// A figure (0) of torso and head on a plinth (1).
 Scene statue(const Vec3& figure, const Vec3& plinth) {
     Scene scene;
@@ -143,6 +149,36 @@ DOCTEST_TEST_CASE("a click on a ground takes the ground alone where the ground i
     DOCTEST_CHECK(iou(scene, grown(scene, {0.8, 0, 0.8}, true).rows, 1) > Least);
     DOCTEST_CHECK(iou(scene, grown(scene, {0, 0.3, 0.3}).rows, 0) > Least);
 }
+
+#ifdef GSE_HAVE_OPENCV
+DOCTEST_TEST_CASE("a part ends where its colour or a narrow place ends, and is told from the whole") {
+    constexpr double Enough = 0.6;  // IoU; the seam runs through voxels of both
+    for (const auto& colour : {Green, Bronze}) {
+        Scene scene;  // a helmet at the side of a figure
+        scene.box({-0.25, 0, -0.2}, {0.25, 1, 0.2}, Bronze, 0);
+        scene.box({0.25, 0.47, -0.03}, {0.4, 0.53, 0.03}, Bronze, 0);
+        scene.ball({0.58, 0.5, 0}, 0.2, colour, 1);
+        const auto helmet = part_at(scene, {0.7, 0.5, 0.15});
+        DOCTEST_CHECK(helmet.from_whole);
+        DOCTEST_CHECK(iou(scene, helmet.rows, 1) > Enough);
+        const auto whole = grown(scene, {0.7, 0.5, 0.15});
+        DOCTEST_CHECK_FALSE(whole.from_whole);
+        DOCTEST_CHECK(iou(scene, whole.rows, 1) < 0.5);
+    }
+    Scene scene;  // a door in a wall
+    scene.box({-0.8, 0, -0.1}, {0.8, 1, 0.1}, Marble, 0);
+    scene.box({-0.15, 0.2, 0.1}, {0.15, 0.8, 0.12}, Green, 1);
+    DOCTEST_CHECK(iou(scene, part_at(scene, {0, 0.5, 0.12}).rows, 1) > Enough);
+}
+
+DOCTEST_TEST_CASE("what is of one colour and shape has no part") {
+    Scene scene;
+    scene.ball({0, 0.5, 0}, 0.5, Bronze, 0);
+    const auto ball = part_at(scene, {0.3, 0.5, 0.4});
+    DOCTEST_CHECK_FALSE(ball.from_whole);
+    DOCTEST_CHECK(iou(scene, ball.rows, 0) > Least);
+}
+#endif
 
 DOCTEST_TEST_CASE("the largest thing that stands alone is the one on the highest support") {
     const auto scene = statue(Bronze, Marble);

@@ -24,8 +24,8 @@ enum class RealMode {
 std::string mode_name(RealMode mode);
 /// Modes of a list with spaces or commas between. Throws Error (InvalidArgument) for another name.
 std::vector<RealMode> parse_modes(const std::string& text);
-/// True for a mode that a task is made in: "box" needs a box, "click" a thing with truth; "upright" a known
-/// word in a scene whose up axis the suite says is guessed wrong.
+/// True for a mode that a task is made in. "box" needs a box, "click" a thing with truth. "upright" needs a
+/// known word in a scene whose up axis the suite says is guessed wrong.
 bool has_mode(const RealScene& scene, const RealTask& task, RealMode mode);
 
 /// Recipe of a task; `settings` are of model, machine and edit. A click comes from truth_click().

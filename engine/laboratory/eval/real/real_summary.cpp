@@ -20,12 +20,10 @@ struct Group {
     int known_word;  // 1 known nouns, 0 others, -1 both
     double iou_goal, place_goal;
 };
-constexpr Group Groups[] = {{"by word, known nouns", "word", 1, 0.85, 0.8},
-                            {"by word, unknown nouns", "word", 0, 0.85, 0.8},
-                            {"upright, known nouns", "upright", 1, 0, 0},
-                            {"by box", "box", -1, 0.92, 0.88},
-                            {"by click, known nouns", "click", 1, 0.85, 0.8},
-                            {"by click, unknown nouns", "click", 0, 0.85, 0.8}};
+constexpr Group Groups[] = {
+    {"by word, known nouns", "word", 1, 0.85, 0.8},   {"by word, unknown nouns", "word", 0, 0.85, 0.8},
+    {"upright, known nouns", "upright", 1, 0, 0},     {"by box", "box", -1, 0.92, 0.88},
+    {"by click, known nouns", "click", 1, 0.85, 0.8}, {"by click, unknown nouns", "click", 0, 0.85, 0.8}};
 constexpr double FrontNear = 15, FrontFar = 90;  // degrees
 
 double mean_of(const std::vector<double>& values) {
