@@ -261,7 +261,9 @@ class Handler(BaseHTTPRequestHandler):
             end = time.monotonic() + world.draw_s
             exact = world.flavour in ("a1111", "forge", "sdnext")
             made = pictures.draw(picture, mask, prompt, seed, world.noise, world.drift, exact, world.edits)
-            world.preview = pictures.coarse(made) if world.previews else None
+            if world.previews:
+                world.preview = pictures.coarse(made)
+                end = time.monotonic() + world.draw_s   # it is to be seen so long
             while time.monotonic() < end and not world.interrupted:
                 time.sleep(.005)
             world.preview = None
