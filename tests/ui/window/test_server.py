@@ -111,8 +111,18 @@ class Server(WindowTest):
         self.assertNotIn("progress.preview", window.widgets())
 
     def test_a_thing_without_a_word_is_found_by_the_server_after_a_click(self):
-        window, server = self.tested()
+        server = StandIn()
+        self.addCleanup(server.close)
         server.ask("set?model=flux1-kontext-dev&edits=red")
+        config = self.folder / "config"
+        config.mkdir()
+        settings = {"url": f"http://127.0.0.1:{server.port}", "side": 128}   # which it draws quickly
+        (config / "settings.json").write_text(json.dumps({"server": settings}))
+        window = self.open(height=1400)
+        window.click("start.sample")
+        window.wait(lambda s: s["splats"] > 0 and not s["busy"], "the sample did not open")
+        window.click("tab.Models")
+        window.scroll_to("models.server.on", "panel.Models")
         window.press("models.server.on", lambda s: s["server"]["on"], "it is not on")
         window.click("tab.Prompt")
         window.write("prompt.source", "gizmo")
