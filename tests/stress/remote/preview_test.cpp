@@ -19,7 +19,9 @@ Shown drawn_with_previews(StandIn& stand_in, const ServerTimes& times = patient_
     Shown shown;
     auto order = small_order();
     order.preview = [&](const Image& preview) { shown.previews.push_back(preview); };
-    shown.picture = connect(address, {})->redraw(order, {}).picture;
+    JobControl job;
+    job.progress = [](std::string_view, int, int) {};
+    shown.picture = connect(address, {})->redraw(order, job).picture;
     return shown;
 }
 
