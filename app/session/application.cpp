@@ -75,6 +75,7 @@ void Application::update(PreviewHost& preview) {
     if (frame > 0) frames_per_second_ = 0.9 * frames_per_second_ + 0.1 / std::max(frame, 1e-4);
     workspace_.notices.refresh();
     edits_.refresh();
+    servers_.refresh();
     follow_document();
     search_.refresh();
     if (!workspace_.document.empty()) labels_.refresh(), places_.refresh();

@@ -178,8 +178,8 @@ void EditController::start(std::optional<edit::EditSnapshot> from) {
                  ticket = models_.ticket()](const Error* error) {
         models_.take_back(ticket, run->model, run->loaded, error);
         costs_.remember(cost_key, run->measured);
-        servers_.measure(recipe_.server, run->job ? run->job->server() : run->server.get());
-        refresh();  // what was found last, and the last steps
+        servers_.refresh();  // times of the last pictures
+        refresh();           // what was found last, and the last steps
         if (branch_) return go_on_from_branch();
         if (pending->set.size() > 0) {  // also what a shortage or a failure left
             pending->seconds = workspace_.jobs->work.status().seconds;  // the clock of the job's own line

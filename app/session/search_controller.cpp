@@ -53,6 +53,20 @@ Error problem_of(const EditJob& job) {
     return Error(ErrorCode::NotFound, job.located().message, job.located().remedy);
 }
 
+/// Words about what would be sent if the server looked for the source of a recipe; empty where it cannot, or
+/// where the model's words do.
+std::string offer_of_search(const ServerController& servers, EditRecipe recipe,
+                            const std::vector<std::string>& known) {
+    recipe.server = servers.offered();
+    const auto& source = recipe.request.source;
+    if (!recipe.server.used() || source.empty() || language::unknown_word(known, source).empty()) return {};
+    try {
+        const auto checked = check(std::move(recipe));
+        if (!searches_by_differences(checked, known)) return {};
+        return servers.told_of_search(checked.plain().request, pictures_of_differences(checked));
+    } catch (const Error&) { return {}; }  // the panel says what is wrong with the sentence
+}
+
 /// Work of each step that can be done, the first of which loads the model and uses the last search.
 std::vector<PlannedEdit> work_of_steps(const AskedSentence& sentence, PlannedWork work) {
     std::vector<PlannedEdit> edits;
@@ -164,8 +178,10 @@ void SearchController::begin_edit() {
 }
 
 std::shared_ptr<MeasuredRun> SearchController::begin_run() {
-    return app::begin_run(models_.loaded(), models_.loaded_fits(), models_.load(), costs_.memory(),
-                          arriving_);
+    auto run =
+        app::begin_run(models_.loaded(), models_.loaded_fits(), models_.load(), costs_.memory(), arriving_);
+    run->road = servers_.road();
+    return run;
 }
 
 SearchGround SearchController::ground(const EditRecipe& recipe) const {
@@ -190,7 +206,10 @@ SearchGround SearchController::ground(const StepChain& chain) const {
 template <> void SearchController::on(const command::Locate& locate) {
     if (!workspace_.require_scene() || workspace_.jobs->occupied()) return;
     if (workspace_.results) return workspace_.notices.toast("Apply or discard the edit first.");
-    const bool alone = locate.source_alone || request().prompt.empty();
+    const bool by_server = locate.by_server;
+    if (by_server && server_search_.empty()) return;
+    const bool alone = !by_server && (locate.source_alone || request().prompt.empty());
+    if (by_server) servers_.agree();
     if (!alone && !servers_.may_send(sentence_, [this, locate] { on(locate); })) return;
     const auto run = begin_run();
     take_known_parts(run->measured, costs_.profile(request()));
@@ -201,16 +220,19 @@ template <> void SearchController::on(const command::Locate& locate) {
     try {
         wanted.request = edit::check(std::move(wanted.request)).plain();
     } catch (const Error& error) { return workspace_.notices.report(error); }
-    auto work = [run, wanted, open = alone ? wanted : open_recipe(wanted), ground = ground(wanted),
+    auto work = [run, wanted, open = alone ? wanted : open_recipe(wanted), ground = ground(wanted), by_server,
                  known = costs_.profile(request()), cache = models_.cache()](const JobControl& control) {
         const auto before = network_use();
         load_model(*run, wanted.job, cache, control);
         connect_to_server(*run, wanted, cache, control);
         const PeakMemory peak;
-        run->job = std::make_shared<EditJob>(open, ground.input(*run, {}), control);
+        auto input = ground.input(*run, {});
+        input.server_searches = by_server;
+        run->job = std::make_shared<EditJob>(open, std::move(input), control);
         look(*run);
         run->use = network_use() - before;
-        if (run->job->found() && !steps_measured(known, *run->job)) measure_steps(run->measured, *run->job);
+        if (run->server == nullptr && run->job->found() && !steps_measured(known, *run->job))
+            measure_steps(run->measured, *run->job);
         measure_peak(*run, peak);
     };
     auto done = [this, run, wanted, cost_key = costs_.key(request()),
@@ -386,6 +408,8 @@ void SearchController::refresh_scope() {
     hash.numbers(workspace_.document.revision(), last_.number(), choice_.has_value());
     const auto words = sentence_.asked();
     hash.texts({words.source, words.target, words.prompt, words.mode, models_.path()});
+    hash.fields(servers_.offered());
+    hash.numbers(models_.list().known_words().size());
     if (choice_) {
         hash.numbers(choice_->by_label);
         hash.texts({choice_->label, choice_->source});
@@ -397,6 +421,8 @@ void SearchController::refresh_scope() {
                            corrected_after_search(workspace_.document.state().labels, {last_.word(), source});
     scope_ = {};
     labelled_by_hand_ = false;
+    server_search_ = scope() == nullptr ? offer_of_search(servers_, recipe(), models_.list().known_words())
+                                        : std::string();
     scope_.present = present_already(workspace_.document.state(), recipe().request, read_target());
     const NamedLabel *active = workspace_.active_label(), *used = scope();
     const NamedLabel* label = used != nullptr ? used : active;
@@ -457,6 +483,7 @@ void SearchController::show(ui::SearchPart& model) const {
     model.labelled_by_hand = labelled_by_hand_;
     model.attention_corrected = attention_corrected_;
     model.voting = workspace_.jobs->works_at(JobKind::Vote);
+    model.server_search = server_search_;
     last_.show(model);
 }
 

@@ -138,8 +138,9 @@ private:
     std::optional<Vote> wanted_vote_;
     std::shared_ptr<ArrivingViews> arriving_ = std::make_shared<ArrivingViews>();  // of the search under way
     std::optional<ScopeChoice> choice_;  // of the label that was active then
-    ContentKey scope_key_;               // that the three below were made for
+    ContentKey scope_key_;               // that the four below were made for
     ui::EditScope scope_;
+    std::string server_search_;
     bool labelled_by_hand_ = false, attention_corrected_ = false;
     Clock::time_point last_estimate_{};
 };

@@ -8,6 +8,8 @@
 
 #include <memory>
 #include <optional>
+#include <string>
+#include <string_view>
 
 #include "engine/base/log.h"
 #include "engine/base/memory.h"
@@ -36,6 +38,16 @@ std::size_t MainQueue::run() {
 }
 
 namespace {
+
+/// True for "view 2 of 8" and "view 3 of 8": one stage, whose parts are counted.
+bool same_but_for_numbers(std::string_view a, std::string_view b) {
+    const auto without = [](std::string_view text) {
+        std::string kept(text);
+        std::erase_if(kept, [](char c) { return c >= '0' && c <= '9'; });
+        return kept;
+    };
+    return without(a) == without(b);
+}
 
 /// Lowers the priority of the calling thread. Linux gives every thread its own nice value, and threads
 /// inherit it from their creator. Ten leaves a tenth of a contended processor.
@@ -120,8 +132,9 @@ void JobThread::forget() {
 
 void JobThread::report(std::string_view stage, int step, int total) {
     std::unique_lock lock(mutex_);
-    if (stage != status_.stage || step < status_.step) {
-        status_.stage = stage;
+    const bool begins = step < status_.step || !same_but_for_numbers(stage, status_.stage);
+    status_.stage = stage;
+    if (begins) {
         stage_start_ = Clock::now();
         stage_paused_ = {};
         stage_first_step_ = step;

@@ -3,6 +3,7 @@ import json
 import math
 import os
 import pathlib
+import re
 import struct
 import subprocess
 import sys
@@ -164,6 +165,11 @@ class Servers(ProgramTest):
         self.assertEqual(json.loads((out / "report.json").read_text())["server"]["smaller_side"], 64)
         self.assertEqual(sum(entry["json"]["width"] == 128 for entry in server.drawings()), 1)
 
+    def share_outside(self, said, view):
+        """Percentage of an own picture's change that the command says is left out; 0 = it says nothing."""
+        found = re.search(rf"(\d+) % of what your picture of {view} changes lies outside", said)
+        return int(found.group(1)) if found else 0
+
     def test_a_view_becomes_the_artists_own_picture_and_the_others_follow_it(self):
         server = self.server(model="sd-v1-5-inpainting")
         listed = self.folder / "listed"
@@ -189,6 +195,17 @@ class Servers(ProgramTest):
         self.assertEqual(report["server"]["target_pictures"], [most["view"]])
         self.assertEqual(report["server"]["agreement"], "warp")
         self.assertEqual(report["changed_outside_label"], 0)
+        told = self.share_outside(process.stderr, most["view"])
+        self.assertGreater(told, 20)
+        mask = pictures.decode_png((listed / most["mask"]).read_bytes()).luma()
+        kept = bytes(painted[i] if mask[i // 3] > 127 else seen.data[i] for i in range(len(painted)))
+        inside = self.write("inside.png", pictures.encode_png(pictures.Picture(128, 128, 3, kept)))
+        process = self.edit(out, "--server", server.url, "--target-picture", f"{most['view']}={inside}")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertEqual(self.share_outside(process.stderr, most["view"]), 0)
+        process = self.edit(out, "--server", server.url, "--target-picture", f"{most['view']}={own}",
+                            "--dilate-px", 120)
+        self.assertLess(self.share_outside(process.stderr, most["view"]), told)
         small = self.write("small.png", pictures.encode_png(pictures.Picture(32, 32, 3, bytes(32 * 32 * 3))))
         wide = self.write("wide.png", pictures.encode_png(pictures.Picture(128, 64, 3, bytes(128 * 64 * 3))))
         for picture, words in ((f"nowhere={own}", "none of the views that are drawn"),
@@ -257,6 +274,18 @@ class Servers(ProgramTest):
                     "--out", self.folder / "no", "--server", server.url)
         self.assert_one_sentence(added, "gizmo", "cannot find it")
         self.assertEqual(len(server.drawings()), asked)
+
+    def test_each_change_of_a_sentence_finds_what_the_model_lacks_a_word_for(self):
+        server = self.server(model="flux1-kontext-dev", edits="red")
+        out = self.folder / "out"
+        process = run("-q", "edit", SCENE, "--source", "gizmo", "--prompt",
+                      "paint the gizmo golden and make it twice as large", "--out", out, *QUICK,
+                      "--server", server.url)
+        self.assertEqual(process.returncode, 0, process.stderr)
+        steps = json.loads((out / "report.json").read_text())["steps"]
+        self.assertEqual([step["done"] for step in steps], [True, True], steps)
+        searched = [entry for entry in server.drawings() if "mask_image" not in entry["json"]]
+        self.assertIn(len(searched), (16, 32))   # the second change knows what the first has found
 
     def test_an_edit_that_was_refused_goes_on_where_it_ended(self):
         server = self.server(fault="failed", at="poll", after=6)

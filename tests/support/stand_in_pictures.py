@@ -137,6 +137,14 @@ def block_means(picture):
     return {key: [value / cell[3] for value in cell[:3]] for key, cell in sums.items()}
 
 
+def coarse(picture):
+    """One pixel per cell of 8 x 8."""
+    means = block_means(picture.colour())
+    width, height = (picture.width + 7) // 8, (picture.height + 7) // 8
+    cells = (means[x, y] for y in range(height) for x in range(width))
+    return Picture(width, height, 3, bytes(min(int(value + .5), 255) for cell in cells for value in cell))
+
+
 def red_parts(picture):
     """Mask of what is red."""
     colour = picture.colour().data

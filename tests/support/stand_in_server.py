@@ -44,6 +44,8 @@ class World:
         self.fault, self.at, self.after, self.times = "", "draw", 0, -1
         self.rate, self.target, self.status, self.words, self.retry_after = 20, "", 0, "", ""
         self.draw_s, self.noise, self.drift = 0.0, 0, 0
+        self.previews = 0    # 1: the picture in the making is shown, coarsely
+        self.preview = None  # of what is drawn now
         self.unread = 0      # 1: bodies of drawings are not read
         self.most_side = 0   # px that its memory does for; 0 = any
         self.edits = ""   # "red": what is red is edited where no mask says what
@@ -257,10 +259,14 @@ class Handler(BaseHTTPRequestHandler):
                 world.tasks[task] = "active"
             world.interrupted = False
             end = time.monotonic() + world.draw_s
-            while time.monotonic() < end and not world.interrupted:
-                time.sleep(.005)
             exact = world.flavour in ("a1111", "forge", "sdnext")
             made = pictures.draw(picture, mask, prompt, seed, world.noise, world.drift, exact, world.edits)
+            if world.previews:
+                world.preview = pictures.coarse(made)
+                end = time.monotonic() + world.draw_s   # it is to be seen so long
+            while time.monotonic() < end and not world.interrupted:
+                time.sleep(.005)
+            world.preview = None
             if task is not None:
                 world.tasks[task] = "completed"
         make = pictures.FILES.get(self.fault, pictures.encode_png)
@@ -268,6 +274,13 @@ class Handler(BaseHTTPRequestHandler):
 
     def b64(self, data):
         return faults.text_of(data, self.fault)
+
+    def preview_text(self):
+        """Picture in the making; None where nothing is drawn, or previews are off."""
+        preview = self.world.preview
+        if preview is None:
+            return None
+        return self.b64(pictures.FILES.get(self.fault, pictures.encode_png)(preview))
 
     # A: WebUI
 
@@ -277,13 +290,19 @@ class Handler(BaseHTTPRequestHandler):
             return self.img2img(value)
         if path == "/internal/progress" and flavour in TASKS:
             state = self.world.tasks.get(value.get("id_task"), "")
-            return self.send_json({"active": state == "active", "queued": state == "queued",
-                                   "completed": state == "completed", "progress": .5})
+            answer = {"active": state == "active", "queued": state == "queued",
+                      "completed": state == "completed", "progress": .5, "live_preview": None}
+            preview = self.preview_text() if state == "active" and value.get("live_preview") else None
+            if preview and value.get("id_live_preview") != 1:
+                answer.update(live_preview="data:image/png;base64," + preview, id_live_preview=1)
+            return self.send_json(answer)
         if place == "interrupt" and flavour != "sdserver":
             self.world.interrupted = True
             return self.send_json({}, 204 if flavour == "sdnext" else 200)
         if place == "progress" and flavour not in ("sdserver", "kcpp"):
-            return self.send_json({"progress": .25, "eta_relative": 1, "state": {"sampling_step": 5}})
+            preview = self.preview_text() if query.get("skip_current_image") == "false" else None
+            return self.send_json({"progress": .25, "eta_relative": 1, "state": {"sampling_step": 5},
+                                   "current_image": preview})
         if place == "options" and flavour != "sdserver":
             if method == "POST":
                 self.world.model = value["sd_model_checkpoint"]
@@ -350,6 +369,8 @@ class Handler(BaseHTTPRequestHandler):
         prompt, seed = text.get("prompt", ""), int(text.get("seed", 0))
         if not prompt:
             return self.send_json({"error": {"message": "prompt is required", "code": None}}, 400)
+        if flavour == "vllm" and not vllm_has(text.get("lora")):
+            return self.send_json({"detail": "LoRA adapter is not registered"}, 400)
         mask = None
         if flavour == "vllm" and "mask_image" in fields:
             mask = mask_of(pictures.decode_png(fields["mask_image"][0]))
@@ -469,6 +490,18 @@ class Handler(BaseHTTPRequestHandler):
                                      edits=world.edits)
             job["file"] = lambda fault: pictures.FILES.get(fault, pictures.encode_png)(made)
             job["status"] = "completed"
+
+
+def vllm_has(lora):
+    """False for a LoRA field that vLLM-Omni refuses: a name that it was not started with, or no name."""
+    try:
+        listed = json.loads(lora or "[]")
+    except ValueError:
+        return False
+    listed = listed if isinstance(listed, list) else [listed]
+    known = [one for one in listed if isinstance(one, dict) and isinstance(one.get("scale"), (int, float))
+             and (one.get("name") == "bronze" or one.get("name") and one.get("local_path"))]
+    return len(known) == len(listed)
 
 
 def read_parts(kind, body):

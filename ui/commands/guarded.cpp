@@ -219,13 +219,24 @@ void roll_seed(Context& context) {
     context.request_changed = true;
 }
 
-void run_locate(Context& context) {
-    if (!why_not_locate(context).empty()) return;
+namespace {
+
+void search(Context& context, const command::Locate& order) {
     context.request.excluded_views.clear();  // views of the search before
     context.request_changed = true;
     send_request(context);
-    context.emit(command::Locate{!context.state.prompt.problem.empty()});
+    context.emit(order);
     show_panel(context.state, PanelId::Attention);
+}
+
+}  // namespace
+
+void run_locate(Context& context) {
+    if (why_not_locate(context).empty()) search(context, {!context.state.prompt.problem.empty()});
+}
+
+void run_server_search(Context& context) {
+    if (why_not_work(context).empty()) search(context, {.by_server = true});
 }
 
 namespace {

@@ -43,6 +43,8 @@ std::string views_text(const Context& context);
 /// Puts another seed into the request.
 void roll_seed(Context& context);
 void run_locate(Context& context);
+/// Lets the image server look for the source.
+void run_server_search(Context& context);
 void run_edit(Context& context);
 /// Cancels the running job; asks first when it has worked for more than 30 s.
 void cancel_job(Context& context);

@@ -82,6 +82,7 @@ struct SetRequest {
 };
 struct Locate {
     bool source_alone = false;  // the sentence cannot be edited by: its source is looked for all the same
+    bool by_server = false;  // the image server shows where it is; sends what SearchPart::server_search says
 };
 /// Labels the splats that an unsure search found.
 struct LabelAnyway {};

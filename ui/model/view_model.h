@@ -391,6 +391,8 @@ struct SearchPart {
     bool voting = false;               // the job only votes anew: more views can be left out meanwhile
     bool attention_corrected = false;  // the label was set by hand since: the masks are older than it
     SearchView search;
+    // What would be sent where if the image server looked for the source; empty = it cannot, or need not.
+    std::string server_search;
 };
 
 /// Judgement of the result that waits.
@@ -472,8 +474,14 @@ struct ServerView {
     std::string problem;  // why it cannot be used, with the remedy; empty = none is known
 };
 
+/// Picture that the server draws now, as far as it is.
+struct DrawingView {
+    std::shared_ptr<const Image> sent, preview;  // [H,W,3] each, of any size; null = nothing to see
+};
+
 struct ServerPart {
     ServerView server;
+    DrawingView drawing;
 };
 
 struct ExportPart {

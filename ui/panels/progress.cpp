@@ -50,6 +50,30 @@ void draw_job(Context& context) {
                                     : "not known yet");
 }
 
+/// Picture, larger while the mouse is on it.
+void draw_small_picture(Context& context, const std::string& name,
+                        const std::shared_ptr<const Image>& picture, float side) {
+    ImGui::Image(imgui_texture(context.textures.texture(picture)), {side, side});
+    note(context, name);
+    if (!ImGui::IsItemHovered()) return;
+    const ImVec2 large(context.em * 14, context.em * 14);
+    begin_tooltip(large);
+    ImGui::Image(imgui_texture(context.textures.texture(picture)), large);
+    ImGui::EndTooltip();
+}
+
+/// The view that an image server draws, and what there is of its picture.
+void draw_preview(Context& context) {
+    const auto& drawing = context.model.drawing;
+    if (drawing.sent == nullptr || drawing.preview == nullptr) return;
+    dim_text("Being drawn at the server: left what was sent, right as it is so far");
+    const float gap = ImGui::GetStyle().ItemSpacing.x;
+    const float side = std::min(context.em * 8, (ImGui::GetContentRegionAvail().x - gap) * 0.5f);
+    draw_small_picture(context, "progress.sent", drawing.sent, side);
+    ImGui::SameLine();
+    draw_small_picture(context, "progress.preview", drawing.preview, side);
+}
+
 /// The gate: the model's own drawing of a few views.
 void draw_gate(Context& context) {
     const auto& gate = context.model.gate;
@@ -61,13 +85,7 @@ void draw_gate(Context& context) {
         std::min(context.em * 5, (ImGui::GetContentRegionAvail().x - gap * (count - 1)) / count);
     for (std::size_t i = 0; i < gate.pictures.size(); ++i) {
         if (i > 0) ImGui::SameLine();
-        ImGui::Image(imgui_texture(context.textures.texture(gate.pictures[i])), {side, side});
-        note(context, fmt::format("progress.gate.{}", i));
-        if (!ImGui::IsItemHovered()) continue;
-        const ImVec2 large(context.em * 14, context.em * 14);
-        begin_tooltip(large);
-        ImGui::Image(imgui_texture(context.textures.texture(gate.pictures[i])), large);
-        ImGui::EndTooltip();
+        draw_small_picture(context, fmt::format("progress.gate.{}", i), gate.pictures[i], side);
     }
     if (!gate.verdict.empty()) coloured_text(gate.warns ? palette::Warning : palette::TextDim, gate.verdict);
 }
@@ -239,6 +257,7 @@ void draw_progress_panel(Context& context) {
         ImGui::SameLine();
         ImGui::BeginChild("states", {0, height}, false, ImGuiWindowFlags_NavFlattened);
     }
+    draw_preview(context);
     draw_ways(context);
     if (context.state.progress.curves && !context.model.losses.empty())
         draw_curves(context, std::max(context.em * CurvesEm, ImGui::GetContentRegionAvail().y));

@@ -47,7 +47,8 @@ void LastSearch::show_evidence(const EditJob& job) {
                               : seen_view(job.views()[v], located.views[v]));
     views_ = std::move(views);
     word_ = located.word;
-    mode_ = fmt::format("{}: {}", edit::mode_name(located.mode), located.reason);
+    mode_ = fmt::format("{}: {}{}", edit::mode_name(located.mode), located.reason,
+                        job.found_by_differences() ? "; found by what the server changed" : "");
     outcome_ = {outcome_.number + 1, located.confidence, located.problem, located.message, located.remedy, {},
                 located.on_ground};
     if (const auto front = job.front_read())

@@ -81,25 +81,6 @@ nlohmann::ordered_json asked_with(remote::ServerSettings settings) {
     return fields_to_json(settings);
 }
 
-/// Settings that decide how long a picture takes, and how many are asked for.
-std::string cost_key(remote::ServerSettings settings) {
-    const bool follows = !settings.target_picture.empty();
-    settings.target_picture.clear();
-    settings.key_view.clear();
-    return fmt::format("{} {}", fields_to_json(settings).dump(), follows);
-}
-
-/// Pictures that are asked for to draw a round, where each is of use at once. `own` of the views are there.
-int pictures_for(int views, int own, remote::Agreement agreement) {
-    constexpr int cells = 4;  // of a sheet, the first of which shows the first view again
-    const int missing = std::max(0, views - own);
-    if (agreement == remote::Agreement::Sheet && missing > 0)
-        return own > 0 ? (missing + cells - 2) / (cells - 1) : 1 + std::max(0, (missing - 2) / (cells - 1));
-    if (agreement == remote::Agreement::Warp)  // filled, then closed; the first is drawn by itself
-        return own > 0 ? 2 * missing : std::max(0, 2 * missing - 1);
-    return missing;
-}
-
 /// Words about who can read what goes there.
 std::string said_of_way(const remote::ServerUrl& url) {
     if (remote::is_loopback(url.host)) return "That is this machine.";
@@ -134,6 +115,15 @@ std::string ServerController::told(const edit::EditRequest& request) const {
         url.encrypted() || remote::is_loopback(url.host) ? "" : ", not encrypted", said_of_way(url));
 }
 
+std::string ServerController::told_of_search(const edit::EditRequest& request, int pictures) const {
+    const auto url = remote::parse_server_url(settings_.url).url;
+    return fmt::format(
+        "The image server can show where \"{}\" is, by what it changes: {} pictures of your scene, as many "
+        "again where it is small, and the sentence \"{}\" go to {} ({}{}). {}",
+        request.source, pictures, request.prompt, url.nickname(), kind_.empty() ? "an image server" : kind_,
+        url.encrypted() || remote::is_loopback(url.host) ? "" : ", not encrypted", said_of_way(url));
+}
+
 bool ServerController::may_send(const AskedSentence& sentence, std::function<void()> then) {
     if (!on_ || !settings_.used() || consents_.contains(consent_key())) return true;
     if (sentence.steps().size() < 2 && !is_drawn(sentence.asked())) return true;
@@ -156,27 +146,27 @@ void ServerController::mention(const remote::ServerSettings& named) {
                     printable(url)));
 }
 
-// Costs
+// News
 
-void ServerController::measure(const remote::ServerSettings& settings, const ViewServer* server) {
-    if (server == nullptr || server->use().requests == 0) return;
-    const auto& use = server->use();
-    measured_[cost_key(settings)] = {server->agreement(), use.seconds / static_cast<double>(use.requests)};
+void ServerController::refresh() {
+    for (auto& one : road_->take()) {
+        costs_.measure(one);
+        model_ = one.model;
+        model_of_ = one.settings.url;
+        drawing_ = {std::move(one.drawing.sent), std::move(one.drawing.preview)};
+    }
+    if (!workspace_.jobs->works()) drawing_ = {};
+}
+
+void ServerController::take_document() {
+    settings_.target_picture.clear();
+    road_ = std::make_shared<ServerRoad>();
+    drawing_ = {};
 }
 
 ServerCost ServerController::cost_of(const std::vector<PlannedEdit>& edits) const {
     if (!on_ || !settings_.used()) return {};
-    const auto found = measured_.find(cost_key(settings_));
-    const auto agreement = found == measured_.end() ? remote::Agreement::None : found->second.agreement;
-    const auto own = static_cast<int>(settings_.target_picture.size());
-    ServerCost cost;
-    for (const auto& edit : edits) {
-        if (!edit.made || !edit::is_drawn(edit.work.mode)) continue;
-        const auto plan = edit::round_plan(edit.request, edit.work.mode);
-        cost.pictures += plan.rounds * pictures_for(plan.views, own, agreement);
-    }
-    if (found != measured_.end()) cost.seconds = cost.pictures * found->second.seconds;
-    return cost;
+    return costs_.cost_of(edits, settings_, model_of_ == settings_.url ? model_ : std::string());
 }
 
 // Settings
@@ -186,10 +176,12 @@ void ServerController::settings_to_json(nlohmann::json& json) const {
     json["server"] = fields_to_json(settings_);
     json["server"].erase("target_picture");  // of this scene
     json["server"]["url"] = remote::without_secrets(settings_.url);
+    json["server_times"] = costs_.to_json();
 }
 
 void ServerController::settings_from_json(const nlohmann::json& json) {
     if (!json.contains("server")) return;
+    if (json.contains("server_times")) costs_.take(json["server_times"]);
     try {
         remote::ServerSettings read;
         fields_from_json(read, nlohmann::ordered_json(json["server"]));
@@ -207,6 +199,7 @@ void ServerController::show(ui::ServerPart& model) const {
     if (!view_.facts.empty()) model.server.facts.push_back(values_fact(settings_, view_.usual));
     model.server.families = server_families();
     model.server.on = on_;
+    model.drawing = drawing_;
 }
 
 // Commands
@@ -289,6 +282,8 @@ void ServerController::ask() {
         view_.is_comfy = answer->is_comfy;
         view_.usual = answer->usual;
         kind_ = answer->kind;
+        model_ = answer->model;
+        model_of_ = url;
     };
     workspace_.jobs->start_work(JobKind::Other, {"Test the image server", work, done});
 }
@@ -302,7 +297,7 @@ template <> void ServerController::on(const command::ForgetServer&) {
     settings_ = {};
     on_ = false;
     consents_.clear();
-    measured_.clear();
+    costs_.forget();
     forget_facts();
     workspace_.settings_changed = true;
 }

@@ -18,6 +18,7 @@ std::string abilities_of(const remote::ServerFacts& facts) {
     if (facts.references > 0) text += fmt::format(", takes {} more pictures", facts.references);
     text += facts.repeats ? ", repeats a picture by its seed" : ", cannot repeat a picture";
     if (facts.reports_progress) text += ", tells its progress";
+    if (facts.shows_previews) text += ", shows pictures in the making";
     if (facts.cancels) text += ", stops when told";
     return text;
 }
@@ -58,6 +59,7 @@ ServerAnswer answer_of(const pipeline::ViewServer& server, const remote::ServerS
     const auto model = settings.model.empty() ? facts.model : settings.model;
     ServerAnswer answer;
     answer.kind = printable(facts.product);
+    answer.model = facts.model;
     answer.is_comfy = facts.kind == remote::ServerKind::Comfy;
     answer.usual = usual_of(server.family());
     answer.facts = {

@@ -15,6 +15,7 @@ struct ServerAnswer {
     std::vector<ui::ServerView::Fact> facts;
     std::vector<std::string> notes, models, loras;
     std::string kind;              // "sd-server"
+    std::string model;             // that it has loaded; empty = not told
     bool is_comfy = false;         // it draws by workflows
     remote::ServerSettings usual;  // side, steps, guidance and strength of the family
 };

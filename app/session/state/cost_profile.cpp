@@ -47,6 +47,12 @@ void connect_to_server(MeasuredRun& run, const EditRecipe& recipe, const std::sh
     if (!recipe.server.used()) return;
     control.report("asking the image server what it is", 0, 0);
     run.server = open_view_server(recipe.server, cache, control);
+    ServerNews news{recipe.server, run.server->agreement(), run.server->facts().model, {}};
+    run.server->watch([road = run.road, news](const remote::DrawingNews& drawing) {
+        auto one = news;
+        one.drawing = drawing;
+        road->push(std::move(one));
+    });
 }
 
 void measure_peak(MeasuredRun& run, const PeakMemory& peak) {
@@ -60,7 +66,8 @@ void look(MeasuredRun& run) {
     run.job->locate();
     run.job->watch_views({});
     const auto& times = run.job->times();
-    measure_search(run.measured, *run.job, times.seconds("locate"));
+    if (!run.job->found_by_differences())  // which took the server's time
+        measure_search(run.measured, *run.job, times.seconds("locate"));
     const double tuning = times.seconds("dreambooth");
     if (tuning > 0 && times.networks("dreambooth").flop > 0) {
         const double steps = std::max(1, run.job->recipe().dreambooth.steps);

@@ -7,6 +7,7 @@
 #include "app/engine_names.h"
 #include "app/session/state/arriving_views.h"
 #include "app/session/state/estimate.h"
+#include "app/session/state/server_news.h"
 #include "engine/base/process_memory.h"
 #include "engine/pipeline/run/edit_job.h"
 
@@ -25,6 +26,7 @@ struct MeasuredRun {
     Segmenters segmenters;
     std::shared_ptr<ViewServer> server;       // that draws the views; null = the model does
     std::shared_ptr<ArrivingViews> arriving;  // is told of the views while they are looked from
+    std::shared_ptr<ServerRoad> road;         // is told of what the server draws
 };
 
 /// `model`: the one in memory, if any; `fits`: it is the one that is wanted.

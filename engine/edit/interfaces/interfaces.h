@@ -92,6 +92,7 @@ struct EditedViews {
     std::map<std::string, double> scalars = {};
     bool unfinished = false;  // what they lack is laid over the edited scene: pictures like the scene do not
                               // mean that nothing came
+    std::vector<std::string> warnings = {};  // about the pictures, each a sentence with what would help
 };
 
 /// Edits all views of a round in the picture. The scene is fitted to its results.

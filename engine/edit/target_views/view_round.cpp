@@ -213,6 +213,7 @@ EditedViews ViewRounds::draw(const std::vector<EditView>& views, const JobContro
 void ViewRounds::judge(const ViewAgreement& agreement, EditedViews& drawn) {
     drawn.scalars.merge(agreement.scalars());
     warnings_ = warnings_of(agreement, shapes_ != nullptr);
+    warnings_.insert(warnings_.end(), drawn.warnings.begin(), drawn.warnings.end());
     for (const auto& warning : warnings_) log::warning("{}", warning);
 }
 

@@ -17,6 +17,7 @@
 #include "engine/remote/api/server_kind.h"
 #include "engine/remote/api/server_url.h"
 #include "engine/remote/views/difference_source.h"
+#include "engine/remote/views/picture_source.h"
 #include "engine/remote/views/remote_view_editor.h"
 #include "engine/remote/views/view_frame.h"
 
@@ -93,6 +94,9 @@ const remote::ModelFamily& ViewServer::family() const { return drawing_->family;
 remote::Agreement ViewServer::agreement() const { return drawing_->agreement; }
 int ViewServer::side() const { return drawing_->side; }
 const remote::ServerUse& ViewServer::use() const { return source_->use(); }
+void ViewServer::watch(std::function<void(const remote::DrawingNews&)> watch) {
+    source_->watch(std::move(watch));
+}
 
 std::unique_ptr<edit::MultiViewEditor> ViewServer::editor(const edit::CheckedRequest& request,
                                                           edit::EditMode mode,

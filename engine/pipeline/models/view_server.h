@@ -1,6 +1,7 @@
 // Server of a run that draws views in place of the model.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -16,6 +17,7 @@
 namespace gse::remote {
 
 class PictureSource;
+struct DrawingNews;
 enum class Agreement;
 struct ModelFamily;
 struct OwnPicture;
@@ -46,6 +48,8 @@ public:
     /// Side of the pictures that are sent, px.
     int side() const;
     const remote::ServerUse& use() const;
+    /// Who is told of the pictures in the making (remote::DrawingWatch); empty = nobody.
+    void watch(std::function<void(const remote::DrawingNews&)> watch);
 
     /// Draws the views of a request in that mode. The server stays alive.
     std::unique_ptr<edit::MultiViewEditor> editor(const edit::CheckedRequest& request, edit::EditMode mode,

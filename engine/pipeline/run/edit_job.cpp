@@ -225,7 +225,8 @@ EditJob::EditJob(EditRecipe recipe, EditJobInput input, JobControl control)
     }
     check_recipe();
     server_searches_ = input.server && input.server_searches;
-    if (server_searches_) hints_.by_differences = searches_by_differences(recipe_, model->known_words());
+    if (server_searches_ && hints_.label.empty() && hints_.found.empty())
+        hints_.by_differences = searches_by_differences(recipe_, model->known_words());
     check_words(model.get(), input.scene.labels);
     GSE_CHECK(input.view_words.empty() || input.view_words.size() == input.cameras.size());
     GivenCameras given;
@@ -271,7 +272,8 @@ void EditJob::check_words(const neural::TextToImage* model, const LabelSet& labe
         else if (label_named(labels, source) != nullptr)
             log::info("\"{}\" is looked for by its word; --use-label takes the label of that name", source);
     }
-    const bool labelled = recipe_.job.brings_label() || !hints_.label.empty() || hints_.by_differences;
+    const bool labelled =
+        recipe_.job.brings_label() || !hints_.label.empty() || !hints_.found.empty() || hints_.by_differences;
     const auto require = recipe_.server.used() ? edit::require_findable_words : edit::require_known_words;
     require(recipe_.request, known, drawn, labelled, label_names(labels));
 }

@@ -138,6 +138,8 @@ public:
     bool knew_source() const { return !hints_.found.empty(); }
     /// Reason to check the label that a box gave (cut_text()); empty = none is known.
     const std::string& label_doubt() const { return hints_.label_doubt; }
+    /// True where the server may be asked where a thing is.
+    bool server_searches() const { return server_searches_; }
     /// True when the server's changes told where the thing is.
     bool found_by_differences() const { return located_->by_differences; }
     /// The edit's source in the result, [rows] 0 or 1; empty where nothing of it is left, or it has not run.

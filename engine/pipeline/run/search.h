@@ -26,6 +26,9 @@ struct Hints {
 /// empty = any. Throws Error (InvalidArgument) where that is asked for an edit whose change is not the thing.
 bool searches_by_differences(const CheckedRecipe& recipe, const std::vector<std::string>& known);
 
+/// Pictures that such a search asks for, and once more where it looks from nearer.
+int pictures_of_differences(const CheckedRecipe& recipe);
+
 /// Result of a search. A value: another threshold or a corrected label makes another one.
 struct Located {
     Views views;                      // where it was found from

@@ -65,6 +65,11 @@ bool searches_by_differences(const CheckedRecipe& recipe, const std::vector<std:
     return asked || !language::unknown_word(known, request.source()).empty();
 }
 
+int pictures_of_differences(const CheckedRecipe& recipe) {
+    const bool paints = remote::server_search_of(recipe.server.search) == remote::ServerSearch::Paint;
+    return std::min(recipe.request.views, DifferenceViews) * (paints ? 1 : 2);
+}
+
 Views difference_views(const RunContext& context, CheckedRecipe& recipe, const Views& views) {
     auto& request = recipe.request;
     request.views = std::min(request.views, DifferenceViews);

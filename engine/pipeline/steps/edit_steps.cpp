@@ -115,9 +115,9 @@ EditSteps steps_of_sentence(const EditRecipe& recipe, const plan::SceneWords& sc
     const auto model = model_path(recipe.job);
     result.model = model_ability(model);
     const bool any_word = recipe.server.used();  // is drawn
-    // The server finds the thing of a single step, but for what is added.
-    const bool finds = any_word && result.plan.steps.size() == 1 &&
-                       remote::server_search_of(recipe.server.search) != remote::ServerSearch::None;
+    // The server finds the thing of each step, but that of an addition.
+    const bool finds =
+        any_word && remote::server_search_of(recipe.server.search) != remote::ServerSearch::None;
     result.model.open_vocabulary = result.model.open_vocabulary || any_word;
     result.steps = known_to_model(edit::planned_steps(result.plan, scene, result.model), recipe.request,
                                   model, labels, any_word, finds);
@@ -136,14 +136,16 @@ std::vector<edit::PlannedStep> known_to_model(std::vector<edit::PlannedStep> ste
                                               bool finds_any_word) {
     const auto known = model_words(folder), drawn = generated_vocabulary(folder);
     if (known.empty()) return steps;
+    auto there = labels;  // what a step has found is known to the next
     for (auto& step : steps) try {
             if (!step.words) continue;
             const auto valid = edit::check(edit::request_of(request, *step.words));
             const bool draws = edit::method_of(valid).draws_views();
             const auto require = draws_any_word ? edit::require_findable_words : edit::require_known_words;
             const bool adds = edit::decide_mode(valid, std::nullopt).first == edit::EditMode::Add;
-            require(valid, known, draws ? drawn : std::vector<std::string>{}, finds_any_word && !adds,
-                    labels);
+            const bool finds = finds_any_word && !adds && !valid.is_rearranged();
+            require(valid, known, draws ? drawn : std::vector<std::string>{}, finds, there);
+            if (finds) there.push_back(valid.source());
         } catch (const Error& error) {
             step.words.reset();
             step.problem = {error.message(), error.hint()};
@@ -180,6 +182,7 @@ EditJobInput next_input(EditJob& job, std::vector<std::string> said, const std::
     const auto& request = job.recipe().request;
     const bool whole = request.part_of().empty() && !request.whole_scene();
     if (whole && request.source() == source) input.found = job.source_in_result();
+    input.server_searches = job.server_searches();
     return input;
 }
 

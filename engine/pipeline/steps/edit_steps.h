@@ -55,7 +55,8 @@ EditSteps steps_of_sentence(const EditRecipe& recipe, const language::plan::Scen
 
 /// Steps that name a word which the model in `folder` cannot find or draw become steps that cannot be done.
 /// `request` has the settings. What one of `labels` is named for need not be found. `draws_any_word`: only
-/// what is looked for has to be known. `finds_any_word`: and that only where something is added to it.
+/// what is looked for has to be known. `finds_any_word`: and that only where something is added to what no
+/// step before has found.
 std::vector<edit::PlannedStep> known_to_model(std::vector<edit::PlannedStep> steps,
                                               const edit::EditRequest& request,
                                               const std::filesystem::path& folder,

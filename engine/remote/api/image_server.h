@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,7 @@ struct ServerFacts {
     bool reports_progress = false;
     bool cancels = false;                 // a job of ours can be ended without hitting another's
     std::vector<std::string> notes = {};  // for people: which inputs of a workflow are set
+    bool shows_previews = false;          // pictures in the making can be seen
 };
 
 /// One picture to redraw. Pictures are [H,W,3] in [0,1], sides multiples of 64, all of one size.
@@ -41,6 +43,9 @@ struct RedrawOrder {
     double distilled_guidance = 0;  // of FLUX models; 0 = not sent
     double strength = 0.75;         // share of the noise levels that is run: 1 = from pure noise
     std::string sampler = {};       // empty = the server's choice
+    /// Is shown the picture in the making, [h,w,3] in [0,1] and at most 4 times the pixels of `picture`,
+    /// where the server has one; on the thread that waits. Empty = the server is not asked for it.
+    std::function<void(const Image&)> preview = {};
 };
 
 /// Hint of every error that says that a picture is too large for a server: a smaller one may do.

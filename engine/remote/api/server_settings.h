@@ -33,11 +33,10 @@ struct ServerSettings {
     template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         f("url", self.url,
           "Address of an image server that draws the views in place of the model here; \"none\" takes back "
-          "the one that a recipe names. Pictures of the scene, masks and the sentence go there.");
+          "the one of a recipe. Pictures of the scene, masks and the sentence go there.");
         f("kind", self.kind,
           "Protocol of the server: webui (A1111, Forge, SD.Next, koboldcpp), openai, sdcpp (sd-server), "
-          "comfy, "
-          "or auto: found out.");
+          "comfy; auto finds it out.");
         f("model", self.model, "Model that the server draws with; empty = the one that it has loaded.");
         f("workflow", self.workflow, "Workflow of ComfyUI in API format; empty = a bundled one that fits.");
         f("family", self.family,
@@ -48,26 +47,22 @@ struct ServerSettings {
           "several views in one picture. Reference: the first is shown beside the others. Warp: the first is "
           "carried over by depth.");
         f("search", self.search,
-          "Search for the thing by what the server changes: differences, paint, none, or auto: differences "
-          "for "
-          "a word that the model here does not know. Differences take two pictures of each of 8 views. Paint "
-          "takes one, for models that follow instructions: they are told to paint the thing in a flat "
-          "colour.");
+          "Search for the thing by what the server changes: differences, paint, none; auto = differences for "
+          "a word that the model here lacks. Differences take two pictures of each of 8 views. Paint takes "
+          "one: a model that follows instructions paints the thing in a flat colour.");
         f("side", self.side, "Side of the pictures that are sent, pixels; 0 = the family's.", Range{0, 2048});
         f("steps", self.steps, "Denoising steps at the server; 0 = the family's.", Range{0, 200});
         f("guidance", self.guidance, "Guidance scale at the server; 0 = the family's.", Range{0, 50});
         f("strength", self.strength, "Strength of redrawing at the server; 0 = the family's.", Range{0, 1});
         f("lora", self.lora,
-          "LoRA of the server, as NAME or NAME:weight; may be given several times. With --server, --lora "
-          "means "
+          "LoRA of the server, as NAME or NAME:weight; may be given several times. With --server, --lora is "
           "the same.");
         f("option", self.option,
           "Setting of the server's own, as NAME=VALUE; may be given several times. NAME is a field of its "
           "request (\"scheduler\", \"sample_params.flow_shift\"), or with ComfyUI an input of a node "
           "(\"KSampler.sampler_name\").");
         f("target_picture", self.target_picture,
-          "Picture of your own that a view shall look like, as VIEW=FILE; may be given several times. The "
-          "other "
+          "Picture of your own that a view shall look like, as VIEW=FILE; may be given several times. Other "
           "views follow it. --views-only writes the views to paint over.");
         f("key_view", self.key_view,
           "View that is drawn first and that others follow; empty = the one with the most to change.");

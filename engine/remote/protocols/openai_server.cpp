@@ -62,9 +62,14 @@ ServerFacts OpenAiServer::probe(const JobControl& job) {
     return facts_ = facts;
 }
 
-/// The protocol has none, but sd-server takes them.
+/// The standard has none, but sd-server and vLLM-Omni take them. The latter tells of none: it refuses those
+/// it lacks when a picture is asked for.
 void OpenAiServer::choose_loras(const JobControl& job) {
     if (wanted_loras_.empty()) return;
+    if (product_ == OpenAiProduct::Vllm) {
+        loras_ = unlisted_loras(wanted_loras_);
+        return;
+    }
     std::vector<OfferedLora> offered;
     if (product_ == OpenAiProduct::SdServer)
         if (const auto json = link_->look("/sdcpp/v1/capabilities", job))

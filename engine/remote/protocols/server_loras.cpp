@@ -58,6 +58,15 @@ std::vector<ChosenLora> chosen_loras(const std::vector<ServerLora>& wanted,
     return chosen;
 }
 
+std::vector<ChosenLora> unlisted_loras(const std::vector<ServerLora>& wanted) {
+    std::vector<ChosenLora> chosen;
+    for (const auto& [name, weight] : wanted) {
+        const bool path = name.find_first_of("/\\") != std::string::npos;
+        chosen.push_back({path ? bare_name(name) : name, path ? name : std::string(), weight});
+    }
+    return chosen;
+}
+
 std::string prompt_with_loras(const std::string& prompt, const std::vector<ChosenLora>& loras) {
     auto with = prompt;
     for (const auto& lora : loras) with += fmt::format(" <lora:{}:{}>", lora.name, lora.weight);
@@ -69,6 +78,15 @@ nlohmann::json lora_list(const std::vector<ChosenLora>& loras) {
     for (const auto& lora : loras)
         list.push_back({{"path", lora.path.empty() ? lora.name : lora.path}, {"multiplier", lora.weight}});
     return list;
+}
+
+nlohmann::json vllm_loras(const std::vector<ChosenLora>& loras) {
+    auto list = nlohmann::json::array();
+    for (const auto& lora : loras) {
+        list.push_back({{"name", lora.name}, {"scale", lora.weight}});
+        if (!lora.path.empty()) list.back()["local_path"] = lora.path;
+    }
+    return list.size() == 1 ? list.front() : list;
 }
 
 }  // namespace gse::remote

@@ -31,9 +31,14 @@ std::vector<std::string> names_of(const std::vector<OfferedLora>& loras);
 std::vector<ChosenLora> chosen_loras(const std::vector<ServerLora>& wanted,
                                      const std::vector<OfferedLora>& offered, const ServerUrl& url);
 
+/// The LoRAs that are wanted, of a server that tells of none. A name with a slash is a path at the server.
+std::vector<ChosenLora> unlisted_loras(const std::vector<ServerLora>& wanted);
+
 /// The prompt with "<lora:name:weight>" for each.
 std::string prompt_with_loras(const std::string& prompt, const std::vector<ChosenLora>& loras);
 /// sd-server's list: [{"path", "multiplier"}].
 nlohmann::json lora_list(const std::vector<ChosenLora>& loras);
+/// vLLM-Omni's object {"name", "scale"}, with "local_path" for a path; a list of them for several.
+nlohmann::json vllm_loras(const std::vector<ChosenLora>& loras);
 
 }  // namespace gse::remote

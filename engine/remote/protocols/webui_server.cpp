@@ -12,6 +12,7 @@
 #include "engine/remote/protocols/order_checks.h"
 #include "engine/remote/protocols/request_options.h"
 #include "engine/remote/protocols/server_error.h"
+#include "engine/remote/protocols/webui_progress.h"
 
 namespace gse::remote {
 namespace {
@@ -19,16 +20,11 @@ namespace {
 constexpr std::size_t ListBytes = std::size_t{4} << 20;
 constexpr std::size_t LoraBytes = std::size_t{64} << 20;  // with all that was noted when they were trained
 constexpr std::size_t EchoedPictures = 2;                 // sd-server sends picture and mask back
-constexpr int ProgressSteps = 100;
 
 Ask list_ask() {
     Ask how;
     how.most_bytes = ListBytes;
     return how;
-}
-
-nlohmann::json task_body(const std::string& task) {
-    return {{"id_task", task}, {"id_live_preview", -1}, {"live_preview", false}};
 }
 
 /// The text of the one picture of an answer.
@@ -52,6 +48,7 @@ ServerFacts WebuiServer::probe(const JobControl& job) {
     facts.references = webui_references(product_);
     facts.cancels = webui_has_tasks(product_);
     facts.reports_progress = product_ != WebuiProduct::SdServer && product_ != WebuiProduct::KoboldCpp;
+    facts.shows_previews = facts.reports_progress;
     read_models(facts, job);
     switch_model(facts, job);
     return facts_ = facts;
@@ -105,21 +102,6 @@ void WebuiServer::switch_model(ServerFacts& facts, const JobControl& job) {
     facts.model = *known;
 }
 
-void WebuiServer::report_progress(const std::string& task, const JobControl& job) {
-    if (!facts_.reports_progress || !job.progress) return;
-    const bool ours = webui_has_tasks(product_);
-    const auto json = link_->try_json(ours ? link_->requests().post("/internal/progress", task_body(task))
-                                           : link_->get("/sdapi/v1/progress?skip_current_image=true"),
-                                      job);
-    if (!json) return;
-    if (ours && value_of(*json, "queued") == true) {
-        job.report("waiting in the server's queue", 0, 0);
-        return;
-    }
-    const double share = number_of(*json, "progress", 0, 1, 0);
-    job.report("the server draws", static_cast<int>(share * ProgressSteps), ProgressSteps);
-}
-
 void WebuiServer::stop_task(const std::string& task) {
     if (!webui_has_tasks(product_)) return;
     // Interrupting stops whatever runs: only where that is ours.
@@ -130,7 +112,7 @@ void WebuiServer::stop_task(const std::string& task) {
         return std::make_unique<NextRequest>(
             NextRequest{requests.post("/sdapi/v1/interrupt", nlohmann::json::object())});
     };
-    link_->send_later(link_->requests().post("/internal/progress", task_body(task)), interrupt);
+    link_->send_later(link_->requests().post("/internal/progress", webui_task_body(task)), interrupt);
 }
 
 RedrawnPicture WebuiServer::redraw(const RedrawOrder& order, const JobControl& job) {
@@ -141,7 +123,8 @@ RedrawnPicture WebuiServer::redraw(const RedrawOrder& order, const JobControl& j
     how.repeat = Repeat::UnlessStarted;
     how.draws = true;
     how.most_bytes = picture_answer_bytes(order, EchoedPictures);
-    how.meanwhile = [&] { report_progress(task, job); };
+    WebuiProgress progress(*link_, product_, task, order);
+    if (facts_.reports_progress) how.meanwhile = [&] { progress.look(job); };
     job.report("the server draws", 0, 0);
     try {
         auto body = webui_body(order, product_, task);

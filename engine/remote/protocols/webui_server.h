@@ -22,7 +22,6 @@ public:
 private:
     void read_models(ServerFacts& facts, const JobControl& job);
     void switch_model(ServerFacts& facts, const JobControl& job);
-    void report_progress(const std::string& task, const JobControl& job);
     void stop_task(const std::string& task);
 
     std::unique_ptr<ServerLink> link_;

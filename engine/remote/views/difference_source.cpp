@@ -92,7 +92,7 @@ Image DifferenceSource::ask(const Image& picture, const std::string& prompt, std
     order.seed = server_seed(seed);
     order.strength = strength;
     suit_to_server(order, source_.facts(), edit_.drawing.family);
-    const Image drawn = source_.ask(order, {[](std::string_view, int, int) {}, job_.stop});
+    const Image drawn = source_.ask(order, {{}, job_.stop});
     if (has_side(drawn, picture.width)) return drawn;
     if (is_square(drawn)) return at_side(drawn, picture.width);
     log::info("the server sent a picture of another shape, which does not count");

@@ -130,6 +130,30 @@ Image PictureSource::ask_smaller(const RedrawOrder& order, const JobControl& job
     }
 }
 
+/// Counts it. The watch is told of the end, whatever it is.
+RedrawnPicture PictureSource::drawn(const RedrawOrder& order, const JobControl& job) {
+    const double begin = wall_seconds();
+    auto redrawn = watch_ ? shown_while_drawn(order, job) : server_.redraw(order, job);
+    ++use_.requests;
+    use_.seconds += wall_seconds() - begin;
+    use_.megapixels += static_cast<double>(redrawn.picture.pixel_count()) / 1e6;
+    if (watch_) watch_({{}, {}, use_});
+    return redrawn;
+}
+
+RedrawnPicture PictureSource::shown_while_drawn(RedrawOrder order, const JobControl& job) {
+    const auto sent = std::make_shared<const Image>(order.picture);
+    order.preview = [&](const Image& preview) {
+        watch_({sent, std::make_shared<const Image>(preview), use_});
+    };
+    try {
+        return server_.redraw(order, job);
+    } catch (...) {
+        watch_({{}, {}, use_});
+        throw;
+    }
+}
+
 Image PictureSource::ask_as_ordered(const RedrawOrder& order, const JobControl& job) {
     const auto question = question_of(order);
     if (cache_ != nullptr)
@@ -138,11 +162,7 @@ Image PictureSource::ask_as_ordered(const RedrawOrder& order, const JobControl& 
                 ++use_.cached;
                 return std::move(kept->picture);
             }
-    const double begin = wall_seconds();
-    auto redrawn = server_.redraw(order, job);
-    ++use_.requests;
-    use_.seconds += wall_seconds() - begin;
-    use_.megapixels += static_cast<double>(redrawn.picture.pixel_count()) / 1e6;
+    auto redrawn = drawn(order, job);
     redrawn.picture = with_eight_bits(std::move(redrawn.picture));
     note_model(redrawn.model);
     keep(order, redrawn);

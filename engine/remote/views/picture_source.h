@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <memory>
 #include <string>
 
 #include "engine/base/answer_cache.h"
@@ -19,6 +21,16 @@ struct ServerUse {
     int smaller_side = 0;      // px at which it is asked since its memory did not do; 0 = as ordered
 };
 
+/// Picture that is drawn now, as far as it is, or the end of one.
+struct DrawingNews {
+    std::shared_ptr<const Image> sent = {};     // [S,S,3]; null = nothing is drawn any more
+    std::shared_ptr<const Image> preview = {};  // [h,w,3], of any size
+    ServerUse use = {};                         // so far
+};
+
+/// Receiver of previews and of each picture's end, on the thread that waits for the server.
+using DrawingWatch = std::function<void(const DrawingNews&)>;
+
 /// Asks a server for pictures and keeps each as it comes, so that an edit that was cancelled asks only for
 /// what is missing. An answer is kept under kind, model, all values and pictures of its order; no address.
 /// A picture that is too large for the server is asked for once at 3/4 of its side. All later ones are asked
@@ -32,6 +44,8 @@ public:
     /// Picture [H,W,3] of 8 bits per channel. Throws as ImageServer::redraw(); for a picture that is too
     /// large at 3/4 of its side, too, the error says so.
     Image ask(const RedrawOrder& order, const JobControl& job);
+    /// Who is told of what is drawn; empty = nobody, and the server is asked for no previews.
+    void watch(DrawingWatch watch) { watch_ = std::move(watch); }
 
     const ServerFacts& facts() const { return facts_; }
     const ServerUse& use() const { return use_; }
@@ -43,6 +57,8 @@ public:
 private:
     Image ask_as_ordered(const RedrawOrder& order, const JobControl& job);
     Image ask_smaller(const RedrawOrder& order, const JobControl& job);
+    RedrawnPicture drawn(const RedrawOrder& order, const JobControl& job);
+    RedrawnPicture shown_while_drawn(RedrawOrder order, const JobControl& job);
     void keep(const RedrawOrder& order, const RedrawnPicture& redrawn);
     std::string question_of(const RedrawOrder& order) const;
     void note_model(const std::string& model);
@@ -52,6 +68,7 @@ private:
     const std::string identity_;
     AnswerCache* cache_;
     ServerUse use_;
+    DrawingWatch watch_ = {};
     std::string model_;
     std::size_t model_changes_ = 0;
 };

@@ -71,6 +71,7 @@ edit::EditedViews RemoteViewEditor::edit(const std::vector<edit::EditView>& view
                       {"drift", drawn.drift}};
     if (request.anew) add_outlines(views, drawn, edited);
     edited.rejected = std::move(drawn.rejected);
+    edited.warnings = std::move(drawn.warnings);
     edited.images = std::move(drawn.pictures);
     return edited;
 }

@@ -10,8 +10,12 @@
 
 #include "engine/base/error.h"
 #include "engine/base/log.h"
+#include "engine/base/printable.h"
 #include "engine/base/random.h"
+#include "engine/edit/request/scales.h"
+#include "engine/localize/clusters.h"
 #include "engine/remote/api/server_settings.h"
+#include "engine/remote/views/change_map.h"
 #include "engine/remote/views/colour_match.h"
 #include "engine/remote/views/depth_warp.h"
 #include "engine/remote/views/view_sheet.h"
@@ -27,6 +31,12 @@ constexpr double SeamStrength = 0.35;        // of the pass over what was carrie
 constexpr double LeastHole = 0.01;           // of a mask: less is not asked for by itself
 constexpr double FrontWeight = 0.5;          // by which a view from behind counts less as the key
 
+// Own pictures (share_outside()). The rim is as wide as blurring and feathering reach.
+constexpr double OwnBlurPx = 2, OwnRimPx = 6;  // of a picture of ReferenceSide
+constexpr float OwnChange = 0.1f;              // of a channel: less is the trace of a compressed file
+constexpr double LeastOutside = 0.002;         // of the picture
+constexpr double ToldShare = 0.05;             // of what is changed: from here on it is said
+
 Mask difference(const Mask& mask, const Mask& without) {
     Mask result = mask;
     for (std::size_t i = 0; i < result.data.size(); ++i)
@@ -38,6 +48,20 @@ Mask difference(const Mask& mask, const Mask& without) {
 
 bool is_named(const edit::EditView& view, const std::string& name) {
     return !name.empty() && (view.view.name == name || file_name_of_view(view.view.name) == name);
+}
+
+double share_outside(const edit::EditView& view, const Image& own) {
+    const double scale = view.mask.width / edit::ReferenceSide;
+    const auto change = change_map(view.rendered, at_side(own, view.mask.width), OwnBlurPx * scale);
+    const auto may = localize::dilate(view.mask, OwnRimPx * scale);
+    std::size_t all = 0, outside = 0;
+    for (std::size_t i = 0; i < change.data.size(); ++i) {
+        if (change.data[i] <= OwnChange) continue;
+        ++all;
+        if (may.data[i] == 0) ++outside;
+    }
+    if (static_cast<double>(outside) < LeastOutside * static_cast<double>(change.data.size())) return 0;
+    return static_cast<double>(outside) / static_cast<double>(all);
 }
 
 RoundDrawing::RoundDrawing(PictureSource& source, const RemoteDrawing& drawing,
@@ -59,6 +83,13 @@ void RoundDrawing::take_own_pictures() {
             CheckedPicture checked;
             checked.picture = framed(own.picture, frames_[v]);
             take(v, std::move(checked));
+            const double outside = request_.round == 0 ? share_outside(views_[v], own.picture) : 0;
+            if (outside < ToldShare) continue;
+            round_.warnings.push_back(
+                fmt::format("{:.0f} % of what your picture of {} changes lies outside of what may change, "
+                            "and is left out: "
+                            "widen the label, or let its masks grow (--dilate-px)",
+                            100 * outside, printable(views_[v].view.name)));
         }
 }
 
@@ -256,9 +287,8 @@ Image RoundDrawing::ask_server(RedrawOrder order) {
               now = static_cast<int>(std::min(done_, views_.size() - 1));
     const auto stage = fmt::format("view {} of {} at the server", now + 1, total);
     job_.report(stage, now, total);
-    // Steps inside a view are not shown: few servers tell them.
-    const JobControl control{[](std::string_view, int, int) {}, job_.stop};
-    return source_.ask(order, control);
+    return source_.ask(order,
+                       {{}, job_.stop});  // steps inside a view are not asked for: few servers tell them
 }
 
 void RoundDrawing::take(std::size_t view, CheckedPicture checked) {

@@ -38,11 +38,16 @@ struct KeyPicture {
 
 /// Outcome of a round.
 struct DrawnRound {
-    std::vector<Image> pictures;         // per view [H,W,3]: redrawn inside the mask, else as rendered
-    std::vector<std::uint8_t> rejected;  // per view: 1 = nothing of use came
-    std::vector<std::string> notes;      // sentences about what came, each once
-    double drift = 0;                    // mean over the views, share of the picture's side
+    std::vector<Image> pictures;             // per view [H,W,3]: redrawn inside the mask, else as rendered
+    std::vector<std::uint8_t> rejected;      // per view: 1 = nothing of use came
+    std::vector<std::string> notes;          // sentences about what came, each once
+    double drift = 0;                        // mean over the views, share of the picture's side
+    std::vector<std::string> warnings = {};  // about pictures of the artist's own
 };
+
+/// Share of what a picture [S,S,3] of a view's own changes that lies where nothing may change, in [0,1]:
+/// beside the mask and a narrow rim. 0 where that is next to nothing.
+double share_outside(const edit::EditView& view, const Image& own);
 
 /// True where a name that an artist gave means this view.
 bool is_named(const edit::EditView& view, const std::string& name);

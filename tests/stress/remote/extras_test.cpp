@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "engine/base/json.h"
 #include "engine/remote/protocols/connect.h"
 #include "engine/remote/views/picture_source.h"
 #include "engine/remote/views/view_frame.h"
@@ -73,6 +74,28 @@ DOCTEST_TEST_CASE("options reach the requests, and wrong ones are refused before
     DOCTEST_CHECK(comfy.asked("/upload/image").empty());
 }
 
+DOCTEST_TEST_CASE("vLLM-Omni is told LoRAs by name or path, and says itself which it lacks") {
+    if (!can_stand_in()) return;
+    auto& vllm = shared_stand_in("vllm");
+    auto address = address_of(vllm, ServerKind::OpenAi);
+    const auto sent = [&](std::vector<ServerLora> loras) {
+        vllm.reset();
+        address.loras = std::move(loras);
+        DOCTEST_CHECK(connect(address, {})->redraw(small_order(), {}).picture.width == 64);
+        const auto asked = vllm.asked("/edits").at(0);
+        for (const auto& field : asked["fields"])
+            if (field[0] == "lora") return parse_json(field[2].get<std::string>(), "the LoRA");
+        return nlohmann::json();
+    };
+    DOCTEST_CHECK(sent({}).is_null());
+    DOCTEST_CHECK(sent({{"bronze", 0.5}}) == nlohmann::json{{"name", "bronze"}, {"scale", 0.5}});
+    const nlohmann::json path{{"name", "brass"}, {"local_path", "/models/brass.safetensors"}, {"scale", 1.0}};
+    DOCTEST_CHECK(sent({{"/models/brass.safetensors", 1}}) == path);
+    DOCTEST_CHECK(sent({{"bronze", 0.5}, {"/models/brass.safetensors", 1}}).size() == 2);
+    address.loras = {{"brass", 1}};
+    DOCTEST_CHECK(caught([&] { connect(address, {})->redraw(small_order(), {}); }).says("not registered"));
+}
+
 DOCTEST_TEST_CASE("LoRAs are told as each server takes them, and those it lacks are refused with its list") {
     if (!can_stand_in()) return;
     struct Told {
@@ -82,14 +105,14 @@ DOCTEST_TEST_CASE("LoRAs are told as each server takes them, and those it lacks 
     for (const auto& [flavour, kind] :
          {Told{"forge", ServerKind::Webui}, Told{"kcpp", ServerKind::Webui},
           Told{"sdserver", ServerKind::SdCpp}, Told{"sdserver", ServerKind::OpenAi},
-          Told{"comfy", ServerKind::Comfy}, Told{"vllm", ServerKind::OpenAi}}) {
+          Told{"comfy", ServerKind::Comfy}, Told{"local", ServerKind::OpenAi}}) {
         DOCTEST_CAPTURE(flavour);
         auto& stand_in = shared_stand_in(flavour);
         auto address = address_of(stand_in, kind);
         address.loras = {{"brass", 1}};
         const auto refused = caught([&] { connect(address, {}); });
         DOCTEST_CHECK(refused.says("has no LoRA \"brass\""));
-        const bool has_any = std::string(flavour) != "vllm";
+        const bool has_any = std::string(flavour) != "local";
         DOCTEST_CHECK((refused.hint.find("it has: bronze") != std::string::npos) == has_any);
         if (!has_any) continue;
         address.loras = {{"bronze", 0.5}};

@@ -3,6 +3,7 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/base/file.h"
@@ -27,6 +28,15 @@ bool can_ask() {
 void choose(Session& session, const std::string& url) {
     gse::remote::ServerSettings settings;
     settings.url = url;
+    session.app.run(command::SetServer{settings});
+}
+
+/// Small pictures, which the stand-in draws quickly.
+void choose_small(Session& session, const std::string& url) {
+    choose(session, url);
+    auto settings = session.app.model().server.choice;
+    settings.url = url;
+    settings.side = 128;
     session.app.run(command::SetServer{settings});
 }
 
@@ -71,10 +81,34 @@ void ask_for_iridescence(Session& session) {
 void ask_server(Session& session, const remote::StandIn& server) {
     session.open_bear();
     ask_for_iridescence(session);
-    choose(session, server.url());
+    choose_small(session, server.url());
     session.app.run(command::UseServer{true});
     session.app.run(command::Edit{});
 }
+
+/// A window that edits with a stand-in switched on; the question about it waits.
+struct Asked {
+    Place place;
+    remote::StandIn server;
+    Session session;
+    const ui::ViewModel& model = session.app.model();
+
+    explicit Asked(const std::string& flavour = "sdserver", const remote::Knobs& knobs = {})
+        : server(flavour) {
+        server.set(knobs);
+        ask_server(session, server);
+    }
+    void agree() { session.app.run(command::Answer{0}); }
+    /// The edit with another seed.
+    void edit_again() {
+        auto request = model.request;
+        request.seed += 1;
+        session.app.run(command::SetRequest{request});
+        session.app.run(command::Edit{});
+    }
+};
+
+bool can_draw() { return can_ask() && networks(); }
 
 }  // namespace
 
@@ -181,11 +215,10 @@ DOCTEST_TEST_CASE("a password goes into the file of passwords alone") {
 }
 
 DOCTEST_TEST_CASE("nothing goes to a server before the artist has agreed, and a No sends nothing") {
-    if (!can_ask() || !networks()) return;
-    const Place place;
-    remote::StandIn server("sdserver");
-    Session session;
-    ask_server(session, server);
+    if (!can_draw()) return;
+    Asked asked;
+    auto& session = asked.session;
+    auto& server = asked.server;
     DOCTEST_CHECK_FALSE(session.app.model().job.running);
     DOCTEST_CHECK(question(session).starts_with("4 pictures"));
     DOCTEST_CHECK(question(session).find("a golden iridescent bear") != std::string::npos);
@@ -220,12 +253,11 @@ DOCTEST_TEST_CASE("an edit by a server is counted in pictures; their time is not
 
 DOCTEST_TEST_CASE(
     "after the consent the server draws the edit, is not asked about again, and can be stopped") {
-    if (!can_ask() || !networks()) return;
-    const Place place;
-    remote::StandIn server("sdserver");
-    Session session;
-    ask_server(session, server);
-    session.app.run(command::Answer{0});
+    if (!can_draw()) return;
+    Asked asked;
+    auto& session = asked.session;
+    auto& server = asked.server;
+    asked.agree();
     bool told = false;
     DOCTEST_REQUIRE(session.until([&] {
         told |= session.app.model().job.stage.find("view 3 of 4") != std::string::npos;
@@ -241,12 +273,9 @@ DOCTEST_TEST_CASE(
     DOCTEST_CHECK(estimate.seconds < 0);  // the model here draws nothing
     session.app.run(command::DiscardResult{});
     server.set({{"draw_s", "5"}});
-    auto request = session.app.model().request;
-    request.seed += 1;
-    session.app.run(command::SetRequest{request});
-    const auto asked = questions(session);
-    session.app.run(command::Edit{});
-    DOCTEST_CHECK(questions(session) == asked);
+    const auto before = questions(session);
+    asked.edit_again();
+    DOCTEST_CHECK(questions(session) == before);
     DOCTEST_REQUIRE(session.until(
         [&] { return session.app.model().job.stage.find("at the server") != std::string::npos; }));
     session.app.run(command::Cancel{});
@@ -257,36 +286,39 @@ DOCTEST_TEST_CASE(
 
 DOCTEST_TEST_CASE(
     "a picture of the artist's own is taken for its view, which the server does not draw then") {
-    if (!can_ask() || !networks()) return;
-    const Place place;
-    remote::StandIn server("sdserver");
-    Session session;
-    ask_server(session, server);
-    session.app.run(command::Answer{0});
+    if (!can_draw()) return;
+    Asked asked;
+    auto& session = asked.session;
+    auto& server = asked.server;
+    const auto& model = asked.model;
+    asked.agree();
     DOCTEST_REQUIRE(session.idle());
-    const auto& model = session.app.model();
     DOCTEST_REQUIRE(model.target_rounds.size() == 1);
     const auto target = model.target_rounds.back().targets.at(1);
     session.app.run(command::DiscardResult{});
     auto choice = model.server.choice;
-    choice.target_picture = {target.name + "=" + (place.folder / "own.png").string()};
+    choice.target_picture = {target.name + "=" + (asked.place.folder / "own.png").string()};
     session.app.run(command::SetServer{choice});  // there is no such file
     DOCTEST_CHECK(model.server.choice.target_picture.empty());
-    write_png(place.folder / "own.png", *target.after);
+    Image own = *target.after;
+    for (int y = 0; y < own.height / 4; ++y)
+        for (int x = 0; x < own.width / 4; ++x) own.at(x, y, 0) = own.at(x, y, 2) = 1, own.at(x, y, 1) = 0;
+    write_png(asked.place.folder / "own.png", own);
     session.app.run(command::SetServer{choice});
     DOCTEST_CHECK(model.toasts.back().text.find("own.png") != std::string::npos);
-    auto request = model.request;
-    request.seed += 1;
-    session.app.run(command::SetRequest{request});
     const auto before = server.asked("/img_gen").size();
-    session.app.run(command::Edit{});
+    asked.edit_again();
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK(model.job.error == "");
     // The other three are carried over by depth: filled, then drawn once more.
     DOCTEST_CHECK(server.asked("/img_gen").size() == before + 6);
     const auto& followed = model.target_rounds.back().targets.at(1);
     DOCTEST_CHECK(followed.name == target.name);
-    DOCTEST_CHECK(mean_difference(*followed.after, *target.after) < 0.02);
+    DOCTEST_CHECK(mean_difference(*followed.after, *target.after) < 0.02);  // without the corner
+    const auto& warnings = model.target_rounds.back().warnings;
+    DOCTEST_CHECK(std::any_of(warnings.begin(), warnings.end(), [&](const auto& warning) {
+        return warning.find("your picture of " + target.name) != std::string::npos;
+    }));
     DOCTEST_REQUIRE(session.until([&] { return model.estimate.server_pictures == 6; }));
     DOCTEST_CHECK(model.estimate.server_seconds > 0);
     session.app.run(command::DiscardResult{});
@@ -294,6 +326,164 @@ DOCTEST_TEST_CASE(
     session.app.run(command::SetServer{choice});
     DOCTEST_CHECK(model.server.choice.target_picture.empty());
     session.app.shut_down();
+}
+
+DOCTEST_TEST_CASE("a picture in the making is shown beside what was sent, and goes when it has come") {
+    if (!can_draw()) return;
+    Asked asked("forge", {{"draw_s", "1.6"}, {"previews", "1"}});
+    auto& session = asked.session;
+    auto& server = asked.server;
+    const auto& model = asked.model;
+    asked.agree();
+    std::size_t shown = 0, hidden = 0, measured = 0;
+    std::shared_ptr<const Image> last;
+    DOCTEST_REQUIRE(session.until([&] {
+        const auto& [sent, preview] = model.drawing;
+        DOCTEST_CHECK((sent == nullptr) == (preview == nullptr));
+        if (preview && preview != last) ++shown;
+        if (last && !preview) ++hidden;
+        last = preview;
+        if (sent) DOCTEST_CHECK(sent->width == 8 * preview->width);
+        if (model.job.running && model.estimate.server_seconds > 0) ++measured;
+        return !model.job.running;
+    }));
+    DOCTEST_CHECK(model.job.error == "");
+    DOCTEST_CHECK(shown == 4);
+    DOCTEST_CHECK(hidden == 4);
+    DOCTEST_CHECK(model.drawing.preview == nullptr);
+    DOCTEST_CHECK(measured > 0);  // of the pictures that had come by then
+    session.app.run(command::DiscardResult{});
+    server.set({{"draw_s", "20"}});
+    asked.edit_again();
+    DOCTEST_REQUIRE(session.until([&] { return model.drawing.preview != nullptr; }));
+    session.app.run(command::Cancel{});
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_CHECK(model.drawing.preview == nullptr);
+}
+
+DOCTEST_TEST_CASE(
+    "the time that a server's pictures take is known again after a restart, until it is forgotten") {
+    if (!can_draw()) return;
+    const Place place;
+    remote::StandIn server("sdserver");
+    {
+        Session session;
+        ask_server(session, server);
+        session.app.run(command::Answer{0});
+        DOCTEST_REQUIRE(session.idle());
+        DOCTEST_REQUIRE(session.until([&] { return session.app.model().estimate.server_seconds > 0; }));
+        session.app.run(command::DiscardResult{});
+        session.app.shut_down();
+    }
+    const auto asked = server.log().size();
+    Session again;
+    again.open_bear();
+    ask_for_iridescence(again);
+    again.app.run(command::UseServer{true});
+    const auto& estimate = again.app.model().estimate;
+    DOCTEST_REQUIRE(again.until([&] { return estimate.server_pictures == 4; }));
+    DOCTEST_CHECK(estimate.server_seconds > 0);
+    auto choice = again.app.model().server.choice;
+    choice.side = 256;  // another size takes another time
+    again.app.run(command::SetServer{choice});
+    DOCTEST_REQUIRE(again.until([&] { return estimate.server_seconds < 0; }));
+    choice.side = 128;
+    again.app.run(command::SetServer{choice});
+    DOCTEST_REQUIRE(again.until([&] { return estimate.server_seconds > 0; }));
+    DOCTEST_CHECK(server.log().size() == asked);
+    server.set({{"model", "another"}});  // has taken no time here yet
+    again.app.run(command::TestServer{});
+    DOCTEST_REQUIRE(again.idle());
+    DOCTEST_REQUIRE(again.until([&] { return estimate.server_seconds < 0; }));
+    again.app.run(command::ForgetServer{});
+    choose(again, server.url());
+    again.app.run(command::UseServer{true});
+    DOCTEST_REQUIRE(
+        again.until([&] { return estimate.server_pictures == 4 && estimate.server_seconds < 0; }));
+    again.app.shut_down();
+}
+
+DOCTEST_TEST_CASE("a search by the model here has the server draw nothing, not even for the estimate") {
+    if (!can_draw()) return;
+    Asked asked;
+    asked.session.app.run(command::Answer{1});
+    asked.session.app.run(command::Locate{});
+    asked.agree();
+    DOCTEST_REQUIRE(asked.session.idle());
+    DOCTEST_CHECK(asked.model.job.error == "");
+    DOCTEST_CHECK(asked.model.labelled > 0);
+    DOCTEST_CHECK(asked.server.asked("/img_gen").empty());
+}
+
+DOCTEST_TEST_CASE("a thing without a word is found by the server, after a click that says what goes where") {
+    if (!can_draw()) return;
+    const Place place;
+    remote::StandIn server("sdserver");
+    server.set({{"model", "flux1-kontext-dev"}, {"edits", "red"}});
+    Session session;
+    const auto& model = session.app.model();
+    session.open_bear();
+    auto request = model.request;
+    request.source = "gizmo", request.prompt = "a golden gizmo", request.target = "golden";
+    request.quality = "draft", request.method = "auto", request.views = 12;
+    session.app.run(command::SetRequest{request});
+    choose_small(session, server.url());
+    session.app.update(session.preview);
+    DOCTEST_CHECK(model.server_search.empty());
+    session.app.run(command::Locate{false, true});  // nothing was offered
+    DOCTEST_CHECK_FALSE(model.job.running);
+    session.app.run(command::UseServer{true});
+    DOCTEST_REQUIRE(session.until([&] { return !model.server_search.empty(); }));
+    for (const std::string words :
+         {"\"gizmo\"", "16 pictures", "\"a golden gizmo\"", "127.0.0.1", "this machine"})
+        DOCTEST_CHECK(model.server_search.find(words) != std::string::npos);
+    DOCTEST_CHECK(server.log().empty());
+    session.app.run(command::Locate{false, true});
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_CHECK(model.job.error == "");
+    DOCTEST_CHECK(questions(session) == 0);
+    const auto asked = server.asked("/img_gen");
+    DOCTEST_CHECK((asked.size() == 16 || asked.size() == 32));
+    for (const auto& one : asked) DOCTEST_CHECK_FALSE(one["json"].contains("mask_image"));
+    DOCTEST_CHECK(model.attention.size() == 8);
+    DOCTEST_CHECK(model.attention_mode.find("the server changed") != std::string::npos);
+    DOCTEST_REQUIRE(model.document->state().labels.size() == 1);
+    DOCTEST_CHECK(model.document->state().labels[0].name == "gizmo");
+    DOCTEST_CHECK(model.labelled > 100);
+    DOCTEST_REQUIRE(session.until([&] { return model.server_search.empty(); }));  // the label says it now
+    session.app.run(command::Edit{});
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_CHECK(model.job.error == "");
+    DOCTEST_REQUIRE(model.result_waiting);
+    DOCTEST_CHECK(model.result_changed_outside == 0);
+    DOCTEST_CHECK(server.asked("/img_gen").size() > asked.size());
+    session.app.run(command::DiscardResult{});
+    session.app.shut_down();
+}
+
+DOCTEST_TEST_CASE(
+    "no server is offered for a known word, an addition, a label, or a public address in silence") {
+    if (!can_ask()) return;
+    const Place place;
+    Session session;
+    const auto& model = session.app.model();
+    session.open_bear();
+    choose(session, "http://203.0.113.9:7860");
+    session.app.run(command::UseServer{true});
+    const auto offer = [&](const std::string& source, const std::string& prompt, const std::string& target) {
+        auto request = model.request;
+        request.source = source, request.prompt = prompt, request.target = target, request.method = "auto";
+        session.app.run(command::SetRequest{request});
+        session.app.update(session.preview);
+        return model.server_search;
+    };
+    DOCTEST_CHECK(offer("gizmo", "a golden gizmo", "golden").find("public address") != std::string::npos);
+    DOCTEST_CHECK(offer("bear", "a golden bear", "golden").empty());
+    DOCTEST_CHECK(offer("gizmo", "a gizmo wearing a red hat", "red hat").empty());
+    DOCTEST_CHECK_FALSE(offer("gizmo", "a golden gizmo", "golden").empty());
+    session.label_the_middle();
+    session.app.update(session.preview);
+    DOCTEST_CHECK(model.server_search.empty());
 }
 
 DOCTEST_TEST_CASE("a recipe that names a server is told of, and changes neither address nor switch") {

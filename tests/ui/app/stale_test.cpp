@@ -55,12 +55,13 @@ void show(Shown& shown, const ui::ViewportPart& part) {
 
 void show(Shown& shown, const ui::SearchPart& part) {
     const auto& [request, said, made, words_read, read_target, reach, by_hand, estimate, attention, word,
-                 mode, threshold, arriving, voting, corrected, search] = part;
+                 mode, threshold, arriving, voting, corrected, search, server_search] = part;
     static_cast<void>(estimate);  // of this machine
     shown["search.request"] = text_of(request);
     shown["search.words"] = fmt::format("{} {} {} {}", said.size(), made.size(), words_read, read_target);
     shown["search.scope"] =
         fmt::format("{} {} {} {} {}", reach.label, reach.splats, reach.by_label, reach.corrected, by_hand);
+    shown["search.server"] = server_search;
     shown["search.views"] = fmt::format("{}", attention.size());
     shown["search.what"] = fmt::format("{} {} {}", word, mode, threshold);
     shown["search.state"] = fmt::format("{} {} {}", arriving, voting, corrected);
@@ -128,6 +129,7 @@ Shown shown_by(Session& session) {
              static_cast<const ui::ExportPart&>(model), static_cast<const ui::NoticePart&>(model),
              static_cast<const ui::WindowPart&>(model));
     for (const auto& text : model.server.choice.target_picture) shown["server.pictures"] += text;
+    shown["server.drawing"] = fmt::format("{}", model.drawing.preview != nullptr);
     shown["models.front"] = model.model_settings.front;  // the rest is of the program
     return shown;
 }

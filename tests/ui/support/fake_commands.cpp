@@ -62,6 +62,7 @@ template <class C> std::string fields_of(const C& wanted) {
             return fmt::format(" {:.3f}{}", one.value, end_of(one.drag_ends));
         },
         [&](const command::LeaveOutView& one) { return two(one.view, one.out ? "out" : "back"); },
+        [&](const command::Locate& one) { return std::string(one.by_server ? " by server" : ""); },
         [&](const command::SetScope& one) { return text(one.by_label ? "label" : "search"); },
         [&](const command::RepeatEdit& one) { return text(one.id); }};
     const Overloaded of_labels{

@@ -129,6 +129,7 @@ DOCTEST_TEST_CASE("LoRAs of the server are picked from its list, weighed and tak
                              "set_server http://127.0.0.1:1234  auto auto 0 0 0 0 [clay:1]"));
     panel.server().choice.lora = {"clay:1"};
     panel.frame(3);
+    DOCTEST_CHECK(panel.rect("models.server.loras").y < panel.rect("models.server.lora.0.weight").y);
     panel.click("models.server.lora");
     panel.frame(2);
     DOCTEST_CHECK(panel.find("models.server.lora.clay") == nullptr);  // it is used already
@@ -137,6 +138,44 @@ DOCTEST_TEST_CASE("LoRAs of the server are picked from its list, weighed and tak
     other.frame(3);
     DOCTEST_CHECK(other.asks("models.server.lora.0.remove",
                              "set_server http://127.0.0.1:1234  auto auto 0 0 0 0 [] []"));
+}
+
+DOCTEST_TEST_CASE("a picture in the making stands beside what was sent, and leaves no gap when it has come") {
+    Harness harness({1600, 1000, 1, Situation::Editing});
+    harness.shell.show(ui::PanelId::Progress);
+    harness.frame(3);
+    DOCTEST_CHECK(harness.find("progress.preview") == nullptr);
+    const float before = harness.rect("progress.snapshot").y;
+    auto& drawing = harness.application.model().drawing;
+    drawing.sent = std::make_shared<const Image>(64, 64, 3, 0.4f);
+    drawing.preview = std::make_shared<const Image>(8, 8, 3, 0.8f);
+    harness.frame(3);
+    DOCTEST_REQUIRE(harness.find("progress.preview") != nullptr);
+    DOCTEST_CHECK(harness.rect("progress.sent").x < harness.rect("progress.preview").x);
+    DOCTEST_CHECK(harness.rect("progress.sent").y == harness.rect("progress.preview").y);
+    DOCTEST_CHECK(harness.rect("progress.snapshot").y > before);
+    drawing = {};
+    harness.frame(3);
+    DOCTEST_CHECK(harness.find("progress.preview") == nullptr);
+    DOCTEST_CHECK(harness.rect("progress.snapshot").y == before);
+}
+
+DOCTEST_TEST_CASE("a source without a word is looked for by the server where that is offered") {
+    Harness harness({1600, 1400, 1, Situation::Scene, false});
+    harness.shell.show(ui::PanelId::Prompt);
+    auto& model = harness.application.model();
+    model.known_words = {"bear", "golden", "hat", "red"};
+    model.words_known = true;
+    model.request.source = "gizmo", model.request.prompt = "a golden gizmo", model.request.target = "golden";
+    harness.frame(3);
+    DOCTEST_CHECK(harness.find("prompt.source.by_hand") != nullptr);
+    DOCTEST_CHECK(harness.find("prompt.source.by_server") == nullptr);
+    model.server_search = "16 pictures of your scene go to 127.0.0.1:1234.";
+    harness.frame(3);
+    DOCTEST_CHECK(harness.asks("prompt.source.by_server", "locate by server"));
+    model.job.running = true;
+    harness.frame(3);
+    DOCTEST_CHECK_FALSE(harness.rect("prompt.source.by_server").enabled);
 }
 
 DOCTEST_TEST_CASE("options of the server are added one by one, and what is none is not") {

@@ -14,8 +14,8 @@ SUPPORT = pathlib.Path(__file__).resolve().parents[2] / "support"
 class StandIn:
     """The stand-in server in a process of its own."""
 
-    def __init__(self):
-        program = [sys.executable, SUPPORT / "stand_in_server.py", "--flavour", "sdserver"]
+    def __init__(self, flavour="sdserver"):
+        program = [sys.executable, SUPPORT / "stand_in_server.py", "--flavour", flavour]
         self.process = subprocess.Popen(program, stdout=subprocess.PIPE, text=True)
         self.port = int(self.process.stdout.readline().split()[1])
 
@@ -34,8 +34,8 @@ class StandIn:
 
 @unittest.skipUnless((SUPPORT / "stand_in_server.py").exists(), "[skip] the stand-in server is not there")
 class Server(WindowTest):
-    def start(self):
-        server = StandIn()
+    def start(self, flavour="sdserver"):
+        server = StandIn(flavour)
         self.addCleanup(server.close)
         window = self.open(height=1400)
         window.click("start.sample")
@@ -44,9 +44,9 @@ class Server(WindowTest):
         window.write("prompt.sentence", "a golden bear")
         return window, server
 
-    def tested(self):
+    def tested(self, flavour="sdserver"):
         """A window whose server was tested."""
-        window, server = self.start()
+        window, server = self.start(flavour)
         window.click("tab.Models")
         window.scroll_to("models.server.url", "panel.Models")
         window.write("models.server.url", f"127.0.0.1:{server.port}")
@@ -92,6 +92,49 @@ class Server(WindowTest):
         window.idle(400)
         self.assertGreaterEqual(len(server.drawings()), 8)
         self.assertTrue(all("bronze" in json.dumps(entry["json"]) for entry in server.drawings()))
+
+    def test_a_picture_in_the_making_is_shown_beside_what_was_sent(self):
+        window, server = self.tested("forge")
+        server.ask("set?draw_s=4&previews=1")
+        window.press("models.server.on", lambda s: s["server"]["on"], "it is not on")
+        window.click("tab.Prompt")
+        window.press("prompt.edit", lambda s: s["question"], "nobody asks before pictures go")
+        window.press("question.0", lambda s: s["job"]["running"], "the edit did not start")
+        window.click("tab.Progress")
+        window.wait(lambda s: s["job"]["stage"].startswith("view 2 "), "no view came", 300)
+        window.wait_widget("progress.preview")
+        window.picture("server_06_preview")
+        shown = window.widgets()
+        self.assertLess(shown["progress.sent"]["x"], shown["progress.preview"]["x"])
+        window.cancel_job()
+        window.idle(20)
+        self.assertNotIn("progress.preview", window.widgets())
+
+    def test_a_thing_without_a_word_is_found_by_the_server_after_a_click(self):
+        server = StandIn()
+        self.addCleanup(server.close)
+        server.ask("set?model=flux1-kontext-dev&edits=red")
+        config = self.folder / "config"
+        config.mkdir()
+        settings = {"url": f"http://127.0.0.1:{server.port}", "side": 128}   # which it draws quickly
+        (config / "settings.json").write_text(json.dumps({"server": settings}))
+        window = self.open(height=1400)
+        window.click("start.sample")
+        window.wait(lambda s: s["splats"] > 0 and not s["busy"], "the sample did not open")
+        window.click("tab.Models")
+        window.scroll_to("models.server.on", "panel.Models")
+        window.press("models.server.on", lambda s: s["server"]["on"], "it is not on")
+        window.click("tab.Prompt")
+        window.write("prompt.source", "gizmo")
+        window.write("prompt.sentence", "a golden gizmo")
+        window.wait_widget("prompt.source.by_server", 20)
+        window.picture("server_07_offer")
+        self.assertEqual(server.drawings(), [])
+        window.press("prompt.source.by_server", lambda s: s["job"]["running"], "the search did not start")
+        window.idle(400)
+        window.picture("server_08_found")
+        self.assertIn(len(server.drawings()), (16, 32))
+        self.assertGreater(window.state()["labelled"], 0)
 
     def test_an_edit_at_the_server_is_stopped(self):
         window, server = self.start()

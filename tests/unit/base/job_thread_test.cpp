@@ -54,6 +54,34 @@ DOCTEST_TEST_CASE("a job reports, ends and tells the main thread") {
     DOCTEST_CHECK(status.outcome.substr(0, 4) == "done");
 }
 
+DOCTEST_TEST_CASE("parts of a stage that its name counts tell together how long the rest takes") {
+    MainQueue queue;
+    JobThread jobs(queue);
+    std::atomic<int> at{0};
+    std::atomic<bool> go_on{false};
+    DOCTEST_REQUIRE(jobs.start({"views",
+                                [&](const JobControl& job) {
+                                    for (const char* stage : {"view 1 of 8", "view 2 of 8", "view 3 of 8"}) {
+                                        job.report(stage, at, 8);
+                                        std::this_thread::sleep_for(5ms);
+                                        ++at;
+                                    }
+                                    while (!go_on) std::this_thread::sleep_for(1ms);
+                                    job.report("fit", 3, 100);
+                                    ++at;
+                                    while (go_on) std::this_thread::sleep_for(1ms);
+                                },
+                                {}}));
+    DOCTEST_REQUIRE(wait_for(queue, [&] { return at == 3; }));
+    DOCTEST_CHECK(jobs.status().stage == "view 3 of 8");
+    DOCTEST_CHECK(jobs.status().eta_seconds > 0);
+    go_on = true;
+    DOCTEST_REQUIRE(wait_for(queue, [&] { return at == 4; }));
+    DOCTEST_CHECK(jobs.status().eta_seconds < 0);  // another stage
+    go_on = false;
+    DOCTEST_REQUIRE(wait_for(queue, [&] { return !jobs.running(); }));
+}
+
 DOCTEST_TEST_CASE("no job begins before the main thread has what the last one left") {
     MainQueue queue;
     JobThread jobs(queue);

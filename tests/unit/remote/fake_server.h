@@ -44,13 +44,18 @@ public:
     /// Draws in place of the usual recolouring; `call` counts from 0.
     std::function<Image(const remote::RedrawOrder& order, std::size_t call)> draws = {};
     std::size_t fails_from = ~std::size_t{0};  // call from which on nobody answers
+    std::size_t lost_at = ~std::size_t{0};     // call that ends when all its previews were shown
     std::string model = {};                    // that it says has drawn
+    std::size_t previews = 0;                  // pictures in the making that it shows for each, if asked
 
     remote::ServerFacts probe(const JobControl&) override { return facts; }
     remote::RedrawnPicture redraw(const remote::RedrawOrder& order, const JobControl& job) override {
         if (job.stop_requested()) throw Error(ErrorCode::Cancelled, "stopped");
         const std::size_t call = orders.size();
         if (call >= fails_from) throw Error(ErrorCode::Foreign, "nobody answers");
+        for (std::size_t i = 0; i < previews && order.preview; ++i)
+            order.preview(Image(8, 8, 3, 0.1f * static_cast<float>(i)));
+        if (call == lost_at) throw Error(ErrorCode::Foreign, "the connection ended");
         orders.push_back(order);
         if (draws) return {draws(order, call), model};
         return {where(order.mask, in_colour(order.picture, colour), order.picture), model};

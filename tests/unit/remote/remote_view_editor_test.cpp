@@ -1,8 +1,10 @@
 // Rounds of views through a server in this process.
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <map>
 #include <stop_token>
+#include <string>
 
 #include "engine/base/content_hash.h"
 #include "engine/remote/views/depth_warp.h"
@@ -304,6 +306,40 @@ DOCTEST_TEST_CASE(
             DOCTEST_CHECK(change_inside(cut_cell(setup.server.orders[0].picture, 0),
                                         at_side(blue, cell_side(Side)), disc(cell_side(Side), 10)) < 0.05);
     }
+}
+
+DOCTEST_TEST_CASE(
+    "own pictures: what is painted beside the mask is left out, and that is said with its share") {
+    const auto views = views_of_wall(4);
+    auto inside =
+        gse::test::where(as_image(views[2].mask), gse::test::in_colour(views[2].rendered, {0.2f, 0.4f, 1.0f}),
+                         views[2].rendered);
+    auto beyond = inside;
+    for (int y = 0; y < 24; ++y)  // 576 pixels of about 2800 + 576
+        for (int x = 0; x < 24; ++x) beyond.at(x, y, 0) = 1, beyond.at(x, y, 1) = beyond.at(x, y, 2) = 0;
+    add_noise(inside, 0.01, 3);  // as files that are compressed have it
+    const auto warnings = [&](const Image& own, int round = 0) {
+        Setup setup;
+        auto drawing = drawing_of(Agreement::None);
+        drawing.own = {{"view 2", own}};
+        const auto edited = setup.edit(drawing, views, request_of(round));
+        DOCTEST_CHECK(psnr_outside(views[2].rendered, edited.images[2], views[2].mask) == 99);
+        return edited.warnings;
+    };
+    DOCTEST_CHECK(warnings(inside).empty());
+    DOCTEST_CHECK(warnings(at_side(inside, 4 * Side)).empty());
+    DOCTEST_CHECK(warnings(at_side(views[2].rendered, 3 * Side)).empty());
+    for (const int side : {Side, 4 * Side}) {
+        const auto said = warnings(at_side(beyond, side));
+        DOCTEST_REQUIRE(said.size() == 1);
+        DOCTEST_CHECK(said[0].find("view 2") != std::string::npos);
+        DOCTEST_CHECK(said[0].find("widen the label") != std::string::npos);
+        const double share = share_outside(views[2], at_side(beyond, side));
+        DOCTEST_CHECK(share > 0.15);
+        DOCTEST_CHECK(share < 0.21);
+        DOCTEST_CHECK(said[0].starts_with(std::to_string(static_cast<int>(std::lround(100 * share))) + " %"));
+    }
+    DOCTEST_CHECK(warnings(beyond, 1).empty());  // it was said in the first round
 }
 
 DOCTEST_TEST_CASE("own pictures: a name that no view of the round has is refused with the names they have") {

@@ -34,6 +34,18 @@ constexpr std::array<const char*, 4> ModeHelp{
     "Put something else in the source's place: a cat for the bear.",
     "Put something new there, such as a hat on the bear."};
 
+/// Offer to have the image server look for what the model has no word for. Nothing goes there before the
+/// click.
+void draw_server_search(Context& context) {
+    if (context.model.server_search.empty()) return;
+    dim_text(context.model.server_search);
+    if (button(context, {.name = "prompt.source.by_server",
+                         .text = "Let the server find it",
+                         .why_off = why_not_work(context),
+                         .tooltip = "What it changes becomes a label, which you can look at and correct"}))
+        run_server_search(context);
+}
+
 /// Advice for a source that the model does not know.
 void draw_unknown_source(Context& context) {
     const auto& prompt = context.state.prompt;
@@ -71,6 +83,7 @@ void draw_unknown_source(Context& context) {
                                     "of that name"}))
         label_by_hand(context, context.request.source);
     if (prompt.source_suggestions.empty()) dim_text(fmt::format("Or use {}.", prompt.source_help));
+    draw_server_search(context);
 }
 
 void draw_source(Context& context) {

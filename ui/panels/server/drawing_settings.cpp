@@ -81,6 +81,9 @@ void draw_lora(Context& context, std::vector<std::string>& loras, std::size_t in
 void draw_loras(Context& context, ServerSettings& choice) {
     const auto& offered = context.model.server.loras;
     if (offered.empty() && choice.lora.empty()) return dim_text("The server names no LoRAs.");
+    dim_text("LoRAs of the server");
+    note(context, "models.server.loras");
+    tooltip(help_of("lora"));
     for (std::size_t index = 0; index < choice.lora.size(); ++index) draw_lora(context, choice.lora, index);
     std::vector<const char*> names;
     for (const auto& name : offered)
