@@ -55,6 +55,8 @@ template <> void PlaceController::on(const command::HealLabelledSplats&) {
 template <> void PlaceController::on(const command::HealPlace&) {
     if (!step_ || !thing_ || workspace_.document.revision() != step_->revision)
         return workspace_.notices.toast("Nothing was just placed.");
+    if (thing_->put_in())
+        return workspace_.notices.toast("There is no hole to heal: the thing came from another scene.");
     if (labelled() == nullptr) return;
     const bool known = measured_ && measured_->done && !measured_->healed.removed.empty();
     if (known) return take_healed_place(measured_->healed);
@@ -291,6 +293,7 @@ void PlaceController::measure_shadow() {
 
 void PlaceController::take_shadow_along() {
     if (wall_seconds() < step_->shadow_at || workspace_.jobs->works() || workspace_.results) return;
+    if (thing_->put_in()) return step_->shadow_at = Never, void();
     if (!measured_) return measure_shadow();
     if (!measured_->done) return;
     step_->shadow_at = Never;

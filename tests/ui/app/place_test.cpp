@@ -397,6 +397,17 @@ DOCTEST_TEST_CASE("a scene that is put in is edited by its name, saved, exported
     DOCTEST_REQUIRE(session.idle());
     app.update(session.preview);
     const auto together = app.document().state().current;
+    app.run(command::UsePlacing{true});
+    app.update(session.preview);
+    app.run(command::PlaceThing{to_the_right(0.2)});
+    DOCTEST_REQUIRE(session.settled());  // it has no shadow that would go along
+    DOCTEST_CHECK(app.document().state().stack.back().changed_outside_label == 0);
+    app.run(command::HealPlace{});
+    app.update(session.preview);
+    DOCTEST_CHECK(app.document().state().stack.size() == 2);
+    app.run(command::Undo{});
+    app.update(session.preview);
+    DOCTEST_REQUIRE(app.document().state().current.shares_all_with(together));
     edit_and_apply(session, "make the guitar blue");
     const DocumentState blue = app.document().state();
     DOCTEST_REQUIRE(label_called(blue, "guitar") != nullptr);
