@@ -6,8 +6,9 @@
 
 The inputs are those of data/scenes and data/odd. The record holds what `info --json` says, what was printed
 beside it, and of the PLY that `convert` writes its sha256 and, of each group of columns (f_rest_3 is one of
-f_rest), mean, mean size and values that are not finite; of folders of cameras what `cameras` writes. Comparing prints a line per value that differs by
-more than a millionth and exits 1 where there is one. Sums of bytes are compared with --exact only.
+f_rest), mean, mean size and values that are not finite; of folders of cameras what `cameras` writes.
+Comparing prints a line per value that differs by more than a millionth and exits 1 where there is one. Sums
+of bytes are compared with --exact only.
 """
 import argparse
 import array
@@ -134,7 +135,7 @@ def differences(before, after, exact=False):
     """A line per value that differs."""
     lines = []
     for name in [*before, *(name for name in after if name not in before)]:
-        old, new = (dict(leaves(record.get(name, {}))) for record in (before, after))
+        old, new = (dict(leaves(record[name])) if name in record else {} for record in (before, after))
         for path in [*old, *(path for path in new if path not in old)]:
             values = old.get(path, MISSING), new.get(path, MISSING)
             if (exact or not path.endswith("sha256")) and not alike(*values):
@@ -147,7 +148,8 @@ def main():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", nargs="?", help="gseditpro")
     parser.add_argument("--out", type=pathlib.Path, help="file for the record")
-    parser.add_argument("--only", nargs="+", default=[], metavar="TEXT", help="inputs with this in their names")
+    parser.add_argument("--only", nargs="+", default=[], metavar="TEXT",
+                        help="inputs with one of these in their names")
     parser.add_argument("--compare", nargs=2, metavar=("BEFORE", "AFTER"), help="records to compare")
     parser.add_argument("--exact", action="store_true", help="compare the sums of bytes, too")
     options = parser.parse_args()

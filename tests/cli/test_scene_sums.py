@@ -1,6 +1,6 @@
-"""Scenes and cameras of data/scenes and data/odd are read as they were: counts, bounds, and sums of what convert
-writes against scene_sums.json. Sentences are not compared. After a change that is wanted, look at the lines of
-`record_scenes.py --compare`, and write the file anew:
+"""Scenes and cameras of data/scenes and data/odd are read as they were: counts, bounds, and sums of what
+convert writes against scene_sums.json. Sentences are not compared. After a change that is wanted, look at the
+lines of `record_scenes.py --compare`, and write the file anew:
 record_scenes.py PROGRAM --out tests/cli/scene_sums.json."""
 import json
 import os
