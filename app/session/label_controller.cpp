@@ -171,8 +171,9 @@ CutOutRows clicked(const GaussianSet& set, const CutOutRequest& request, const J
     const bool any = std::find(thing.rows.begin(), thing.rows.end(), std::uint8_t{1}) != thing.rows.end();
     if (!any) return {{}, "There is nothing under the click."};
     const auto parted = pipeline::parted_text(thing);
-    return {std::move(thing.rows), parted.empty() ? "The thing is labelled; drag a box around a part of it."
-                                                  : fmt::format("The thing is labelled, {}.", parted)};
+    return {std::move(thing.rows),
+            parted.empty() ? "The thing is labelled. For a part of it alone, drag a box around that."
+                           : fmt::format("The thing is labelled, {}.", parted)};
 }
 
 CutOutRows boxed(const GaussianSet& set, const CutOutRequest& request, edit::Segmenter* segmenter,
