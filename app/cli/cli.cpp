@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
 
 #include "engine/base/log.h"
@@ -29,6 +30,18 @@ public:
         return CLI::Formatter::make_group(std::move(group), is_positional, std::move(options));
     }
 };
+
+/// The arguments, with the command for files where the first one is a file or folder and no command.
+std::vector<const char*> with_command(const Program& program, const CLI::App& app, int argc, char** argv) {
+    std::vector<const char*> arguments(argv, argv + argc);
+    if (program.command_of_files == nullptr || argc < 2 || argv[1][0] == '-') return arguments;
+    const auto commands =
+        app.get_subcommands([&](const CLI::App* command) { return command->check_name(argv[1]); });
+    std::error_code ignored;
+    if (commands.empty() && std::filesystem::exists(argv[1], ignored))
+        arguments.insert(arguments.begin() + 1, program.command_of_files);
+    return arguments;
+}
 
 }  // namespace
 
@@ -80,8 +93,9 @@ int run_command_line(const Program& program, int argc, char** argv) {
     app.parse_complete_callback([&] {
         if (context.quiet) log::set_level(log::Level::Warning);
     });
+    const auto arguments = with_command(program, app, argc, argv);
     try {
-        app.parse(argc, argv);
+        app.parse(static_cast<int>(arguments.size()), arguments.data());
     } catch (const CLI::ParseError& error) {
         const int code = app.exit(error);
         return code == 0 ? 0 : 2;

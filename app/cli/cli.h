@@ -29,6 +29,8 @@ struct Program {
     std::vector<AddCommands> commands;
     /// Runs where no command is given; null = the help is printed.
     void (*without_command)() = nullptr;
+    /// Command for a file that is named without one; null = there is none.
+    const char* command_of_files = nullptr;
 };
 
 /// Parses and runs; returns the exit code. Throws gse::Error for failures of the command itself.

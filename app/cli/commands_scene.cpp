@@ -17,6 +17,7 @@
 #include "engine/io/image/image_file.h"
 #include "engine/io/project/load_scene.h"
 #include "engine/io/scene/scene_file.h"
+#include "engine/pipeline/inventory/no_scene.h"
 #include "engine/pipeline/report/film.h"
 #include "engine/pipeline/report/scene_report.h"
 #include "engine/pipeline/scene/scene_loading.h"
@@ -109,6 +110,7 @@ void add_convert(CLI::App& app, CommandContext&) {
     command->add_flag("--drop-unusable", options->drop, "Leave out splats with NaN or illegal infinities");
     bind_fields(*command, options->reading, "Reading");
     command->callback([options] {
+        refuse_weights(options->input);
         Scene scene = load_scene(options->input, options->reading);
         if (options->drop) {
             const std::size_t before = scene.gaussians.size();
@@ -144,6 +146,7 @@ void add_adjust(CLI::App& app, CommandContext&) {
     bind_fields(*command, options->colours, "Colours");
     bind_fields(*command, options->reading, "Reading");
     command->callback([options] {
+        refuse_weights(options->input);
         Scene scene = load_scene(options->input, options->reading);
         const auto& labels = scene.labels.labels;
         if (options->use_label && labels.empty())
@@ -225,6 +228,7 @@ FilmRequest film_request(const FilmOptions& options) {
     film.first = scene.gaussians;
     if (!options.before.empty()) {
         film.second = std::make_shared<const GaussianSet>(scene.gaussians);
+        refuse_weights(options.before);
         const Scene before = load_scene(options.before);
         film.first = moved(before.gaussians, before.info.offset - offset);
     }

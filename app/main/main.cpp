@@ -11,6 +11,7 @@ int main(int argc, char** argv) {
 #ifdef GSE_WINDOW
     program.commands.insert(program.commands.begin(), add_window_command);
     program.without_command = run_default_window;
+    program.command_of_files = "open";
 #endif
     return program_main(program, argc, argv);
 }

@@ -175,8 +175,9 @@ CutOutRows clicked(const GaussianSet& set, const CutOutRequest& request, const J
     const auto doubt = pipeline::part_doubt(thing, click);
     if (!doubt.empty()) return {std::move(thing.rows), fmt::format("Check the label: {}.", doubt)};
     const auto parted = pipeline::parted_text(thing);
-    return {std::move(thing.rows), parted.empty() ? "The thing is labelled; drag a box around a part of it."
-                                                  : fmt::format("The thing is labelled, {}.", parted)};
+    return {std::move(thing.rows),
+            parted.empty() ? "The thing is labelled. For a part of it alone, drag a box around that."
+                           : fmt::format("The thing is labelled, {}.", parted)};
 }
 
 CutOutRows boxed(const GaussianSet& set, const CutOutRequest& request, edit::Segmenter* segmenter,

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "app/session/state/screen_area.h"
+#include "engine/base/clock.h"
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/pipeline/scene/scene_loading.h"
@@ -54,6 +55,8 @@ template <> void PlaceController::on(const command::HealLabelledSplats&) {
 template <> void PlaceController::on(const command::HealPlace&) {
     if (!step_ || !thing_ || workspace_.document.revision() != step_->revision)
         return workspace_.notices.toast("Nothing was just placed.");
+    if (thing_->put_in())
+        return workspace_.notices.toast("There is no hole to heal: the thing came from another scene.");
     if (labelled() == nullptr) return;
     const bool known = measured_ && measured_->done && !measured_->healed.removed.empty();
     if (known) return take_healed_place(measured_->healed);
@@ -234,7 +237,19 @@ template <> void PlaceController::on(const command::PutIn& one) {
 
 // Placing
 
+namespace {
+
+constexpr double RestSeconds = 0.15;  // without a move, after which the shadow of a large scene's thing comes
+constexpr std::size_t MostShadedWhileDragging = 100'000;  // splats, whose light takes less than a frame
+
+}  // namespace
+
 template <> void PlaceController::on(const command::UsePlacing& one) { used_ = one.on; }
+
+const heal::Shadow* PlaceController::known_shadow() const {
+    const bool known = measured_ && measured_->done && !measured_->healed.shadow_measured.rows.empty();
+    return known ? &measured_->healed.shadow_measured : nullptr;
+}
 
 template <> void PlaceController::on(const command::PlaceThing& one) {
     if (!workspace_.require_scene() || workspace_.jobs->works() || workspace_.results || !thing_) return;
@@ -242,9 +257,11 @@ template <> void PlaceController::on(const command::PlaceThing& one) {
     if (one.settings == edit::RearrangeSettings{}) return goes_on ? workspace_.run(command::Undo{}) : void();
     if (!goes_on) step_ = Step{0, workspace_.next_edit_id++};
     try {
-        place(one.settings, nullptr);
+        const bool small = thing_->rows().size() <= MostShadedWhileDragging;
+        const auto* shadow = small ? known_shadow() : nullptr;
+        place(one.settings, shadow);
         step_->settings = one.settings;
-        step_->shadow_due = one.drag_ends;
+        step_->shadow_at = shadow != nullptr ? Never : one.drag_ends ? 0 : wall_seconds() + RestSeconds;
         view_.set_camera(view_.camera());  // the resolution may drop, as while it moves
     } catch (const Error& error) {
         if (!goes_on) step_.reset();
@@ -275,12 +292,12 @@ void PlaceController::measure_shadow() {
 }
 
 void PlaceController::take_shadow_along() {
-    if (!step_->shadow_due || workspace_.jobs->works() || workspace_.results) return;
+    if (wall_seconds() < step_->shadow_at || workspace_.jobs->works() || workspace_.results) return;
+    if (thing_->put_in()) return step_->shadow_at = Never, void();
     if (!measured_) return measure_shadow();
     if (!measured_->done) return;
-    step_->shadow_due = false;
-    if (const auto& shadow = measured_->healed.shadow_measured; !shadow.rows.empty())
-        place(step_->settings, &shadow);
+    step_->shadow_at = Never;
+    if (const auto* shadow = known_shadow()) place(step_->settings, shadow);
 }
 
 void PlaceController::refresh() {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -29,8 +30,9 @@ private:
     struct Step {
         std::uint64_t revision = 0, id = 0;  // of the step, and of its edit
         edit::RearrangeSettings settings = {};
-        bool shadow_due = false;  // the drag has ended, and the shadow is where it was
+        double shadow_at = 0;  // of wall_seconds(), from which on the shadow goes along; Never = it has
     };
+    static constexpr double Never = std::numeric_limits<double>::infinity();
     /// The thing healed away, with its shadow, as a thread measures it once.
     struct Measured {
         heal::Healed healed;
@@ -46,6 +48,8 @@ private:
     void place(const edit::RearrangeSettings& settings, const heal::Shadow* shadow);
     void measure_shadow();
     void take_shadow_along();
+    /// The shadow, where it is measured; else null.
+    const heal::Shadow* known_shadow() const;
     void heal(const DocumentState& from, std::shared_ptr<const std::vector<std::uint8_t>> rows, bool stays);
     void start_healing(const std::string& title, const DocumentState& from,
                        std::shared_ptr<const std::vector<std::uint8_t>> rows, bool stays,

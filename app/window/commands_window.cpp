@@ -18,6 +18,7 @@
 #include "engine/base/process_memory.h"
 #include "engine/io/image/image_file.h"
 #include "engine/io/scene/reading_options.h"
+#include "engine/pipeline/inventory/no_scene.h"
 #include "engine/vulkan/device.h"
 #include "engine/vulkan/error.h"
 #include "engine/window/window.h"
@@ -296,6 +297,7 @@ private:
 };
 
 void run_open(const OpenOptions& options) {
+    pipeline::refuse_weights(options.path);
     if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr)
         throw Error(ErrorCode::Unsupported, "there is no display to open a window on",
                     "work without one: gseditpro edit --demo --headless");

@@ -113,6 +113,62 @@ class Models(ProgramTest):
                 self.assertEqual(process.returncode, 2, process.stderr)
                 self.assertFalse((self.folder / "out").exists())
 
+    def test_weights_in_place_of_a_scene_are_named_with_what_takes_them(self):
+        lora = "lora_unet_down_blocks_0_attentions_0_transformer_blocks_0_attn2_to_k.lora_down.weight"
+        for name, data, words in (
+                ("v1.safetensors", safetensors(STABLE_DIFFUSION), ("Stable Diffusion 1.x", "--model",
+                                                                   "Models")),
+                ("style.safetensors", safetensors({lora: [4, 768]}), ("LoRA of Stable Diffusion 1.x",
+                                                                      "--lora", "Models")),
+                ("style.SFT", safetensors({lora: [4, 768]}), ("LoRA of Stable Diffusion 1.x", "--lora")),
+                ("flux.safetensors", safetensors(FLUX), ("FLUX.1 diffusion model", "--server")),
+                ("q4.gguf", gguf("flux"), ("FLUX.1", "GGUF", "--server")),
+                ("other.safetensors", safetensors({"a": [1]}), ("unknown weights", "gseditpro models")),
+                ("page.safetensors", b"<!DOCTYPE html>", ("by its name", "not a file of weights",
+                                                          "download it again")),
+                ("chkpnt30000.pth", b"PK\x03\x04" + bytes(40), ("pickled", "PLY", ".safetensors")),
+                ("v1.ckpt", b"\x80\x02" + bytes(40), ("pickled", ".safetensors")),
+                ("sam.pt", b"PK\x03\x04" + bytes(40), ("pickled", "--segmenter"))):
+            path = self.put(f"weights/{name}", data)
+            commands = [["open", path], [path], ["convert", path, self.folder / "out.ply"],
+                        ["render", path, self.folder / "out.png"],
+                        ["merge", SCENE, path, "--out", self.folder / "out.ply"]]
+            if name in ("page.safetensors", "chkpnt30000.pth", "v1.ckpt", "sam.pt"):
+                commands.append(["info", path])   # of others it prints the facts
+            for command in commands:
+                with self.subTest(command=command[0], name=name):
+                    process = run(*command)
+                    self.assert_one_sentence(process, *words, name)
+                    self.assertGreater(process.returncode, 0)
+        self.assertEqual(self.folder_listing(), sorted(
+            ["weights", *(f"weights/{path.name}" for path in (self.folder / "weights").iterdir())]))
+
+    def test_info_says_which_option_takes_weights(self):
+        lora = "lora_unet_down_blocks_0_attentions_0_transformer_blocks_0_attn2_to_k.lora_down.weight"
+        for name, tensors, option, problem in (
+                ("style.safetensors", {lora: [4, 768]}, "--lora", ""),
+                ("v1.safetensors", STABLE_DIFFUSION, "--model", ""),
+                ("flux.safetensors", FLUX, "", "a server can use it")):
+            facts = self.info(self.put(name, safetensors(tensors)))
+            self.assertEqual(facts["use"], option)
+            (self.assertIn if problem else self.assertEqual)(problem, facts["problem"])
+
+    def test_a_folder_of_weights_is_named_too(self):
+        lora = "base_model.model.down_blocks.0.attentions.0.transformer_blocks.0.attn2.to_k.lora_A.weight"
+        self.put("peft/adapter_model.safetensors", safetensors({lora: [4, 768]}))
+        self.assert_one_sentence(run("convert", self.folder / "peft", self.folder / "out.ply"), "LoRA",
+                                 "--lora")
+        starter = ROOT / "assets/models/starter"
+        if (starter / "model_index.json").exists():
+            self.assert_one_sentence(run("convert", starter, self.folder / "out.ply"), "starter", "--model")
+
+    def test_pickles_that_are_cameras_or_missing_are_no_weights(self):
+        self.assert_one_sentence(run("convert", self.folder / "none.safetensors", self.folder / "out.ply"),
+                                 "none.safetensors")
+        self.put("cameras.bin", bytes(64))
+        said = self.assert_one_sentence(run("convert", self.folder / "cameras.bin", self.folder / "out.ply"))
+        self.assertNotIn("pickled", said)
+
 
 if __name__ == "__main__":
     unittest.main()

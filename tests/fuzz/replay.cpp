@@ -1,8 +1,10 @@
 // Stands in for libFuzzer: replays a saved corpus, then seeded mutations of it, for a bounded time.
+// GSE_FUZZ_RUNS sets another number of mutations, however long they take.
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -68,9 +70,11 @@ int main(int argc, char** argv) {
     const auto start = std::chrono::steady_clock::now();
     gse::Random random(20240501);
     int done = 0;
-    for (; done < Mutations; ++done) {
-        if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > SecondsAtMost)
-            break;
+    const char* runs = std::getenv("GSE_FUZZ_RUNS");
+    const int most = runs != nullptr ? std::atoi(runs) : Mutations;
+    for (; done < most; ++done) {
+        const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+        if (runs == nullptr && taken.count() > SecondsAtMost) break;
         run(mutate(corpus[random.below(corpus.size())], corpus[random.below(corpus.size())], random));
     }
     std::printf("%zu saved inputs and %d mutations\n", corpus.size(), done);

@@ -130,13 +130,13 @@ SUB_ROOMS = {
     },
     "pipeline": {
         "recipe": set(),
-        "scene": set(),
         "models": {"recipe"},
         "inventory": {"models"},
+        "scene": {"inventory"},
         "select": {"scene"},
         "run": {"recipe", "scene", "models", "select"},
         "steps": {"recipe", "scene", "models", "run"},
-        "report": {"recipe", "scene", "models", "run"},
+        "report": {"recipe", "scene", "models", "inventory", "run"},
     },
 }
 # room -> the one folder of it that other rooms include, and who may include the rest

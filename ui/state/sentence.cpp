@@ -189,12 +189,13 @@ SentenceFacts facts_of(const edit::EditRequest& request, const SentenceGround& g
     for (const auto& word : language::words_of(request.prompt)) {
         Chip chip;
         chip.text = word;
-        chip.known = ground.draws_any_word || language::vocabulary_contains(say, word);
+        chip.source = within(request.prompt, request.source, facts.chips.size());
+        chip.known = ground.draws_any_word || language::vocabulary_contains(say, word) ||
+                     (chip.source && ground.labelled_by_hand);  // the label says where it is
         if (!chip.known) {
             const auto near = language::nearest_words(word, say, 1);
             if (!near.empty()) chip.suggestion = near.front();
         }
-        chip.source = within(request.prompt, request.source, facts.chips.size());
         chip.read = ground.words_read == 0 || facts.chips.size() < ground.words_read;
         if (!chip.read && facts.cut_at.empty()) facts.cut_at = word;
         facts.chips.push_back(std::move(chip));

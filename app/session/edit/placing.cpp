@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <numeric>
+#include <set>
 #include <utility>
 
 #include "engine/heal/carried_shade.h"
@@ -12,10 +13,26 @@
 
 namespace gse::app {
 
+namespace {
+
+/// True where each of the rows came with an edit that does nothing but add: another scene.
+bool all_put_in(const DocumentState& state, const std::vector<std::uint8_t>& rows) {
+    std::set<std::uint64_t> guests;
+    for (const auto& node : state.stack)
+        if (node.recipe.empty() && node.delta->changed.empty() && node.delta->removed.empty())
+            guests.insert(node.id);
+    for (std::size_t row = 0; row < rows.size(); ++row)
+        if (rows[row] != 0 && !guests.contains((*state.row_ids)[row] >> EditIdShift)) return false;
+    return true;
+}
+
+}  // namespace
+
 Placing::Placing(DocumentState before, std::shared_ptr<const std::vector<std::uint8_t>> rows,
                  const Vec3& front)
     : before_(std::move(before)), rows_(std::move(rows)),
-      thing_(edit::thing_frame(before_.current, *rows_, before_.info.up, front)) {}
+      thing_(edit::thing_frame(before_.current, *rows_, before_.info.up, front)),
+      put_in_(all_put_in(before_, *rows_)) {}
 
 bool Placing::is_of(const DocumentState& state,
                     const std::shared_ptr<const std::vector<std::uint8_t>>& rows) const {

@@ -24,6 +24,8 @@ public:
                const std::shared_ptr<const std::vector<std::uint8_t>>& rows) const;
     /// False where nothing of the label can be seen.
     bool found() const { return thing_.found(); }
+    /// True for a thing from another scene that was put in: it stands over no hole, and has no shadow yet.
+    bool put_in() const { return put_in_; }
     /// Place and size before the change, for the handles in the viewport.
     ui::PlacedThing shown() const;
     /// The state with an edit of that identity on top of the stack. `shadow`: of the thing where it stood,
@@ -42,6 +44,7 @@ private:
     DocumentState before_;
     std::shared_ptr<const std::vector<std::uint8_t>> rows_;  // [current of before_]
     edit::ThingFrame thing_;
+    bool put_in_ = false;
     mutable std::vector<Vec3> others_;  // of copies, once one was asked for
 };
 

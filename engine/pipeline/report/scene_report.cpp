@@ -15,6 +15,8 @@
 #include "engine/io/project/load_scene.h"
 #include "engine/io/project/project_file.h"
 #include "engine/neural/api/files/weight_header.h"
+#include "engine/pipeline/inventory/model_inventory.h"
+#include "engine/pipeline/inventory/no_scene.h"
 #include "engine/pipeline/models/model_catalogue.h"
 #include "engine/pipeline/scene/scene_loading.h"
 #include "engine/scene/origin/world_offset.h"
@@ -133,6 +135,7 @@ Json model_report(const std::filesystem::path& path) {
     if (!std::filesystem::exists(path, ignored))
         throw Error(ErrorCode::NotFound, "there is no model here", "name a folder or a checkpoint", path);
     const auto model = describe_model(path);
+    if (model.structure.empty()) refuse_weights(path);
     if (model.structure.empty())
         throw Error(is_safetensors_name(path) ? ErrorCode::Malformed : ErrorCode::Unsupported, model.problem,
                     "name a folder in diffusers layout or a whole checkpoint", path);
@@ -143,14 +146,17 @@ Json model_report(const std::filesystem::path& path) {
     json["prediction"] = model.prediction;
     json["mb"] = static_cast<double>(model.bytes) / 1e6;
     json["usable"] = model.usable;
-    json["problem"] = model.problem;
+    json["use"] = describe_model_file(path).use.how;
+    const bool other = json["use"] != "" && json["use"] != "--model";  // no whole model, and none is wanted
+    json["problem"] = other ? std::string() : model.problem;
     return json;
 }
 
 std::string model_report_text(const Json& json) {
     std::string text = fmt::format("{}\n", printable(json["file"].get<std::string>()));
-    for (const auto& [name, key] : {std::pair{"model", "structure"}, std::pair{"name", "name"},
-                                    std::pair{"prediction", "prediction"}, std::pair{"problem", "problem"}})
+    for (const auto& [name, key] :
+         {std::pair{"model", "structure"}, std::pair{"name", "name"}, std::pair{"prediction", "prediction"},
+          std::pair{"use", "use"}, std::pair{"problem", "problem"}})
         if (const auto value = json[key].get<std::string>(); !value.empty())
             text += fmt::format("  {:<13} {}\n", name, printable(value));
     return text + fmt::format("  {:<13} {:.1f} MB\n", "size", json["mb"].get<double>());
@@ -172,6 +178,7 @@ std::string up_remark(const Json& json) {
 Json scene_report(const std::filesystem::path& path, const ReadingOptions& options) {
     if (is_model(path)) return model_report(path);
     if (names_png(path)) return picture_report(path);
+    refuse_weights(path);
     Scene scene = load_scene(path, options);
     const CameraList cameras = cameras_of(path);
     const bool project = is_project_file(path);

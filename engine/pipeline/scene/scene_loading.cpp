@@ -15,6 +15,7 @@
 #include "engine/io/cameras/cameras.h"
 #include "engine/io/project/load_scene.h"
 #include "engine/io/project/project_file.h"
+#include "engine/pipeline/inventory/no_scene.h"
 #include "engine/scene/layout/surroundings.h"
 #include "engine/scene/origin/world_offset.h"
 
@@ -130,6 +131,7 @@ std::string name_of_thing(const std::filesystem::path& path) {
 
 Scene load_standing_scene(const std::filesystem::path& path, const std::string& up,
                           const ReadingOptions& options) {
+    refuse_weights(path);
     Scene scene = load_scene(path, options);
     if (is_project_file(path) || find_cameras(path)) return scene;
     const auto guess = guess_up(scene.info, scene.gaussians);
@@ -139,6 +141,7 @@ Scene load_standing_scene(const std::filesystem::path& path, const std::string& 
 
 LoadedScene load_scene_with_cameras(const std::filesystem::path& path, const std::string& cameras,
                                     const ReadingOptions& options) {
+    refuse_weights(path);
     LoadedScene loaded{load_scene(path, options), {}, {}, {}};
     SceneCameras found = cameras_of_scene({loaded.scene.gaussians, loaded.scene.info.offset, path}, cameras);
     loaded.views = std::move(found.views);

@@ -121,7 +121,9 @@ class HostileFiles(unittest.TestCase):
             self.fail(f"info did not speak of every file: {said[-600:]!r}")
 
     def scenes(self, corpus, ending, *ways, count=FILES):
-        seeds = self.corpus(corpus)
+        self.mutated(self.corpus(corpus), ending, ways, count)
+
+    def mutated(self, seeds, ending, ways, count=FILES):
         self.assertTrue(seeds)
         paths = []
         for number in range(count):
@@ -184,6 +186,96 @@ class HostileFiles(unittest.TestCase):
                 mutate(text, [change_text], self.random) if hostile == "lod-meta.json" else text)
             folders.append(folder)
         self.look_at(folders)
+
+    def test_wrapped(self):
+        """Archives, gzip streams and projects of other programs around a scene; some in one another."""
+        for ending, way in ((".zip", change_zip), (".gz", change_gzip), (".ssproj", change_zip)):
+            with self.subTest(ending):
+                seeds = [path.read_bytes() for path in sorted((CORPUS / "wrapped").glob(f"*{ending}"))]
+                name = "ply.gz" if ending == ".gz" else ending[1:]
+                self.mutated(seeds, name, [way], max(1, FILES // 3))
+
+    def test_colmap(self):
+        """Models beside a scene, as text and as binary files."""
+        scene = self.corpus("ply")[-1]
+        folders = []
+        for number in range(FILES):
+            data = self.random.choice(self.corpus("colmap"))
+            split = 3 + struct.unpack("<H", data[1:3])[0]
+            ending, ways = (".bin", []) if data[0] % 2 == 0 else (".txt", [change_text])
+            folder = self.folder / f"model{number:05}"
+            (folder / "sparse/0").mkdir(parents=True)
+            (folder / "scene.ply").write_bytes(scene)
+            parts = {"cameras": data[3:split], "images": data[split:]}
+            hostile = self.random.choice([*parts])
+            for name, content in parts.items():
+                if name == hostile:
+                    content = mutate(content, ways, self.random)
+                (folder / "sparse/0" / (name + ending)).write_bytes(content)
+            folders.append(folder)
+        self.look_at(folders)
+        for folder in folders[:max(1, FILES // 8)]:
+            self.run_one([folder], "cameras", folder, self.folder / "transforms.json")
+
+    def test_pictures(self):
+        seeds = [data for data in self.corpus("png") if data.startswith(b"\x89PNG")]
+        self.mutated(seeds, "png", [])
+        path = self.folder / "hostile.png"
+        for _ in range(max(1, FILES // 4)):
+            path.write_bytes(mutate(self.random.choice(seeds), [], self.random))
+            self.run_one([path], "edit", self.folder / "none.ply", "--recipe", path, "--out",
+                         self.folder / "out")
+
+    def test_headers_of_weights(self):
+        """Safetensors, GGUF and pickles, in a list of models and in place of a scene."""
+        header = {"__metadata__": {"format": "pt", "modelspec.architecture": "stable-diffusion-v1"},
+                  "lora_unet_down_blocks_0_attentions_0_proj_in.lora_down.weight":
+                      {"dtype": "F16", "shape": [4, 320], "data_offsets": [0, 2560]}}
+        text = json.dumps(header).encode()
+        name, value = b"general.architecture", b"flux"
+        seeds = {"safetensors": struct.pack("<Q", len(text)) + text + bytes(2560),
+                 "gguf": b"GGUF" + struct.pack("<IQQ", 3, 1, 1) + struct.pack("<Q", len(name)) + name +
+                 struct.pack("<IQ", 8, len(value)) + value + struct.pack("<Q", 6) + b"weight" +
+                 struct.pack("<IQQIQ", 2, 64, 64, 1, 0) + bytes(64),
+                 "pt": b"PK\x03\x04" + bytes(60)}
+        paths = []
+        for number in range(FILES):
+            ending = self.random.choice([*seeds])
+            ways = [change_safetensors] if ending == "safetensors" else []
+            path = self.folder / f"{number:05}.{ending}"
+            path.write_bytes(mutate(seeds[ending], ways, self.random))
+            paths.append(path)
+        self.run_one(paths, "models", self.folder)
+        self.run_one(paths, "models", self.folder, "--json")
+        for path in paths[:max(1, FILES // 4)]:
+            self.run_one([path], "info", path)
+            self.run_one([path], "convert", path, self.folder / "out.ply")
+
+    def test_loras(self):
+        """Weights and adapter_config.json; each run loads the networks, so fewer of them."""
+        samples = SHARED / "data/odd"
+        if not samples.exists() or not (ROOT / "assets/models/starter/model_index.json").exists():
+            self.skipTest(f"[skip] {samples} or the starter model is not there")
+        scene = ROOT / "assets/scenes/bear/scene.ply"
+        seeds = [path for path in sorted(samples.glob("*_lora_*/**/*.safetensors"))]
+        self.assertTrue(seeds)
+        for _ in range(max(1, FILES // 8)):
+            seed = self.random.choice(seeds)
+            lora = self.folder / "lora"
+            shutil.rmtree(lora, ignore_errors=True)
+            lora.mkdir()
+            config = seed.parent / "adapter_config.json"
+            hostile_config = config.exists() and self.random.random() < 0.5
+            weights = seed.read_bytes()
+            if config.exists():
+                text = config.read_bytes()
+                (lora / config.name).write_bytes(
+                    mutate(text, [change_text] * 3, self.random) if hostile_config else text)
+            (lora / seed.name).write_bytes(
+                weights if hostile_config else mutate(weights, [change_safetensors] * 3, self.random))
+            self.run_one([lora], "locate", scene, "--lora", lora if config.exists() else lora / seed.name,
+                         "--source", "bear", "--prompt", "a blue bear", "--views", 1, "--image-size", 16,
+                         "--attention-repeats", 1, "--no-focus", "--out", self.folder / "out")
 
     def test_projects(self):
         seeds = [data for data in self.corpus("project") if data[:2] == b"PK"]

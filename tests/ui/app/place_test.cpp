@@ -123,6 +123,38 @@ struct LightChange {
 
 }  // namespace
 
+DOCTEST_TEST_CASE(
+    "the shadow comes while a drag rests, and follows as it goes on, in the same step of undo") {
+    if (!networks()) return;
+    const Place place;
+    Labelled session(LabelledBy::Search);
+    auto& app = session.app;
+    const auto before = session.state().current;
+    const auto bits = session.bits();
+    const auto at = app.document().position();
+    const auto thing = *app.model().placed;
+    const auto change = [&] { return LightChange(before, session.state().current, bits); };
+    const auto right = [&](const Vec3& where) { return dot(where - thing.foot, thing.side); };
+    session.place(to_the_right(1.0));
+    DOCTEST_CHECK(change().darker == 0);                                      // nothing is measured yet
+    DOCTEST_REQUIRE(session.until([&] { return change().darker > 0; }, 60));  // the drag has not ended
+    const double there = right(change().dark);
+    session.place(to_the_right(1.3));
+    DOCTEST_REQUIRE(change().darker > 0);                // at once
+    DOCTEST_CHECK(right(change().dark) - there > 0.15);  // of 0.3
+    DOCTEST_CHECK(app.document().position() == at + 1);
+    DOCTEST_CHECK(session.state().stack.size() == 1);
+    const auto dragged = session.state().current;
+    app.run(command::PlaceThing{to_the_right(1.3)});
+    app.update(session.preview);
+    DOCTEST_CHECK(LightChange(dragged, session.state().current, bits).darker ==
+                  0);  // its end changes nothing
+    DOCTEST_CHECK(LightChange(dragged, session.state().current, bits).lighter == 0);
+    app.run(command::Undo{});
+    app.update(session.preview);
+    DOCTEST_CHECK(session.state().current.shares_all_with(before));
+}
+
 DOCTEST_TEST_CASE("where a drag has ended, the thing's shadow has gone along, in the same step of undo") {
     if (!networks()) return;
     const Place place;
@@ -150,10 +182,7 @@ DOCTEST_TEST_CASE("where a drag has ended, the thing's shadow has gone along, in
         moved_back += bits[row] != 0 && !same_row(dragged.spans(), row, session.state().current.spans(), row);
     DOCTEST_CHECK(moved_back == 0);
 
-    session.place(to_the_right(1.0));  // dragged on: the shadow waits for the end
-    DOCTEST_CHECK(LightChange(before, session.state().current, bits).darker == 0);
-    app.run(command::PlaceThing{to_the_right(1.0)});
-    app.update(session.preview);
+    session.place(to_the_right(1.0));
     DOCTEST_CHECK(LightChange(before, session.state().current, bits).darker > 0);  // measured already
     app.run(command::HealPlace{});
     app.update(session.preview);
@@ -368,6 +397,17 @@ DOCTEST_TEST_CASE("a scene that is put in is edited by its name, saved, exported
     DOCTEST_REQUIRE(session.idle());
     app.update(session.preview);
     const auto together = app.document().state().current;
+    app.run(command::UsePlacing{true});
+    app.update(session.preview);
+    app.run(command::PlaceThing{to_the_right(0.2)});
+    DOCTEST_REQUIRE(session.settled());  // it has no shadow that would go along
+    DOCTEST_CHECK(app.document().state().stack.back().changed_outside_label == 0);
+    app.run(command::HealPlace{});
+    app.update(session.preview);
+    DOCTEST_CHECK(app.document().state().stack.size() == 2);
+    app.run(command::Undo{});
+    app.update(session.preview);
+    DOCTEST_REQUIRE(app.document().state().current.shares_all_with(together));
     edit_and_apply(session, "make the guitar blue");
     const DocumentState blue = app.document().state();
     DOCTEST_REQUIRE(label_called(blue, "guitar") != nullptr);

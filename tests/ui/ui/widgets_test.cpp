@@ -243,6 +243,18 @@ DOCTEST_TEST_CASE("where the text encoder stops reading is said, and a target be
     DOCTEST_CHECK(facts.problem.empty());
 }
 
+DOCTEST_TEST_CASE("a word that a label stands for is not said to have no effect") {
+    edit::EditRequest request;
+    request.source = "guitar";
+    request.prompt = "a blue guitar";
+    ui::SentenceGround ground;
+    ground.known = {"bear", "blue", "a"};
+    DOCTEST_CHECK_FALSE(ui::facts_of(request, ground).chips.back().known);
+    ground.labelled_by_hand = true;
+    const auto facts = ui::facts_of(request, ground);
+    for (const auto& chip : facts.chips) DOCTEST_CHECK_MESSAGE(chip.known, chip.text);
+}
+
 DOCTEST_TEST_CASE("an order is told as a description, and its own words are not marked as unknown") {
     edit::EditRequest request;
     request.source = "bear";
