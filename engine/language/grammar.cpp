@@ -2,6 +2,7 @@
 #include "engine/language/grammar.h"
 
 #include <algorithm>
+#include <array>
 
 #include "engine/language/words.h"
 
@@ -77,6 +78,14 @@ bool names_thing(const std::vector<std::string>& terms, std::size_t i) {
 bool is_ground(std::string_view word) { return is_a(word, WordClass::Ground); }
 
 bool names_ground(std::string_view phrase) { return is_ground(head_word(phrase)); }
+
+bool names_scene_ground(std::string_view phrase) {
+    constexpr std::array<std::string_view, 13> Partial{"water",      "lake",   "sea",     "ocean",  "river",
+                                                       "road",       "street", "forest",  "carpet", "sky",
+                                                       "background", "rug",    "pavement"};
+    const auto head = head_word(phrase);
+    return is_ground(head) && std::find(Partial.begin(), Partial.end(), head) == Partial.end();
+}
 
 std::string usual_place(std::string_view thing) {
     return std::string(listed_place(head_word(thing)).value_or("top"));

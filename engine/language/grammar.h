@@ -46,6 +46,8 @@ bool names_thing(const std::vector<std::string>& terms, std::size_t i);
 bool is_ground(std::string_view word);
 /// Tells whether the phrase's last word is a ground.
 bool names_ground(std::string_view phrase);
+/// True for a ground that all of a scene may stand on ("grass", "floor"), and not a part of one ("lake").
+bool names_scene_ground(std::string_view phrase);
 
 /// Place on its wearer that a thing ("hat", "top hat") usually takes: "top" for what is not known.
 std::string usual_place(std::string_view thing);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "engine/localize/linked_part.h"
 #include "engine/localize/support_layers.h"
@@ -175,6 +176,53 @@ GrownThing grown_at(const GaussianSpans& gaussians, const GrowRequest& request) 
     return thing;
 }
 
+/// Centre of the member of a surface that is nearest to a place: the place may be empty, or hold a crumb.
+std::optional<Vec3> seed_near(const VoxelGrid& grid, const VoxelSet& set, const VoxelGrid::Place& at) {
+    std::optional<Vec3> seed;
+    double least = 0;
+    for (const int neighbours : {SurfaceNeighbours, 0}) {
+        for (std::size_t voxel = 0; voxel < grid.size(); ++voxel) {
+            if (set[voxel] == 0 || neighbours_of(grid, set, voxel) < neighbours) continue;
+            const auto& place = grid.place(voxel);
+            const double squared = std::pow(place[0] - at[0], 2.0) + std::pow(place[1] - at[1], 2.0) +
+                                   std::pow(place[2] - at[2], 2.0);
+            if (!seed || squared < least) seed = grid.centre_of(place), least = squared;
+        }
+        if (seed) break;
+    }
+    return seed;
+}
+
+/// Share of a layer's columns with nothing right above: all of a thing's underside lies below the thing.
+double free_share(const VoxelGrid& grid, const VoxelSet& all, int layer) {
+    constexpr double Above = 0.25;  // of the layers
+    const auto flat = grid.columns(all, layer - 1, layer + 2);
+    const auto above = grid.columns(all, layer + 3, layer + static_cast<int>(Above * grid.dimensions()[2]));
+    double free = 0, count = 0;
+    for (std::size_t i = 0; i < flat.data.size(); ++i)
+        if (flat.data[i] != 0) count += 1, free += above.data[i] == 0 ? 1 : 0;
+    return count > 0 ? free / count : 0;
+}
+
+/// Top of the lowest flat that is large against the largest one and the whole scene from above.
+std::optional<int> ground_layer(const VoxelGrid& grid, const VoxelSet& all) {
+    constexpr double OfLargest = 0.6, OfFootprint = 0.4, LeastFree = 0.25;
+    constexpr int Thickness = 8;  // layers from the underside of a slab to its top
+    const int layers = grid.dimensions()[2];
+    std::vector<double> areas;
+    for (int z = 0; z < layers; ++z)
+        areas.push_back(static_cast<double>(grid.columns(all, z - 1, z + 2).count()));
+    const auto footprint = static_cast<double>(grid.columns(all, 0, layers).count());
+    const double most = areas.empty() ? 0 : *std::max_element(areas.begin(), areas.end());
+    if (most < OfFootprint * footprint || most == 0) return std::nullopt;
+    const auto large = [&](double area) { return area >= OfLargest * most; };
+    const auto lowest = std::find_if(areas.begin(), areas.end(), large);
+    const auto end = areas.end() - lowest > Thickness ? lowest + Thickness : areas.end();
+    const auto top = std::find_if(std::make_reverse_iterator(end), std::make_reverse_iterator(lowest), large);
+    const int layer = static_cast<int>(top.base() - areas.begin()) - 1;
+    return free_share(grid, all, layer) >= LeastFree ? std::optional(layer) : std::nullopt;
+}
+
 }  // namespace
 
 GrownThing grow_thing(const GaussianSpans& gaussians, const GrowRequest& request) {
@@ -217,21 +265,21 @@ std::optional<Vec3> largest_thing(const GaussianSpans& gaussians, const Vec3& ce
     Vec3 middle;
     for (std::size_t voxel = 0; voxel < grid.size(); ++voxel)
         if (largest[voxel] != 0) middle += grid.centre_of(grid.place(voxel)) / static_cast<double>(most);
-    // The middle itself may be empty, or hold a crumb: the nearest voxel of a surface stands for it.
-    const auto at = grid.place_of(middle);
-    std::optional<Vec3> seed;
-    double least = 0;
-    for (const int neighbours : {SurfaceNeighbours, 0}) {
-        for (std::size_t voxel = 0; voxel < grid.size(); ++voxel) {
-            if (largest[voxel] == 0 || neighbours_of(grid, largest, voxel) < neighbours) continue;
-            const auto& place = grid.place(voxel);
-            const double squared = std::pow(place[0] - at[0], 2.0) + std::pow(place[1] - at[1], 2.0) +
-                                   std::pow(place[2] - at[2], 2.0);
-            if (!seed || squared < least) seed = grid.centre_of(place), least = squared;
-        }
-        if (seed) break;
-    }
-    return seed;
+    return seed_near(grid, largest, grid.place_of(middle));
+}
+
+std::optional<Vec3> ground_seed(const GaussianSpans& gaussians, const Vec3& centre, double radius,
+                                const Vec3& up) {
+    const auto grid = grid_around(gaussians, {centre, up, 2 * radius});
+    const VoxelSet all(grid.size(), 1);
+    const auto layer = ground_layer(grid, all);
+    if (!layer) return std::nullopt;
+    const auto flat = within_layers(grid, all, *layer - 1, *layer + 2);
+    const auto count = static_cast<double>(std::count(flat.begin(), flat.end(), std::uint8_t{1}));
+    Vec3 middle;
+    for (std::size_t voxel = 0; voxel < grid.size(); ++voxel)
+        if (flat[voxel] != 0) middle += grid.centre_of(grid.place(voxel)) / count;
+    return seed_near(grid, flat, grid.place_of(middle));
 }
 
 }  // namespace gse::localize

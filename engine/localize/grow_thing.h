@@ -33,6 +33,11 @@ struct GrownThing {
 /// where nothing is solid near the seed.
 GrownThing grow_thing(const GaussianSpans& gaussians, const GrowRequest& request);
 
+/// Seed on the ground of a scene within `radius` of `centre`: on the lowest of its large flats, where
+/// something stands on it. Nothing where there is none.
+std::optional<Vec3> ground_seed(const GaussianSpans& gaussians, const Vec3& centre, double radius,
+                                const Vec3& up);
+
 /// Seed of the largest thing within `radius` of `centre` that stands alone: on the highest support of the
 /// scene, or without one. Nothing where nothing is solid.
 std::optional<Vec3> largest_thing(const GaussianSpans& gaussians, const Vec3& centre, double radius,

@@ -46,6 +46,19 @@ class Searches(ProgramTest):
         process = self.edit("--source", "bear", "--prompt", "a bear wearing a sombrero")
         self.assert_one_sentence(process, '"sombrero"', "cannot make it")
 
+    def test_a_ground_without_a_word_is_told_by_the_shape_of_the_scene(self):
+        process = self.edit("--source", "ground", "--prompt", "a bear on the snow")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertIn("look at the label", process.stderr)
+        report = json.loads((self.folder / "out/report.json").read_text())
+        self.assertIn("the flat that things stand on", report["label_doubt"])
+        self.assertEqual(report["changed_outside_label"], 0)
+        self.assertGreater(report["labelled"], 1700)   # the grass has 1920 of 4914 splats
+        self.assertLess(report["labelled"], 2050)
+        # A part of a ground is no matter of the scene's shape.
+        process = self.edit("--source", "road", "--prompt", "a bear on a golden road")
+        self.assert_one_sentence(process, '"road"', "label it by hand instead")
+
     def test_a_box_says_what_may_change(self):
         box = ["--cut-out", "0.42,0.35,0.575,0.645,0,15,1"]
         process = self.edit("--source", "thingummy", "--prompt", "a golden thingummy on the grass", *box)

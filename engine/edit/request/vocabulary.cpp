@@ -41,6 +41,7 @@ void require_findable(const CheckedRequest& request, const std::vector<std::stri
                       const std::vector<std::string>& say) {
     const bool part = !request.part_of().empty();
     const auto& sought = part ? request.part_of() : request.source();
+    if (!part && language::names_scene_ground(sought)) return;  // told by the scene's shape
     if (const auto unknown = language::unknown_word(known, sought); !unknown.empty())
         throw Error(
             ErrorCode::InvalidArgument,

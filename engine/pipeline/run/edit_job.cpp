@@ -32,6 +32,7 @@
 #include "engine/pipeline/scene/scene_loading.h"
 #include "engine/pipeline/select/cut_out.h"
 #include "engine/pipeline/select/point_out.h"
+#include "engine/pipeline/select/scene_ground.h"
 
 namespace gse::pipeline {
 namespace {
@@ -407,10 +408,43 @@ std::vector<std::uint8_t> EditJob::source_in_result() const {
     return source;
 }
 
+/// Takes the flat that things stand on for a ground that no word finds, or none that another witness bears
+/// out (METHOD.md, Things from a click). Returns false where the words are to tell.
+bool EditJob::take_scene_ground(const Located* found) {
+    const auto& source = recipe_.request.source();
+    if (!hints_.label.empty() || !hints_.found.empty() || hints_.by_differences ||
+        recipe_.request.whole_scene() || !recipe_.request.part_of().empty() ||
+        !language::names_scene_ground(source))
+        return false;
+    if (found != nullptr && found->found() && found->result.confidence.part("second_witness") >= 0)
+        return false;
+    auto rows = scene_ground(context_->drawn(), views_->orbit.up, control_);
+    const bool any = std::find(rows.begin(), rows.end(), std::uint8_t{1}) != rows.end();
+    if (found == nullptr && !any)
+        throw Error(ErrorCode::NotFound,
+                    fmt::format("no ground is told by the scene's shape for \"{}\"", source),
+                    "label it by hand: --at X,Y clicks on it, --cut-out puts a box around it");
+    if (!any || (found != nullptr && found->found() && !agree_roughly(rows, *found->result.label.bits)))
+        return false;
+    hints_.label = std::move(rows);
+    hints_.label_alone = true;
+    hints_.label_doubt =
+        "the flat that things stand on is taken for it, since no picture says so surely; look at "
+        "the label, and correct it where it is wrong";
+    log::warning("\"{}\": {}", source, hints_.label_doubt);
+    return true;
+}
+
+bool EditJob::knows_source() const {
+    return language::vocabulary_contains(context_->model().known_words(), recipe_.request.source());
+}
+
 void EditJob::locate() {
     if (recipe_.use_dreambooth && !tuning_ && !recipe_.request.is_rearranged()) tune();
     times_.begin("locate");
+    if (!context_->model().known_words().empty() && !knows_source()) take_scene_ground(nullptr);
     auto found = pipeline::locate(*context_, recipe_, *views_, hints_, control_);
+    if (take_scene_ground(&found)) found = pipeline::locate(*context_, recipe_, *views_, hints_, control_);
     if (!found.found() && server_searches_ && context_->server() != nullptr && !found.by_differences &&
         found.result.mode != edit::EditMode::Add)
         found.result.remedy += ", or let the server look for it (--server-search differences)";

@@ -168,6 +168,8 @@ private:
     void take(Located located);
     OrbitParameters moved_orbit() const;
     void relocate(const CheckedRecipe& recipe);
+    bool take_scene_ground(const Located* found);
+    bool knows_source() const;
     std::vector<Image> instance_pictures();
 
     CheckedRecipe recipe_;

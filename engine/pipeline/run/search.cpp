@@ -167,7 +167,7 @@ private:
         if (hints_.by_differences && hints_.label.empty()) return from_differences();
         const bool by_label =
             !hints_.label.empty() &&
-            (recipe_.job.brings_label() ||
+            (recipe_.job.brings_label() || hints_.label_alone ||
              !language::vocabulary_contains(context_.model().known_words(), recipe_.request.source()));
         if (hints_.label.empty()) look_for_ground(context_, recipe_, views_);
         read_scene(moves() && !by_label);

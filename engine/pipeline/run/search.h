@@ -19,6 +19,7 @@ struct Hints {
     // [N] the source, as an earlier search found it: it is not looked for again. Empty = it is.
     std::vector<std::uint8_t> found = {};
     std::string label_doubt = {};  // reason to check the label; empty = none is known
+    bool label_alone = false;      // the label says where, whatever the words find
     bool by_differences = false;  // the server of the run is asked where the thing is, and not the model here
 };
 

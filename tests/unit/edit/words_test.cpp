@@ -174,4 +174,10 @@ DOCTEST_TEST_CASE("a phrase goes where its last word usually goes") {
     DOCTEST_CHECK(!language::has_usual_place("hat stand"));
 }
 
+DOCTEST_TEST_CASE("a scene stands on grounds, but not on a part of one") {
+    DOCTEST_CHECK(language::names_scene_ground("wooden floor"));
+    DOCTEST_CHECK(!language::names_scene_ground("blue lake"));
+    DOCTEST_CHECK(!language::names_scene_ground("bear"));
+}
+
 }  // namespace words_test

@@ -34,7 +34,7 @@ Json scans() {
     const Json done{{"ending", "done"}, {"confidence", nullptr},
                     {"seconds", 1.0},   {"level", ""},
                     {"warned", false},  {"opacity", {{"iou", 0.75}, {"recall", 1.0}, {"precision", 0.75}}}};
-    Json report{{"parameters", {{"real_only", ""}, {"real_modes", "word box"}}},
+    Json report{{"parameters", {{"real_only", ""}, {"real_modes", "word box click"}}},
                 {"tasks",
                  {{{"task", "bear.blue"},
                    {"scene", "bear"},

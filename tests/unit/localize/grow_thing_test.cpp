@@ -150,6 +150,22 @@ DOCTEST_TEST_CASE("a click on a ground takes the ground alone where the ground i
     DOCTEST_CHECK(iou(scene, grown(scene, {0, 0.3, 0.3}).rows, 0) > Least);
 }
 
+DOCTEST_TEST_CASE("the ground is the lowest large flat, and a thing that stands in nothing has none") {
+    Scene scene;  // a table with a box, on a floor below a ceiling
+    scene.box({-1.2, -0.8, -1.2}, {1.2, -0.7, 1.2}, Marble, 0);
+    scene.box({-0.4, -0.1, -0.4}, {0.4, 0, 0.4}, Wood, 1);
+    scene.box({-0.03, -0.7, -0.03}, {0.03, -0.1, 0.03}, Wood, 1);
+    scene.box({-0.15, 0, -0.15}, {0.15, 0.3, 0.15}, Green, 2);
+    scene.box({-1.2, 1.2, -1.2}, {1.2, 1.25, 1.2}, Marble, 3);
+    const auto seed = ground_seed(spans(scene.data), {}, 1.7, Up);
+    DOCTEST_REQUIRE(seed);
+    DOCTEST_CHECK(iou(scene, grow_thing(spans(scene.data), {*seed, Up, 3.4, true}).rows, 0) > Least);
+    Scene ball;
+    ball.ball({}, 1, Green, 0);
+    DOCTEST_CHECK_FALSE(ground_seed(spans(ball.data), {}, 1, Up));
+    DOCTEST_CHECK_FALSE(ground_seed(spans(Scene().data), {}, 1, Up));
+}
+
 #ifdef GSE_HAVE_OPENCV
 DOCTEST_TEST_CASE("a part ends where its colour or a narrow place ends, and is told from the whole") {
     constexpr double Enough = 0.6;  // IoU; the seam runs through voxels of both

@@ -1,0 +1,28 @@
+// The lowest large flat, grown from its middle.
+#include "engine/pipeline/select/scene_ground.h"
+
+#include "engine/base/error.h"
+#include "engine/localize/grow_thing.h"
+#include "engine/scene/framing.h"
+
+namespace gse::pipeline {
+
+std::vector<std::uint8_t> scene_ground(const GaussianSet& set, const Vec3& up, const JobControl& control) {
+    const gse::Bounds bounds = framing_bounds(set);
+    const auto seed = localize::ground_seed(set.spans(), bounds.centre(), bounds.radius(), up);
+    if (!seed) return std::vector<std::uint8_t>(set.size(), 0);
+    if (control.stop_requested()) throw Error(ErrorCode::Cancelled, "labelling the ground was stopped");
+    localize::GrowRequest request{*seed, up, 2 * bounds.radius(), true};
+    return localize::grow_thing(set.spans(), request).rows;
+}
+
+bool agree_roughly(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b) {
+    std::size_t both = 0, any = 0;
+    for (std::size_t row = 0; row < a.size(); ++row) {
+        both += a[row] != 0 && b[row] != 0 ? 1 : 0;
+        any += a[row] != 0 || b[row] != 0 ? 1 : 0;
+    }
+    return 3 * both >= any;
+}
+
+}  // namespace gse::pipeline
