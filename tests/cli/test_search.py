@@ -53,8 +53,9 @@ class Searches(ProgramTest):
         report = json.loads((self.folder / "out/report.json").read_text())
         self.assertIn("the flat that things stand on", report["label_doubt"])
         self.assertEqual(report["changed_outside_label"], 0)
-        self.assertGreater(report["labelled"], 1700)   # the grass has 1920 of 4914 splats
-        self.assertLess(report["labelled"], 2050)
+        # The grass has 1920 of 4914 splats; the lowest of the bear's may lie within two voxels of it.
+        self.assertGreater(report["labelled"], 1900)
+        self.assertLess(report["labelled"], 1920 + 0.2 * 2994)
         # A part of a ground is no matter of the scene's shape.
         process = self.edit("--source", "road", "--prompt", "a bear on a golden road")
         self.assert_one_sentence(process, '"road"', "label it by hand instead")

@@ -416,7 +416,9 @@ bool EditJob::take_scene_ground(const Located* found) {
         recipe_.request.whole_scene() || !recipe_.request.part_of().empty() ||
         !language::names_scene_ground(source))
         return false;
-    if (found != nullptr && found->found() && found->result.confidence.part("second_witness") >= 0)
+    auto& encoder = context_->recognition();
+    if (found != nullptr &&
+        (encoder.available() ? edit::encoder_knows(finding_of(*context_, *found), encoder) : found->found()))
         return false;
     auto rows = scene_ground(context_->drawn(), views_->orbit.up, control_);
     const bool any = std::find(rows.begin(), rows.end(), std::uint8_t{1}) != rows.end();
