@@ -391,7 +391,8 @@ struct SearchPart {
     bool voting = false;               // the job only votes anew: more views can be left out meanwhile
     bool attention_corrected = false;  // the label was set by hand since: the masks are older than it
     SearchView search;
-    // What would be sent where if the image server looked for the source; empty = it cannot, or need not.
+    // Pictures and address of a search by the image server; empty = it cannot look for the source, or need
+    // not.
     std::string server_search;
 };
 
