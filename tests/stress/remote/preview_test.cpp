@@ -81,7 +81,7 @@ DOCTEST_TEST_CASE("a broken preview is not shown, not asked for again, and leave
                       {"fault", fault},
                       {"times", of_picture ? "100" : "1"}});
         const auto shown = drawn_with_previews(stand_in, times);
-        // What a bomb has in excess is not unpacked, and the rest is a picture.
+        // The excess of a bomb is not unpacked, and the rest is a picture.
         if (fault != "png_bomb") DOCTEST_CHECK(shown.previews.empty());
         DOCTEST_CHECK(shown.picture.data == plain.data);
         const auto asked = stand_in.asked("/internal/progress");
