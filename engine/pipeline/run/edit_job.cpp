@@ -18,6 +18,7 @@
 #include "engine/base/log_quiet.h"
 #include "engine/edit/request/vocabulary.h"
 #include "engine/edit/words/dye_words.h"
+#include "engine/evaluate/metrics.h"
 #include "engine/io/formats/scene_formats.h"
 #include "engine/io/project/project_file.h"
 #include "engine/language/grammar.h"
@@ -40,6 +41,7 @@ namespace {
 constexpr std::size_t InstanceViews = 12;  // renders a tuning learns from (METHOD.md, DreamBooth: 8 to 16)
 // Share of the fitted distance of every other one, where views are automatic.
 constexpr double NearInstance = 0.6;
+constexpr double SameGround = 1.0 / 3;  // IoU with what a search found
 
 /// The label of a scene file that is named like the source, else the first.
 std::vector<std::uint8_t> label_of(const Scene& scene, const std::filesystem::path& path,
@@ -426,8 +428,8 @@ bool EditJob::take_scene_ground(const Located* found) {
         throw Error(ErrorCode::NotFound,
                     fmt::format("no ground is told by the scene's shape for \"{}\"", source),
                     "label it by hand: --at X,Y clicks on it, --cut-out puts a box around it");
-    if (!any || (found != nullptr && found->found() && !agree_roughly(rows, *found->result.label.bits)))
-        return false;
+    const auto* other = found != nullptr && found->found() ? found->result.label.bits.get() : nullptr;
+    if (!any || (other != nullptr && evaluate::row_overlap(rows, *other).iou < SameGround)) return false;
     hints_.label = std::move(rows);
     hints_.label_alone = true;
     hints_.label_doubt =

@@ -20,13 +20,4 @@ std::vector<std::uint8_t> scene_ground(const GaussianSet& set, const Vec3& up, c
     return localize::grow_thing(set.spans(), {*seed, up, GroundExtent * bounds.radius(), true}).rows;
 }
 
-bool agree_roughly(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b) {
-    std::size_t both = 0, any = 0;
-    for (std::size_t row = 0; row < a.size(); ++row) {
-        both += a[row] != 0 && b[row] != 0 ? 1 : 0;
-        any += a[row] != 0 || b[row] != 0 ? 1 : 0;
-    }
-    return 3 * both >= any;
-}
-
 }  // namespace gse::pipeline

@@ -14,7 +14,4 @@ namespace gse::pipeline {
 /// No row where there is none. Throws Error (Cancelled).
 std::vector<std::uint8_t> scene_ground(const GaussianSet& set, const Vec3& up, const JobControl& control);
 
-/// True where two labels [N] share at least a third of what either has.
-bool agree_roughly(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b);
-
 }  // namespace gse::pipeline
