@@ -94,26 +94,26 @@ def camera_sums(path):
     return {"viewpoints": len(frames), **facts, **column_sums(entries)}
 
 
+def written(program, command, path, out, sums):
+    """Record of a command that writes the file `out`, with its sums."""
+    _, entry = run(program, [command, path, out], [DATA, out.parent])
+    if out.exists():
+        entry |= sums(out)
+        out.unlink()
+    return entry
+
+
 def record(program, path, folder):
-    entry = {}
     if path.is_dir() and not (path / "meta.json").exists() and not (path / "lod-meta.json").exists():
-        out = folder / "transforms.json"
-        _, entry["cameras"] = run(program, ["cameras", path, out], [DATA, folder])
-        if out.exists():
-            entry["cameras"] |= camera_sums(out)
-            out.unlink()
-        return entry
+        return {"cameras": written(program, "cameras", path, folder / "transforms.json", camera_sums)}
+    entry = {}
     process, entry["info"] = run(program, ["info", path, "--json"], [DATA, folder])
     if process.returncode == 0:
         facts = json.loads(process.stdout)
         facts.pop("file")
         facts["warnings"] = [text.replace(str(DATA), "...") for text in facts.get("warnings", [])]
         entry["info"]["facts"] = facts
-    out = folder / "scene.ply"
-    _, entry["convert"] = run(program, ["convert", path, out], [DATA, folder])
-    if out.exists():
-        entry["convert"] |= ply_sums(out)
-        out.unlink()
+    entry["convert"] = written(program, "convert", path, folder / "scene.ply", ply_sums)
     return entry
 
 
