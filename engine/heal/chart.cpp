@@ -1,5 +1,6 @@
 // A surface grows from the rows on its plane, cell by cell; then it is drawn from above.
 #include "engine/heal/chart.h"
+#include "engine/math/quantile.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,12 +24,6 @@ constexpr int Smoothings = 2;              // of the heights, over the cells aro
 constexpr double LowPass = 0.3;            // cells, standard deviation that is added to every row
 constexpr double LongestReach = 24;        // cells, drawn of a row
 
-double median(std::vector<double>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 bool lies_along(const SurfaceRow& row, const Vec3& normal) {
     return row.flatness < RoundRow || std::abs(dot(row.normal, normal)) > Aligned;
 }
@@ -46,7 +41,7 @@ double spacing_of(std::span<const Vec3> places) {
         std::nth_element(squared.begin(), far, squared.end());
         spacing.push_back(std::sqrt(*far * 3.14159265358979 / Nearest));
     }
-    return median(spacing);
+    return upper_median(spacing);
 }
 
 class Builder {
@@ -140,7 +135,7 @@ private:
         for (std::uint32_t k = first_[cell]; k < first_[cell + 1]; ++k)
             if (std::abs(heights_[k] - expected) <= reach) few_.push_back(heights_[k]);
         if (few_.empty()) return false;
-        chart_.height.cells[cell] = median(few_);
+        chart_.height.cells[cell] = upper_median(few_);
         chart_.seen.cells[cell] = 1;
         return true;
     }
@@ -288,7 +283,7 @@ void draw_chart(Chart& chart, std::span<const SurfaceRow> rows) {
         if (cover > LeastCover) covers.push_back(cover);
     }
     if (chart.known.cells.empty())  // the first drawing says what is usual here
-        chart.usual_cover = covers.empty() ? 1 : median(covers);
+        chart.usual_cover = covers.empty() ? 1 : upper_median(covers);
     chart.known = BitGrid(width, height, 0);
     for (std::size_t c = 0; c < cells; ++c)
         chart.known.cells[c] = 1 - chart.through.cells[c] >= UsualCoverShare * chart.usual_cover ? 1 : 0;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/heal/distance.h"
+#include "engine/math/quantile.h"
 
 namespace gse::heal {
 namespace {
@@ -80,9 +81,7 @@ template <class F> Look look_of(const Chart& chart, std::span<const SurfaceRow> 
         for (const auto i : chart.rows_in(x, y)) sizes.push_back(rows[i].longest());
     });
     if (sizes.empty()) return {};
-    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-    std::nth_element(sizes.begin(), middle, sizes.end());
-    look.size = *middle;
+    look.size = upper_median(sizes);
     look.density = static_cast<double>(sizes.size()) / static_cast<double>(look.cells);
     look.light = std::max(1e-3, (sum.x + sum.y + sum.z) / static_cast<double>(look.cells));
     look.share = sum / std::max(1e-3, sum.x + sum.y + sum.z);

@@ -1,5 +1,6 @@
 // Connected components over a grid of cells of space.
 #include "engine/heal/held_parts.h"
+#include "engine/math/quantile.h"
 
 #include <algorithm>
 #include <cmath>
@@ -130,10 +131,7 @@ std::vector<int> parts_of(Space& space, std::vector<Part>& parts) {
 double foot_of(const Body& body, const Vec3& up) {
     std::vector<double> heights;
     for (const auto& point : body.points) heights.push_back(dot(point, up));
-    const auto at =
-        heights.begin() + static_cast<std::ptrdiff_t>(FootShare * static_cast<double>(heights.size() - 1));
-    std::nth_element(heights.begin(), at, heights.end());
-    return *at;
+    return lower_quantile(heights, FootShare);
 }
 
 /// Parts of some rows in the space around a thing.

@@ -7,6 +7,7 @@
 
 #include "engine/heal/distance.h"
 #include "engine/heal/shade_depth.h"
+#include "engine/math/quantile.h"
 
 namespace gse::heal {
 namespace {
@@ -462,10 +463,7 @@ private:
                                 static_cast<int>(cell / static_cast<std::size_t>(hole_.width))))
                 values.push_back(brightness(rows_[i].colour));
         if (values.empty()) return;
-        const auto at = values.begin() +
-                        static_cast<std::ptrdiff_t>(BrightShare * static_cast<double>(values.size() - 1));
-        std::nth_element(values.begin(), at, values.end());
-        brightest_ = *at;
+        brightest_ = lower_quantile(values, BrightShare);
     }
 
     /// Goes on with the values of shaded cells into cells beside them that nothing covers.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/math/quantile.h"
 #include "engine/math/sh.h"
 
 namespace gse::heal {
@@ -66,11 +67,7 @@ Body body_of(std::span<const SurfaceRow> thing) {
     Body body;
     if (thing.empty()) return body;
     std::vector<double> values(thing.size());
-    const auto quantile = [&](double share) {
-        const auto at = values.begin() + std::lround(share * static_cast<double>(values.size() - 1));
-        std::nth_element(values.begin(), at, values.end());
-        return *at;
-    };
+    const auto quantile = [&](double share) { return nearest_quantile(values, share); };
     for (int k = 0; k < 3; ++k) {
         std::transform(thing.begin(), thing.end(), values.begin(),
                        [k](const auto& row) { return row.at[k]; });

@@ -172,6 +172,9 @@ std::pair<EditMode, std::string> decide_mode(const EditSentence& words, std::opt
         return {EditMode::Modify, "the scene shows \"" + target + "\" already"};
     const auto terms = terms_of(words.sentence().words(), {source, target});
     const int from = position_in(terms, source), to = position_in(terms, target);
+    if (from < 0 && names_ground(source) && to >= 0 && is_thing(target) &&
+        !thing_of(terms, static_cast<std::size_t>(to)).empty())
+        return {EditMode::Add, "the sentence puts \"" + target + "\" on \"" + source + "\""};
     if (from < 0) return {EditMode::Modify, "the sentence says something else of \"" + source + "\""};
     if (from == to) return {EditMode::Modify, "source and target are the same word"};
     const int first = std::min(from, to), last = std::max(from, to);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/base/check.h"
+#include "engine/math/quantile.h"
 
 namespace gse::localize {
 namespace {
@@ -24,13 +25,6 @@ std::vector<double> labelled_coordinates(const GaussianSet& set, std::span<const
     return values;
 }
 
-/// Sample quantile; sorts its argument partly.
-double quantile(std::vector<double>& values, double share) {
-    const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
-    std::nth_element(values.begin(), values.begin() + rank, values.end());
-    return values[static_cast<std::size_t>(rank)];
-}
-
 }  // namespace
 
 OrbitParameters focus_orbit(const GaussianSet& set, std::span<const std::uint8_t> bits,
@@ -40,8 +34,8 @@ OrbitParameters focus_orbit(const GaussianSet& set, std::span<const std::uint8_t
     for (int axis = 0; axis < 3; ++axis) {
         auto values = labelled_coordinates(set, bits, axis);
         if (values.empty()) return base;
-        low[axis] = quantile(values, parameters.trim);
-        high[axis] = quantile(values, 1 - parameters.trim);
+        low[axis] = nearest_quantile(values, parameters.trim);
+        high[axis] = nearest_quantile(values, 1 - parameters.trim);
     }
     const Vec3 size = high - low;
     // The largest half extent stands for the radius: a diagonal would leave thin things small in the picture.

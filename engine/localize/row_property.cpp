@@ -8,6 +8,7 @@
 
 #include "engine/base/check.h"
 #include "engine/localize/row_tree.h"
+#include "engine/math/quantile.h"
 #include "engine/math/sh.h"
 #include "engine/scene/scene.h"
 
@@ -94,9 +95,8 @@ std::vector<float> isolations(const GaussianSet& set, ThreadPool* threads) {
                            sum / static_cast<double>(std::max<std::size_t>(1, squared.size() - 1)));
                    });
     auto sorted = distance;
-    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-    std::nth_element(sorted.begin(), middle, sorted.end());
-    const double usual = *middle > 0 ? static_cast<double>(*middle) : 1;
+    const auto median = static_cast<double>(upper_median(sorted));
+    const double usual = median > 0 ? median : 1;
     for (std::size_t i = 0; i < distance.size(); ++i)
         values[points.row[i]] =
             static_cast<float>(property_value(RowProperty::Isolation, distance[i] / usual));

@@ -8,6 +8,7 @@
 #include "engine/base/check.h"
 #include "engine/base/clock.h"
 #include "engine/base/random.h"
+#include "engine/math/quantile.h"
 #include "engine/raster/bench_tools.h"
 #include "engine/raster/view_session.h"
 
@@ -63,11 +64,6 @@ double largest_difference(const Image& a, const Image& b) {
     return largest;
 }
 
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    return values[values.size() / 2];
-}
-
 struct SkipCase {
     GaussianData& data;
     std::size_t first_row = 0;
@@ -100,9 +96,9 @@ public:
             round();
         }
         result_.labelled = case_.data.size() - case_.first_row;
-        result_.full = {median(full_forward_), median(full_backward_)};
-        result_.skipping = {median(skipping_forward_), median(skipping_backward_)};
-        result_.ratio = median(ratios_);
+        result_.full = {upper_median(full_forward_), upper_median(full_backward_)};
+        result_.skipping = {upper_median(skipping_forward_), upper_median(skipping_backward_)};
+        result_.ratio = upper_median(ratios_);
         result_.kept_mib = static_cast<double>(session_->work().kept_bytes) / 1048576 /
                            static_cast<double>(case_.views.size());
         return result_;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/math/quantile.h"
 #include "engine/scene/layout/surroundings.h"
 #include "engine/scene/scene.h"
 
@@ -18,12 +19,9 @@ constexpr double FloaterReach = 0.2;        // of the robust size: what lies far
 constexpr double FramedDeviations = 2;      // of a middle-sized splat around its centre
 constexpr double LogScaleLimit = 30;        // larger ones count as this, as in the rasterizer
 
-/// Reorders `values`, which must not be empty.
-double quantile(std::vector<float>& values, double fraction) {
-    const auto index =
-        static_cast<std::ptrdiff_t>(std::lround(fraction * static_cast<double>(values.size() - 1)));
-    std::nth_element(values.begin(), values.begin() + index, values.end());
-    return static_cast<double>(values[static_cast<std::size_t>(index)]);
+/// As nearest_quantile.
+double quantile(std::vector<float>& values, double share) {
+    return static_cast<double>(nearest_quantile(values, share));
 }
 
 }  // namespace

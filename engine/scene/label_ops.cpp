@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/base/check.h"
+#include "engine/math/quantile.h"
 #include "engine/scene/depth_range.h"
 
 namespace gse {
@@ -363,10 +364,7 @@ double growth_radius(const GaussianSet& set, std::span<const std::uint8_t> bits)
         const double spacing = spacing_at(position, labelled[i * labelled.size() / count]);
         if (std::isfinite(spacing)) spacings.push_back(spacing);
     }
-    if (spacings.empty()) return 0;
-    const auto middle = spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / 2);
-    std::nth_element(spacings.begin(), middle, spacings.end());
-    return *middle;
+    return spacings.empty() ? 0 : upper_median(spacings);
 }
 
 NamedLabel grow(NamedLabel label, const GaussianSet& set, int steps, double radius) {

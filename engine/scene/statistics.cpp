@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/math/quantile.h"
 #include "engine/scene/framing.h"
 #include "engine/scene/layout/surroundings.h"
 #include "engine/scene/scene.h"
@@ -59,12 +60,7 @@ struct Quantiles {
 
 /// Reorders `values`, which must not be empty.
 Quantiles quantiles(std::vector<float>& values) {
-    const auto at = [&](double fraction) {
-        const auto index =
-            static_cast<std::ptrdiff_t>(std::lround(fraction * static_cast<double>(values.size() - 1)));
-        std::nth_element(values.begin(), values.begin() + index, values.end());
-        return static_cast<double>(values[static_cast<std::size_t>(index)]);
-    };
+    const auto at = [&](double fraction) { return static_cast<double>(nearest_quantile(values, fraction)); };
     const double low = at(LowQuantile);
     return {low, at(HighQuantile)};
 }

@@ -10,6 +10,7 @@
 
 #include "engine/base/check.h"
 #include "engine/base/random.h"
+#include "engine/math/quantile.h"
 #include "engine/math/unproject.h"
 
 namespace gse::edit {
@@ -96,10 +97,7 @@ double noise_voxel(std::span<const EditView> views, int cells) {
         for (std::size_t i = 0; i < view.mask.data.size(); ++i)
             if (view.mask.data[i] != 0 && view.depth.data[i] > 0)
                 sizes.push_back(view.depth.data[i] / view.view.camera.fx * view.depth.width / cells);
-    if (sizes.empty()) return 1;
-    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-    std::nth_element(sizes.begin(), middle, sizes.end());
-    return 0.5 * *middle;
+    return sizes.empty() ? 1 : 0.5 * upper_median(sizes);
 }
 
 }  // namespace gse::edit

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/base/check.h"
+#include "engine/math/quantile.h"
 
 namespace gse::edit {
 namespace {
@@ -48,12 +49,7 @@ bool Box::has(const Vec3& p) const {
     return p.x >= low.x && p.x <= high.x && p.y >= low.y && p.y <= high.y && p.z >= low.z && p.z <= high.z;
 }
 
-double quantile(std::vector<double> values, double share) {
-    GSE_CHECK(!values.empty());
-    const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
-    std::nth_element(values.begin(), values.begin() + rank, values.end());
-    return values[static_cast<std::size_t>(rank)];
-}
+double quantile(std::vector<double> values, double share) { return nearest_quantile(values, share); }
 
 Box trimmed_box(const std::vector<Vec3>& points, double trim) {
     Box box;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <optional>
 
 #include "engine/base/check.h"
 #include "engine/base/random.h"
@@ -215,6 +216,15 @@ Box worn_box(const std::vector<Vec3>& points, const UprightBounds& standing, con
     return box;
 }
 
+/// The room that the relation leaves around a source with these points, if it leaves one of its own.
+std::optional<RelatedPlace> related_place(const RegionSearch& search, const Frame& frame,
+                                          const std::vector<Vec3>& points) {
+    if (search.relation == language::Relation::None) return std::nullopt;
+    RelatedPlace place(search.relation, points, visible_points(search, frame, false));
+    if (!place.found()) return std::nullopt;
+    return place;
+}
+
 /// Share of the views that see a cube whose mask covers it; 0 where too few count, or where the relation does
 /// not allow it.
 std::vector<double> agreement_of(const RegionSearch& search, const RegionParameters& parameters,
@@ -246,9 +256,7 @@ VoxelRegion vote_region(const RegionSearch& search, const RegionParameters& para
     const auto voters = std::count_if(search.masks.begin(), search.masks.end(),
                                       [](const Mask& m) { return !m.data.empty(); });
     if (points.empty() || voters == 0) return {};
-    const bool related = !language::place_name(search.relation).empty();
-    const RelatedPlace place(search.relation, points,
-                             related ? visible_points(search, frame, false) : std::vector<Vec3>{});
+    const auto place = related_place(search, frame, points);
     const auto worn = [&] {
         const bool known = search.standing.found();
         return worn_box(points,
@@ -256,8 +264,8 @@ VoxelRegion vote_region(const RegionSearch& search, const RegionParameters& para
                               : standing_of(search.gaussians, search.source_bits, search.up, search.front),
                         frame);
     };
-    const Grid grid = make_grid(related ? place.box() : worn(), parameters.cells);
-    const auto agreement = agreement_of(search, parameters, frame, grid, related ? &place : nullptr, voters);
+    const Grid grid = make_grid(place ? place->box() : worn(), parameters.cells);
+    const auto agreement = agreement_of(search, parameters, frame, grid, place ? &*place : nullptr, voters);
     const double best = *std::max_element(agreement.begin(), agreement.end());
     if (best < parameters.least_agreement) return {};
     std::vector<double> levels;
@@ -265,9 +273,12 @@ VoxelRegion vote_region(const RegionSearch& search, const RegionParameters& para
         levels.push_back(level);
     std::vector<VoxelRegion> candidates(levels.size());
     std::vector<double> matches(levels.size(), 0);
+    auto of_parts = parameters;
+    if (place) of_parts.least_part = 1;  // one thing on one side
     const auto some = [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t i = begin; i < end; ++i) {
-            candidates[i] = region_at(grid, frame, agreement, levels[i], parameters);
+            candidates[i] = region_at(grid, frame, agreement, levels[i], of_parts);
+            if (place && !place->suits(candidates[i], frame)) candidates[i] = {};
             matches[i] = candidates[i].empty() ? 0 : silhouette_match(search, candidates[i]);
         }
     };
@@ -293,12 +304,11 @@ VoxelRegion anchor_region(const RegionSearch& search, const std::string& place, 
 }
 
 VoxelRegion usual_region(const RegionSearch& search, const std::string& thing, int cells) {
-    if (language::place_name(search.relation).empty())
-        return anchor_region(search, language::usual_place(thing), cells);
     const Frame frame = make_frame(search.up, search.front);
     const auto points = visible_points(search, frame, true);
     if (points.empty()) return {};
-    return RelatedPlace(search.relation, points, visible_points(search, frame, false)).usual(frame, cells);
+    if (const auto place = related_place(search, frame, points)) return place->usual(frame, cells);
+    return anchor_region(search, language::usual_place(thing), cells);
 }
 
 GaussianData seed_splats(const VoxelRegion& region, int count, int sh_degree, std::uint64_t seed,

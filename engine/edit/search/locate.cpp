@@ -41,6 +41,16 @@ const char* doing(EditMode mode) {
     }
 }
 
+/// Relation of something new to the source. What is worn goes to its own place on a body, and a thing in a
+/// scene whose ground was named stands on that ground.
+language::Relation relation_of_new(const CheckedRequest& request, const std::string& thing) {
+    using language::Relation;
+    const auto relation = request.sentence().relation();
+    if (language::has_usual_place(thing)) return relation == Relation::Above ? Relation::None : relation;
+    const bool on_ground = relation == Relation::None && language::names_ground(request.source());
+    return on_ground ? Relation::Above : relation;
+}
+
 /// Steps of locate() over all views.
 class Locator {
 public:
@@ -261,7 +271,7 @@ private:
         const SoughtWord word = words_.sought(request().target(), true);
         result.word = word.name;
         const bool of_source = request().source() != request().target();
-        const auto relation = of_source ? request().sentence().relation() : language::Relation::None;
+        const auto relation = of_source ? relation_of_new(request(), word.name) : language::Relation::None;
         const auto wearer = wearer_of(request(), input_.gaussians, *result.source_label.bits, input_.up,
                                       input_.front, tools_.drawing != nullptr, input_.traits);
         if (wearer.head < 1)

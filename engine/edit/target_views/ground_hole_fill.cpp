@@ -9,6 +9,7 @@
 
 #include "engine/edit/placement/visual_hull.h"
 #include "engine/math/eigen.h"
+#include "engine/math/quantile.h"
 #include "engine/math/unproject.h"
 
 namespace gse::edit {
@@ -44,9 +45,7 @@ Holes points_in_holes(const std::vector<EditView>& views) {
             }
     }
     if (pixels.empty()) return holes;
-    const auto middle = pixels.begin() + static_cast<std::ptrdiff_t>(pixels.size() / 2);
-    std::nth_element(pixels.begin(), middle, pixels.end());
-    holes.pixel = *middle;
+    holes.pixel = upper_median(pixels);
     return holes;
 }
 
@@ -79,11 +78,7 @@ Plane plane_of(const std::vector<Point>& points) {
 struct Square {
     std::vector<double> heights;
     Vec3 colour;  // sum
-    double height() {
-        const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
-        std::nth_element(heights.begin(), middle, heights.end());
-        return *middle;
-    }
+    double height() { return upper_median(heights); }
 };
 
 /// Tells whether the views bear it out that there is a surface at the point.

@@ -10,6 +10,7 @@
 
 #include "engine/base/check.h"
 #include "engine/localize/clusters.h"
+#include "engine/math/quantile.h"
 #include "engine/math/unproject.h"
 
 namespace gse::edit {
@@ -47,12 +48,6 @@ Vec3 point_of(const EditView& view, int x, int y) {
     return unprojected(view.view.camera, x + 0.5, y + 0.5, static_cast<double>(view.depth.at(x, y, 0)));
 }
 
-float median_of(std::vector<float>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 /// Colours of one point in all views that show it.
 class PointColours {
 public:
@@ -77,7 +72,7 @@ public:
     double distance(std::size_t of, int x, int y) {
         double sum = 0;
         for (std::size_t c = 0; c < 3; ++c)
-            sum += std::abs(pictures_[of].at(x, y, static_cast<int>(c)) - median_of(values_[c]));
+            sum += std::abs(pictures_[of].at(x, y, static_cast<int>(c)) - upper_median(values_[c]));
         return sum / 3;
     }
 
@@ -195,11 +190,10 @@ double mean_chroma(const Image& picture, const Mask& mask) {
 
 double kept_chroma(std::vector<double> of_views, const std::vector<double>& of_scene) {
     if (of_views.empty() || of_scene.empty()) return -1;
-    const auto middle = of_views.begin() + static_cast<std::ptrdiff_t>(of_views.size() / 2);
-    std::nth_element(of_views.begin(), middle, of_views.end());
-    if (*middle < LeastChroma) return -1;
+    const double usual = upper_median(of_views);
+    if (usual < LeastChroma) return -1;
     return std::accumulate(of_scene.begin(), of_scene.end(), 0.0) / static_cast<double>(of_scene.size()) /
-           *middle;
+           usual;
 }
 
 std::string warning_of_chroma(double kept) {

@@ -7,6 +7,7 @@
 
 #include "engine/base/error.h"
 #include "engine/io/bytes/encoding.h"
+#include "engine/math/quantile.h"
 
 namespace gse::io {
 namespace {
@@ -35,9 +36,7 @@ float median(std::span<const float> values) {
     std::vector<float> finite;
     std::copy_if(values.begin(), values.end(), std::back_inserter(finite),
                  [](float value) { return std::isfinite(value); });
-    const auto middle = finite.begin() + static_cast<std::ptrdiff_t>(finite.size() / 2);
-    std::nth_element(finite.begin(), middle, finite.end());
-    return *middle;
+    return upper_median(finite);
 }
 
 /// Attributes that are not impossible as sizes and opacities.

@@ -428,7 +428,7 @@ bool EditJob::take_scene_ground(const Located* found) {
         throw Error(ErrorCode::NotFound,
                     fmt::format("no ground is told by the scene's shape for \"{}\"", source),
                     "label it by hand: --at X,Y clicks on it, --cut-out puts a box around it");
-    const auto* other = found != nullptr && found->found() ? found->result.label.bits.get() : nullptr;
+    const auto* other = found != nullptr && found->found() ? found->result.source_label.bits.get() : nullptr;
     if (!any || (other != nullptr && evaluate::row_overlap(rows, *other).iou < SameGround)) return false;
     hints_.label = std::move(rows);
     hints_.label_alone = true;

@@ -14,6 +14,7 @@
 #include "engine/edit/search/thing_parts.h"
 #include "engine/localize/back_projection.h"
 #include "engine/localize/clusters.h"
+#include "engine/math/quantile.h"
 #include "engine/pipeline/scene/scene_tools.h"
 #include "engine/pipeline/select/box_cut.h"
 #include "engine/pipeline/select/box_support.h"
@@ -129,11 +130,7 @@ double distance_from_most(const raster::ForwardOutput& picture, const std::array
             sum += std::pow(std::clamp(picture.colour.data[pixel * 3 + c], 0.0f, 1.0f) - colour[c], 2.0f);
         distances.push_back(sum);
     }
-    if (distances.empty()) return -1;
-    const auto place =
-        distances.begin() + static_cast<std::ptrdiff_t>(few * static_cast<double>(distances.size() - 1));
-    std::nth_element(distances.begin(), place, distances.end());
-    return static_cast<double>(*place);
+    return distances.empty() ? -1 : static_cast<double>(lower_quantile(distances, few));
 }
 
 /// Something dark before a dark nothing has no outline: where much of what is opaque looks like the

@@ -13,6 +13,7 @@
 #include "engine/localize/back_projection.h"
 #include "engine/localize/clusters.h"
 #include "engine/localize/propagate_labels.h"
+#include "engine/math/quantile.h"
 
 namespace gse::pipeline {
 namespace {
@@ -49,12 +50,7 @@ std::optional<Bounds> bounds_of(const GaussianSet& set, const std::vector<std::u
         for (std::size_t row = 0; row < rows.size(); ++row)
             if (rows[row] != 0) values.push_back(positions[row * 3 + static_cast<std::size_t>(axis)]);
         if (values.empty()) return std::nullopt;
-        const auto at = [&](double share) {
-            const auto place =
-                values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-            std::nth_element(values.begin(), place, values.end());
-            return static_cast<double>(*place);
-        };
+        const auto at = [&](double share) { return static_cast<double>(lower_quantile(values, share)); };
         bounds.low[axis] = at(trim), bounds.high[axis] = at(1 - trim);
     }
     return bounds;

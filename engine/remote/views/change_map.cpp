@@ -8,6 +8,7 @@
 
 #include "engine/base/check.h"
 #include "engine/localize/clusters.h"
+#include "engine/math/quantile.h"
 #include "engine/remote/views/registration.h"
 
 namespace gse::remote {
@@ -91,10 +92,7 @@ OtsuClasses otsu_classes(const Histogram& histogram) {
 
 /// Value below which that share of the values lies.
 float quantile(std::vector<float> values, double share) {
-    if (values.empty()) return 0;
-    const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), values.begin() + at, values.end());
-    return values[static_cast<std::size_t>(at)];
+    return values.empty() ? 0 : lower_quantile(values, share);
 }
 
 /// The picture without its even shift of each channel against `before`.

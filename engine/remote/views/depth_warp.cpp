@@ -9,6 +9,7 @@
 #include "engine/base/check.h"
 #include "engine/edit/request/scales.h"
 #include "engine/localize/clusters.h"
+#include "engine/math/quantile.h"
 #include "engine/math/unproject.h"
 
 namespace gse::remote {
@@ -65,12 +66,6 @@ std::optional<Colour> shown_by(const edit::EditView& view, const Image& picture,
     return sampled(picture, x, y);
 }
 
-float median_of(std::vector<float>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 Mask without_rim(const Mask& known, const Mask& allowed) {
     Mask unknown(known.width, known.height);
     for (std::size_t i = 0; i < known.data.size(); ++i)
@@ -100,7 +95,7 @@ WarpedView warp_by_depth(const std::vector<const edit::EditView*>& from,
             if (values[0].empty()) continue;
             warped.known.at(x, y) = 1;
             for (int c = 0; c < 3; ++c)
-                warped.picture.at(x, y, c) = median_of(values[static_cast<std::size_t>(c)]);
+                warped.picture.at(x, y, c) = upper_median(values[static_cast<std::size_t>(c)]);
         }
     warped.known = without_rim(warped.known, to.mask);
     for (std::size_t i = 0; i < warped.known.data.size(); ++i)

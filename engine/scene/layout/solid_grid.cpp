@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/math/quantile.h"
 #include "engine/math/sh.h"
 #include "engine/scene/scene.h"
 
@@ -77,10 +78,7 @@ std::vector<SurfaceSample> surface_samples(const GaussianSet& gaussians, std::si
         opacities.push_back(1 / (1 + std::exp(-static_cast<double>(set.opacity_logit[row]))));
     }
     if (samples.empty()) return samples;
-    const auto at =
-        areas.begin() + static_cast<std::ptrdiff_t>(LargestArea * static_cast<double>(areas.size() - 1));
-    std::nth_element(areas.begin(), at, areas.end());
-    const double largest = *at;
+    const double largest = lower_quantile(areas, LargestArea);
     for (std::size_t i = 0; i < count; ++i)
         samples[i].weight = opacities[i] * std::min(samples[i].weight, largest);
     return samples;

@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "engine/math/framing.h"
+#include "engine/math/quantile.h"
 #include "engine/scene/scene.h"
 
 namespace gse {
@@ -30,14 +31,6 @@ Vec3 point_of(const VisibleRows& rows, std::uint32_t index) {
     return {p[0], p[1], p[2]};
 }
 
-/// Element at a share of the sorted order. Reorders `values`, which must not be empty.
-double element_at(std::vector<double>& values, double share) {
-    const auto at = values.begin() +
-                    static_cast<std::ptrdiff_t>(std::lround(share * static_cast<double>(values.size() - 1)));
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
-}
-
 /// Bounds of the rows without `share` of them at either end of each axis.
 Bounds bounds_without(const VisibleRows& rows, const Indices& indices, double share) {
     Bounds bounds;
@@ -45,8 +38,8 @@ Bounds bounds_without(const VisibleRows& rows, const Indices& indices, double sh
     for (int axis = 0; axis < 3; ++axis) {
         std::transform(indices.begin(), indices.end(), values.begin(),
                        [&](std::uint32_t i) { return point_of(rows, i)[axis]; });
-        bounds.low[axis] = element_at(values, share);
-        bounds.high[axis] = element_at(values, 1 - share);
+        bounds.low[axis] = nearest_quantile(values, share);
+        bounds.high[axis] = nearest_quantile(values, 1 - share);
     }
     return bounds;
 }
@@ -128,7 +121,7 @@ Weighted in_company(const VisibleRows& rows, const Weighted& all, const Bounds& 
         if (holds(dense, point_of(rows, i))) counts.push_back(count[key_of(point_of(rows, i))]);
     Weighted result;
     if (counts.empty()) return result;
-    const double least = std::max(LeastCount, LeastOfMiddle * element_at(counts, 0.5));
+    const double least = std::max(LeastCount, LeastOfMiddle * nearest_quantile(counts, 0.5));
     for (std::size_t i = 0; i < all.rows.size(); ++i) {
         if (count[key_of(point_of(rows, all.rows[i]))] < least) continue;
         result.rows.push_back(all.rows[i]);
@@ -217,7 +210,7 @@ double middle_opacity(const VisibleRows& rows, const Indices& indices) {
     std::vector<double> logits(indices.size());
     std::transform(indices.begin(), indices.end(), logits.begin(),
                    [&](std::uint32_t i) { return static_cast<double>(rows.opacity_logit[i]); });
-    return 1 / (1 + std::exp(-element_at(logits, 0.5)));
+    return 1 / (1 + std::exp(-nearest_quantile(logits, 0.5)));
 }
 
 bool faint(const VisibleRows& rows, const Indices& far, const Indices& near) {
@@ -245,7 +238,7 @@ bool scattered(const VisibleRows& rows, const Indices& far) {
         }
         gaps.push_back(std::sqrt(nearest) / std::exp(static_cast<double>(rows.log_size[row])));
     }
-    return element_at(gaps, 0.5) > LeastGap;
+    return nearest_quantile(gaps, 0.5) > LeastGap;
 }
 
 /// True when the rows fill the space around the core evenly, as no surfaces do.

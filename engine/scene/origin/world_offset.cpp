@@ -1,5 +1,6 @@
 // Medians of large coordinates, and moves by them.
 #include "engine/scene/origin/world_offset.h"
+#include "engine/math/quantile.h"
 
 #include <fmt/format.h>
 
@@ -22,10 +23,7 @@ double median_of_axis(std::span<const double> positions, std::size_t axis) {
     std::vector<double> values;
     for (std::size_t row = 0; row < rows; row += step)
         if (const double value = positions[row * 3 + axis]; std::isfinite(value)) values.push_back(value);
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+    return values.empty() ? 0 : upper_median(values);
 }
 
 Vec3 median_of(std::span<const double> positions) {

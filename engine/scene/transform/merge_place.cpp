@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "engine/base/error.h"
+#include "engine/math/quantile.h"
 #include "engine/scene/layout/surroundings.h"
 
 namespace gse {
@@ -44,13 +45,6 @@ Points upright_points(const GaussianSet& set, const Affine& upright) {
     return points;
 }
 
-/// Value that `share` of all are below. `values` must not be empty; they are reordered.
-double value_at(std::vector<double>& values, double share) {
-    const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
-    std::nth_element(values.begin(), values.begin() + rank, values.end());
-    return values[static_cast<std::size_t>(rank)];
-}
-
 struct UprightBox {
     Vec3 low, high;
     Vec3 size() const { return high - low; }
@@ -63,8 +57,8 @@ UprightBox robust_box(const Points& points, double trim) {
     for (int axis = 0; axis < 3; ++axis) {
         std::vector<double> values;
         for (const Vec3& p : points) values.push_back(p[axis]);
-        box.low[axis] = value_at(values, trim);
-        box.high[axis] = value_at(values, 1 - trim);
+        box.low[axis] = nearest_quantile(values, trim);
+        box.high[axis] = nearest_quantile(values, 1 - trim);
     }
     return box;
 }
@@ -85,10 +79,10 @@ public:
         std::vector<double> all;
         for (auto& column : heights) {
             const bool has = column.size() >= LeastRows;
-            low_.push_back(has ? value_at(column, LowShare) : std::nan(""));
+            low_.push_back(has ? nearest_quantile(column, LowShare) : std::nan(""));
             if (has) all.push_back(low_.back());
         }
-        ground_ = all.empty() ? box.low.y : value_at(all, GroundShare);
+        ground_ = all.empty() ? box.low.y : nearest_quantile(all, GroundShare);
     }
 
     double ground() const { return ground_; }
@@ -108,7 +102,7 @@ public:
             }
         if (cells == 0 || static_cast<double>(heights.size()) < Footing * static_cast<double>(cells))
             return std::nullopt;
-        return value_at(heights, 0.5);
+        return nearest_quantile(heights, 0.5);
     }
 
     /// Rows where the guest would stand.

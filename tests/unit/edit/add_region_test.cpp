@@ -297,4 +297,71 @@ DOCTEST_TEST_CASE("beside is the side with room, under is below what floats and 
     for (const auto& cell : rug.centres) DOCTEST_CHECK(std::abs(cell.y - 0.4) < 0.08);
 }
 
+namespace {
+
+/// Rows of one thing: square plates of points, level at a height, and upright walls. Up is -y.
+class Furniture {
+public:
+    void plate(const Vec3& centre, double half) {
+        for (double x = -half; x <= half; x += 0.04)
+            for (double z = -half; z <= half; z += 0.04) point(centre + Vec3{x, 0, z});
+    }
+    void wall(const Vec3& low, double width, double height) {
+        for (double x = 0; x <= width; x += 0.04)
+            for (double y = 0; y <= height; y += 0.04) point(low + Vec3{x, -y, 0});
+    }
+    GaussianSet set() const {
+        auto data = data_;
+        data.resize(points_.size());
+        for (std::size_t row = 0; row < points_.size(); ++row) {
+            for (int axis = 0; axis < 3; ++axis)
+                data.position[row * 3 + static_cast<std::size_t>(axis)] =
+                    static_cast<float>(points_[row][axis]);
+            data.opacity_logit[row] = 4;
+        }
+        return GaussianSet(std::move(data));
+    }
+
+private:
+    void point(const Vec3& p) { points_.push_back(p); }
+    std::vector<Vec3> points_;
+    GaussianData data_;
+};
+
+edit::VoxelRegion put_on(const GaussianSet& set) {
+    const std::vector<std::uint8_t> bits(set.size(), 1);
+    const std::vector<View> views;
+    const edit::RegionSearch search{set, bits,       views,      {},
+                                    {},  {0, -1, 0}, {0, 0, -1}, language::Relation::Above};
+    return edit::usual_region(search, "cat");
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("on a chair is on its seat, on a table its top, and a ball has no level place") {
+    constexpr double SeatHeight = 0.5;
+    Furniture chair;
+    chair.plate({0, -SeatHeight, 0}, 0.4);
+    chair.wall({-0.4, 0, 0.4}, 0.8, 1.2);  // the back, higher than the seat
+    const auto cat = put_on(chair.set());
+    DOCTEST_REQUIRE_FALSE(cat.empty());
+    DOCTEST_CHECK(cat.origin == "on");
+    double lowest = 1e9;
+    for (const auto& cell : cat.centres) {
+        lowest = std::min(lowest, -cell.y);
+        DOCTEST_CHECK(std::max(std::abs(cell.x), std::abs(cell.z)) < 0.4);
+    }
+    DOCTEST_CHECK(std::abs(lowest - SeatHeight) < cat.side);  // it touches the seat
+    Furniture table;
+    table.plate({0, 0, 0}, 0.1);
+    table.plate({0, -1, 0}, 0.6);
+    const auto vase = put_on(table.set());
+    DOCTEST_CHECK(vase.origin == "on");
+    for (const auto& cell : vase.centres) DOCTEST_CHECK(cell.y < -1);
+    const Search ball({-0.55, -0.55, 0}, 0.2);
+    auto search = ball.search();
+    search.relation = language::Relation::Above;
+    DOCTEST_CHECK(edit::usual_region(search, "cat").origin == "top");
+}
+
 }  // namespace add_region_test

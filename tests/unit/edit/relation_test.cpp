@@ -81,6 +81,17 @@ DOCTEST_TEST_CASE("what stands somewhere is added, and the sentence before has n
     }
 }
 
+DOCTEST_TEST_CASE(
+    "a thing in a scene whose ground was named is added; another ground or look changes the ground") {
+    const auto mode = [](const char* sentence, const char* target) {
+        return edit::decide_mode(test::asked("floor", sentence, target), std::nullopt).first;
+    };
+    DOCTEST_CHECK(mode("a red chair in a kitchen", "chair") == edit::EditMode::Add);
+    DOCTEST_CHECK(mode("a bear on the snow", "snow") == edit::EditMode::Modify);
+    DOCTEST_CHECK(mode("make it wooden", "wooden") == edit::EditMode::Modify);
+    DOCTEST_CHECK(mode("a kitchen with a wooden floor", "wooden") == edit::EditMode::Modify);
+}
+
 DOCTEST_TEST_CASE("compound prepositions name no things") {
     using Things = std::vector<std::string>;
     DOCTEST_CHECK(language::Sentence("a bear next to a ball").things() == Things{"bear", "ball"});

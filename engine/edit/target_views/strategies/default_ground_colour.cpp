@@ -6,6 +6,7 @@
 
 #include "engine/edit/words/colour_word.h"
 #include "engine/language/description.h"
+#include "engine/math/quantile.h"
 
 namespace gse::edit {
 namespace {
@@ -20,10 +21,7 @@ float median_luminance(const std::vector<EditView>& views) {
     for (const auto& view : views)
         for (std::size_t p = 0; p < view.mask.data.size(); ++p)
             if (view.mask.data[p] != 0) values.push_back(luma_of(view.original, p));
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+    return values.empty() ? 0 : upper_median(values);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "engine/base/log.h"
 #include "engine/edit/words/colour_word.h"
+#include "engine/math/quantile.h"
 
 namespace gse::edit {
 namespace {
@@ -102,13 +103,7 @@ private:
     }
     static std::array<float, 2> range_of(std::vector<float>& values) {
         if (values.empty()) return {0, 1};
-        const auto ranked = [&](double rank) {
-            const auto at =
-                values.begin() + static_cast<std::ptrdiff_t>(rank * static_cast<double>(values.size() - 1));
-            std::nth_element(values.begin(), at, values.end());
-            return *at;
-        };
-        float low = ranked(DarkRank), high = ranked(LightRank);
+        float low = lower_quantile(values, DarkRank), high = lower_quantile(values, LightRank);
         const float lacking = LeastContrast - (high - low);
         if (lacking > 0) low -= 0.5f * lacking, high += 0.5f * lacking;
         return {low, high};

@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "engine/base/process_memory.h"
+#include "engine/math/quantile.h"
 #include "engine/pipeline/scene/scene_tools.h"
 #include "engine/preview/resolve.h"
 #include "engine/preview/splat_renderer.h"
@@ -37,10 +38,7 @@ double wall_ms() {
         .count();
 }
 
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    return values.empty() ? 0.0 : values[values.size() / 2];
-}
+double median(std::vector<double> values) { return values.empty() ? 0 : upper_median(values); }
 
 /// Times of the frames of one renderer.
 struct Times {
