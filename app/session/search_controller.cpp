@@ -226,8 +226,14 @@ template <> void SearchController::on(const command::Locate& locate) {
     try {
         wanted.request = edit::check(std::move(wanted.request)).plain();
     } catch (const Error& error) { return workspace_.notices.report(error); }
-    auto work = [run, wanted, open = alone ? wanted : open_recipe(wanted), ground = ground(wanted), by_server,
-                 known = costs_.profile(request()), cache = models_.cache()](const JobControl& control) {
+    auto searched = ground(wanted);
+    if (by_server)  // else the label of that name is taken for what is found
+        std::erase_if(searched.scene.labels.labels, [&](const Label& label) {
+            return language::normalised_prompt(label.name) == wanted.request.source;
+        });
+    auto work = [run, wanted, open = alone ? wanted : open_recipe(wanted), ground = std::move(searched),
+                 by_server, known = costs_.profile(request()),
+                 cache = models_.cache()](const JobControl& control) {
         const auto before = network_use();
         load_model(*run, wanted.job, cache, control);
         connect_to_server(*run, wanted, cache, control);

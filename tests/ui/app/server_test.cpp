@@ -186,6 +186,25 @@ DOCTEST_TEST_CASE("settings of the drawing are checked, keep their origin, and o
     again.app.shut_down();
 }
 
+DOCTEST_TEST_CASE("a model that the server lacks leaves the list to choose another from") {
+    if (!can_ask()) return;
+    const Place place;
+    Session session;
+    remote::StandIn server("forge");
+    const auto& view = session.app.model().server;
+    choose(session, server.url());
+    session.app.run(command::TestServer{});
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_REQUIRE(view.models.size() == 2);
+    auto choice = view.choice;
+    choice.model = "nonsense";
+    session.app.run(command::SetServer{choice});
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_CHECK(view.problem.find("nonsense") != std::string::npos);
+    DOCTEST_CHECK(view.models.size() == 2);
+    session.app.shut_down();
+}
+
 DOCTEST_TEST_CASE("a server without a list of LoRAs says so, and one that is typed is kept for it") {
     if (!can_ask()) return;
     const Place place;
