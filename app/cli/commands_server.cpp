@@ -71,6 +71,9 @@ void print_facts(const ViewServer& views) {
           facts.references, facts.repeats ? "yes" : "no");
     for (const auto& model : facts.models) print("offers      {}\n", printable(model));
     for (const auto& lora : facts.loras) print("LoRA        {}\n", printable(lora));
+    if (facts.lora_names != remote::LoraNames::Listed)
+        print("LoRAs       {}\n",
+              facts.lora_names == remote::LoraNames::Any ? "any name or path: it has no list" : "none");
     for (const auto& note : facts.notes) print("note        {}\n", printable(note));
 }
 
@@ -84,6 +87,7 @@ void run_server_command(ServerOptions& options, const CommandContext& context) {
         auto json = views.to_json();
         json["models"] = views.facts().models;
         json["loras"] = views.facts().loras;
+        json["lora_names"] = remote::lora_names_name(views.facts().lora_names);
         json["notes"] = views.facts().notes;
         json["takes_mask"] = views.facts().takes_mask;
         json["references"] = views.facts().references;

@@ -10,6 +10,7 @@
 #include "app/cli/model_options.h"
 #include "app/laboratory/eval_settings.h"
 #include "app/laboratory/laboratory.h"
+#include "app/laboratory/server_table.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/path_text.h"
@@ -32,8 +33,6 @@
 #include "engine/laboratory/bench/raster/stability_bench.h"
 #include "engine/laboratory/bench/scale_bench.h"
 #include "engine/laboratory/bench/search_bench.h"
-#include "engine/laboratory/bench/server_bench.h"
-#include "engine/pipeline/models/installed.h"
 #include "engine/pipeline/models/neural_loader.h"
 #include "engine/raster/bench.h"
 
@@ -263,12 +262,8 @@ void add_server_bench(CLI::App& bench, CommandContext& context) {
         "server", "Ways to make a server's views agree, with a server here that contradicts itself");
     command->add_option("--out", options->output, "File for the figures as JSON");
     bind_fields(*command, options->parameters, "Server");
-    command->callback([options, &context] {
-        const auto rows =
-            bench_server(assets_path() / "scenes/bear/scene.ply", options->parameters, context.job());
-        if (!options->output.empty()) write_file(options->output, agreement_json(rows).dump(2) + "\n");
-        fmt::print("{}", agreement_text(rows));
-    });
+    command->callback(
+        [options, &context] { write_server_table(options->parameters, options->output, context.job()); });
 }
 
 /// A subject that asks the model: its fields and the model's options.

@@ -6,6 +6,7 @@
 #include "app/cli/dreambooth_options.h"
 #include "app/laboratory/eval_settings.h"
 #include "app/laboratory/laboratory.h"
+#include "app/laboratory/server_table.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/path_text.h"
@@ -22,9 +23,30 @@ namespace {
 struct EvalOptions {
     EvalRun run;
     RealParameters real;
+    bench::ServerBenchParameters server_bench;
+    bool server = false;  // ways to make a server's views agree are measured, and no edits
     std::filesystem::path output = "out/eval";
     bool json = false;
 };
+
+constexpr const char* ServerGroup = "Server (--server)";
+
+/// Table of `bench server`. Throws Error (InvalidArgument) for options that do not count in it, and for those
+/// of the table without --server.
+void check_server_options(const CLI::App& command, bool server) {
+    for (const auto* option : command.get_options()) {
+        const bool of_server = option->get_group() == ServerGroup;
+        if (option->count() == 0 || option->get_name() == "--out") continue;
+        if (server && !of_server)
+            throw Error(ErrorCode::InvalidArgument,
+                        fmt::format("{} does not count with --server", option->get_name()),
+                        "leave it out: --server measures ways to use a stand-in, and no model");
+        if (!server && of_server)
+            throw Error(ErrorCode::InvalidArgument,
+                        fmt::format("{} counts with --server only", option->get_name()),
+                        "add --server, or leave it out");
+    }
+}
 
 void run_eval_command(EvalOptions& options, const CommandContext& context) {
     StagedFolder folder(options.output, {"eval.json", {"eval.json", "eval.txt"}});
@@ -52,8 +74,11 @@ void add_eval_command(CLI::App& app, CommandContext& context) {
     auto options = std::make_shared<EvalOptions>();
     auto* command =
         app.add_subcommand("eval", "Measure a model on edits whose true result is known, and on real scenes");
-    command->add_option("--out", options->output, "Folder for eval.json, the table and contact sheets")
-        ->capture_default_str();
+    auto* output = command
+                       ->add_option("--out", options->output,
+                                    "Folder for eval.json, the table and contact sheets; with --server, "
+                                    "a file for the figures as JSON")
+                       ->capture_default_str();
     command->add_flag("--json", options->json, "Print the figures as JSON instead of the table");
     command->add_option("--scenes", options->run.scenes,
                         "Real scenes to edit: PATH or PATH:source:sentence:target");
@@ -62,7 +87,17 @@ void add_eval_command(CLI::App& app, CommandContext& context) {
     add_eval_settings(*command, options->run.settings);
     add_dreambooth_options(
         *command, options->run.settings);  // of real scenes: the suite's are of the model's own world
-    command->callback([options, command, &context] {
+    command
+        ->add_flag("--server", options->server,
+                   "Measure ways to make a server's views agree, as bench server does, in place of edits")
+        ->group(ServerGroup);
+    bind_fields(*command, options->server_bench, ServerGroup);
+    command->callback([options, output, command, &context] {
+        check_server_options(*command, options->server);
+        if (options->server)
+            return write_server_table(options->server_bench,
+                                      output->count() > 0 ? options->output : std::filesystem::path(),
+                                      context.job());
         apply_eval_model(*command, options->run.settings);
         run_eval_command(*options, context);
     });

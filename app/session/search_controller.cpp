@@ -53,6 +53,12 @@ Error problem_of(const EditJob& job) {
     return Error(ErrorCode::NotFound, job.located().message, job.located().remedy);
 }
 
+/// Tells whether the server may be offered to look for a thing: nothing says where it is, or a search does,
+/// which may have been wrong.
+bool may_be_searched(const NamedLabel* label) {
+    return label == nullptr || (!label->found_for.empty() && !made_by_hand(*label));
+}
+
 /// Words about what would be sent if the server looked for the source of a recipe; empty where it cannot, or
 /// where the model's words do.
 std::string offer_of_search(const ServerController& servers, EditRecipe recipe,
@@ -220,8 +226,14 @@ template <> void SearchController::on(const command::Locate& locate) {
     try {
         wanted.request = edit::check(std::move(wanted.request)).plain();
     } catch (const Error& error) { return workspace_.notices.report(error); }
-    auto work = [run, wanted, open = alone ? wanted : open_recipe(wanted), ground = ground(wanted), by_server,
-                 known = costs_.profile(request()), cache = models_.cache()](const JobControl& control) {
+    auto searched = ground(wanted);
+    if (by_server)  // else the label of that name is taken for what is found
+        std::erase_if(searched.scene.labels.labels, [&](const Label& label) {
+            return language::normalised_prompt(label.name) == wanted.request.source;
+        });
+    auto work = [run, wanted, open = alone ? wanted : open_recipe(wanted), ground = std::move(searched),
+                 by_server, known = costs_.profile(request()),
+                 cache = models_.cache()](const JobControl& control) {
         const auto before = network_use();
         load_model(*run, wanted.job, cache, control);
         connect_to_server(*run, wanted, cache, control);
@@ -421,8 +433,9 @@ void SearchController::refresh_scope() {
                            corrected_after_search(workspace_.document.state().labels, {last_.word(), source});
     scope_ = {};
     labelled_by_hand_ = false;
-    server_search_ = scope() == nullptr ? offer_of_search(servers_, recipe(), models_.list().known_words())
-                                        : std::string();
+    server_search_ = may_be_searched(scope())
+                         ? offer_of_search(servers_, recipe(), models_.list().known_words())
+                         : std::string();
     scope_.present = present_already(workspace_.document.state(), recipe().request, read_target());
     const NamedLabel *active = workspace_.active_label(), *used = scope();
     const NamedLabel* label = used != nullptr ? used : active;

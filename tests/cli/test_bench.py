@@ -56,6 +56,25 @@ class Benches(ProgramTest):
         self.assertIn("20,000,000", process.stdout)
         self.assertEqual([size for size, _ in series["side"]["costs"][0]["points"]], [16, 32])
 
+    def test_eval_measures_ways_to_use_a_server_as_bench_server_does(self):
+        quick = ["--side", 64, "--seeds", 1]
+        tables = []
+        for name, command in (("bench", ["bench", "server"]), ("eval", ["eval", "--server"])):
+            out = self.folder / f"{name}.json"
+            process = run_laboratory("-q", *command, *quick, "--out", out)
+            self.assertEqual(process.returncode, 0, process.stderr)
+            rows = json.loads(out.read_text())
+            for row in rows:
+                self.assertIn(row["agreement"], process.stdout)
+                self.assertGreater(row.pop("seconds"), 0)
+            tables.append(rows)
+        self.assertEqual(tables[0], tables[1])
+        self.assertGreater(len(tables[0]), 3)
+        refused = run_laboratory("-q", "eval", "--server", "--edits", 2)
+        self.assert_one_sentence(refused, "--edits", "--server")
+        refused = run_laboratory("-q", "eval", "--hue", 20)
+        self.assert_one_sentence(refused, "--hue", "--server")
+
     def test_locate_keeps_the_error_of_every_scene(self):
         _, report = self.subject("locate", "--scenes", 2, "--views", "6", "--repeats", "", "--levels", "",
                                  "--img2img", "", "--no-parts")

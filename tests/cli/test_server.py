@@ -156,6 +156,21 @@ class Servers(ProgramTest):
             self.assert_one_sentence(refused, words)
         self.assertEqual(len(server.drawings()), asked)
 
+    def test_a_model_that_follows_instructions_edits_in_comfyui(self):
+        server = self.server("comfy")
+        for name, more in (("found", []), ("named", ["--server-workflow", "edit"])):
+            out = self.folder / name
+            process = self.edit(out, "--server", server.url, "--server-model", "flux-2-klein-4b.safetensors",
+                                *more)
+            self.assertEqual(process.returncode, 0, process.stderr)
+            report = json.loads((out / "report.json").read_text())
+            self.assertEqual(report["server"]["family"], "flux2-klein")
+            self.assertEqual(report["changed_outside_label"], 0)
+        graph = server.drawings()[-1]["json"]["prompt"]
+        self.assertIn("ReferenceLatent", [node["class_type"] for node in graph.values()])
+        recipe = json.loads((self.folder / "named/recipe.json").read_text())
+        self.assertEqual(recipe["server"]["workflow"], "edit")
+
     def test_a_server_with_little_memory_draws_smaller_pictures_and_it_is_told(self):
         server = self.server(model="sd-v1-5", most_side=64)
         out = self.folder / "out"

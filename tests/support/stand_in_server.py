@@ -49,6 +49,7 @@ class World:
         self.unread = 0      # 1: bodies of drawings are not read
         self.most_side = 0   # px that its memory does for; 0 = any
         self.edits = ""   # "red": what is red is edited where no mask says what
+        self.no_loras = 0    # 1: a WebUI has no list of LoRAs
         self.password, self.model, self.prefix = "", "stand-in", ""
         self.queue_limit, self.new_comfy = 64, 0
         self.jobs, self.log, self.uploads, self.tasks = {}, [], {}, {}
@@ -315,6 +316,8 @@ class Handler(BaseHTTPRequestHandler):
                  "sd-vae": (("a1111",), []),
                  "sd-models": (WEBUI, [{"title": "stand-in"}, {"title": "other"}]),
                  "loras": (WEBUI, [{"name": "bronze", "path": "bronze.safetensors"}])}
+        if place == "loras" and self.world.no_loras:
+            return self.send_json({"detail": "Not Found"}, 404)
         if place in lists and flavour in lists[place][0]:
             return self.send_json(lists[place][1])
         return self.send_json({"detail": "Not Found"}, 404)
@@ -405,7 +408,8 @@ class Handler(BaseHTTPRequestHandler):
         if path == "/sdcpp/v1/capabilities":
             return self.send_json({
                 "model": {"name": world.model, "stem": world.model, "path": "/models/x"},
-                "samplers": ["euler"], "loras": [{"name": "bronze", "path": "bronze.safetensors"}],
+                "samplers": ["euler", "euler_a"], "schedulers": ["discrete", "karras"],
+                "loras": [{"name": "bronze", "path": "bronze.safetensors"}],
                 "limits": {"max_queue_size": world.queue_limit},
                 "features_by_mode": {"img_gen": {"ref_images": True, "mask_image": True,
                                                  "cancel_queued": True, "cancel_generating": False}}})

@@ -51,17 +51,18 @@ void update_sentence(Context& context) {
     auto& prompt = context.state.prompt;
     const auto& request = context.request;
     const auto& model = context.model;
-    std::string key = fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", request.source,
-                                  request.prompt, request.target, request.mode, request.method,
-                                  model.known_words.size(), model.labelled_by_hand, model.words_read,
-                                  model.read_target, model.generated_vocabulary.size(), model.server.on);
+    const bool server_finds = !model.server_search.empty();
+    std::string key = fmt::format(
+        "{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", request.source, request.prompt, request.target,
+        request.mode, request.method, model.known_words.size(), model.labelled_by_hand, model.words_read,
+        model.read_target, model.generated_vocabulary.size(), model.server.on, server_finds);
     for (const auto& word : model.said_words) key += "\n" + word;
     for (const auto& thing : model.made_things) key += "\n" + thing;
     if (key == prompt.key) return;
     prompt.key = std::move(key);
-    SentenceFacts facts = facts_of(
-        request, {model.known_words, model.said_words, model.labelled_by_hand, model.words_read,
-                  model.read_target, model.made_things, model.generated_vocabulary, model.server.on});
+    SentenceFacts facts = facts_of(request, {model.known_words, model.said_words, model.labelled_by_hand,
+                                             model.words_read, model.read_target, model.made_things,
+                                             model.generated_vocabulary, model.server.on, server_finds});
     prompt.chips = std::move(facts.chips);
     prompt.problem = std::move(facts.problem);
     prompt.locate_problem = std::move(facts.locate_problem);

@@ -23,6 +23,7 @@
 #include "engine/math/framing.h"
 #include "engine/pipeline/models/model_catalogue.h"
 #include "engine/pipeline/report/evidence_pictures.h"
+#include "engine/remote/api/server_lora.h"
 #include "engine/remote/api/server_settings.h"
 #include "engine/scene/camera_key.h"
 #include "engine/scene/document.h"
@@ -469,8 +470,9 @@ struct ServerView {
     bool testing = false;           // it is being asked
     bool is_comfy = false;          // it draws by workflows
     std::vector<Fact> facts;
-    std::vector<std::string> notes;             // of the server, or about it
-    std::vector<std::string> models, loras;     // to choose from; empty = not told
+    std::vector<std::string> notes;          // of the server, or about it
+    std::vector<std::string> models, loras;  // to choose from; empty = not told
+    remote::LoraNames lora_names = remote::LoraNames::Listed;
     std::vector<std::string> families{"auto"};  // to choose from
     std::string problem;  // why it cannot be used, with the remedy; empty = none is known
 };

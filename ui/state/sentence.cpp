@@ -39,10 +39,12 @@ bool source_is_missing(const std::string& source, const SentenceGround& ground) 
 }
 
 std::string unknown_source(const std::string& source, const SentenceGround& ground) {
+    const char* remedy = ground.server_finds ? "let the server find it, or click on it in the view"
+                                             : "click on it in the view";
     if (language::vocabulary_contains(language::promptable_vocabulary(ground.known, ground.drawn), source))
-        return fmt::format("The model can draw \"{}\" but not find it: click on it in the view", source);
-    return fmt::format("The model does not know the word \"{}\" and cannot find it: click on it in the view",
-                       language::unknown_word(ground.known, source));
+        return fmt::format("The model can draw \"{}\" but not find it: {}", source, remedy);
+    return fmt::format("The model does not know the word \"{}\" and cannot find it: {}",
+                       language::unknown_word(ground.known, source), remedy);
 }
 
 /// Instead of a target that cannot be made: words near to it; where there are none, all of them would fill

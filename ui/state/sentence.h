@@ -20,6 +20,7 @@ struct SentenceGround {
     std::vector<std::string> made = {};   // things of the scene that are labelled: by edits, or by hand
     std::vector<std::string> drawn = {};  // words that the model draws besides and does not look for
     bool draws_any_word = false;          // a server draws: only what is looked for has to be known
+    bool server_finds = false;            // the server is offered to look for the source
 };
 
 /// One change that a sentence asks for.

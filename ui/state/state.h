@@ -209,7 +209,7 @@ struct ModelsState {
     std::string server_url, server_problem;      // as it is typed; why that is no address
     std::string server_shown;                    // address in use when the text was last taken from it
     std::string server_user, server_password;
-    std::string server_option, server_workflow, server_ca;
+    std::string server_lora, server_option, server_workflow, server_ca;
 };
 
 /// Requests to carry out before the next frame is drawn.

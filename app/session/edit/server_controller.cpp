@@ -258,7 +258,9 @@ void ServerController::ask() {
         return workspace_.notices.toast("The image server can be asked when the job is done.");
     auto known = std::exchange(view_, {});
     view_.usual = known.usual;  // so that what was chosen wrongly can be taken off
+    view_.models = std::move(known.models);
     view_.loras = std::move(known.loras);
+    view_.lora_names = known.lora_names;
     view_.is_comfy = known.is_comfy;
     kind_.clear();
     view_.testing = true;
@@ -279,6 +281,7 @@ void ServerController::ask() {
         view_.notes = answer->notes;
         view_.models = answer->models;
         view_.loras = answer->loras;
+        view_.lora_names = answer->lora_names;
         view_.is_comfy = answer->is_comfy;
         view_.usual = answer->usual;
         kind_ = answer->kind;

@@ -61,6 +61,7 @@ ServerAnswer answer_of(const pipeline::ViewServer& server, const remote::ServerS
     answer.kind = printable(facts.product);
     answer.model = facts.model;
     answer.is_comfy = facts.kind == remote::ServerKind::Comfy;
+    answer.lora_names = facts.lora_names;
     answer.usual = usual_of(server.family());
     answer.facts = {
         {"Server", fmt::format("{}{}{} ({})", answer.kind, facts.version.empty() ? "" : " ",

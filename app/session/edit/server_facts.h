@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/pipeline/models/view_server.h"
+#include "engine/remote/api/server_lora.h"
 #include "engine/remote/api/server_settings.h"
 #include "ui/model/view_model.h"
 
@@ -14,9 +15,10 @@ namespace gse::app {
 struct ServerAnswer {
     std::vector<ui::ServerView::Fact> facts;
     std::vector<std::string> notes, models, loras;
-    std::string kind;              // "sd-server"
-    std::string model;             // that it has loaded; empty = not told
-    bool is_comfy = false;         // it draws by workflows
+    std::string kind;       // "sd-server"
+    std::string model;      // that it has loaded; empty = not told
+    bool is_comfy = false;  // it draws by workflows
+    remote::LoraNames lora_names = remote::LoraNames::Listed;
     remote::ServerSettings usual;  // side, steps, guidance and strength of the family
 };
 

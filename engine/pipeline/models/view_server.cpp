@@ -58,7 +58,8 @@ std::string identity_of(const remote::ServerSettings& settings) {
     hash.text(settings.model);
     hash.texts(settings.lora);
     hash.texts(settings.option);
-    if (!settings.workflow.empty()) hash.text(read_file(settings.workflow));
+    const auto& workflow = settings.workflow;
+    if (!workflow.empty()) hash.text(remote::is_bundled_workflow(workflow) ? workflow : read_file(workflow));
     return hash.key().hex();
 }
 
@@ -81,6 +82,7 @@ ViewServer::ViewServer(std::shared_ptr<remote::ImageServer> server, const remote
     drawing_->agreement = remote::suited_agreement(remote::agreement_of(settings.agreement), drawing_->family,
                                                    facts(), !drawing_->own.empty());
     drawing_->side = remote::sent_side(settings.side, drawing_->family.side);
+    if (settings.used()) drawing_->nickname = remote::parse_server_url(settings.url).url.nickname();
     log::info("the views are drawn by {} ({}): family {}, agreement {}, {} x {} pixels", facts().product,
               facts().model.empty() ? "model not told" : printable(facts().model), drawing_->family.name,
               remote::agreement_name(drawing_->agreement), drawing_->side, drawing_->side);

@@ -66,6 +66,18 @@ nlohmann::ordered_json recipe_to_json(const EditRecipe& recipe) {
     return json;
 }
 
+void make_files_absolute(remote::ServerSettings& settings) {
+    const auto absolute = [](const std::filesystem::path& file) {
+        return std::filesystem::absolute(file).lexically_normal().string();
+    };
+    for (auto* file : {&settings.workflow, &settings.ca})
+        if (!file->empty() && !remote::is_bundled_workflow(*file)) *file = absolute(*file);
+    for (auto& text : settings.target_picture) {
+        const auto target = remote::target_picture_of(text);
+        text = target.view + "=" + absolute(target.file);
+    }
+}
+
 EditRecipe recipe_from_json(const nlohmann::ordered_json& json, const std::filesystem::path& folder) {
     EditRecipe recipe;
     int version = 0;
@@ -98,7 +110,9 @@ EditRecipe recipe_from_json(const nlohmann::ordered_json& json, const std::files
          {&recipe.job.scene, &recipe.job.cameras, &recipe.job.model, &recipe.job.taesd, &recipe.job.segmenter,
           &recipe.job.text_segmenter, &recipe.server.workflow, &recipe.server.ca}) {
         *name = path_of_text(*name);
-        if (name->empty() || *name == "none" || std::filesystem::path(*name).is_absolute()) continue;
+        const bool bundled = name == &recipe.server.workflow && remote::is_bundled_workflow(*name);
+        if (name->empty() || *name == "none" || bundled || std::filesystem::path(*name).is_absolute())
+            continue;
         *name = std::filesystem::weakly_canonical(folder / *name).string();
     }
     return recipe;

@@ -145,6 +145,8 @@ nlohmann::ordered_json read_recipe_json(const std::filesystem::path& path);
 EditRecipe read_recipe(const std::filesystem::path& path);
 /// Recipe of a text that was read already. Relative files are those of `folder`.
 EditRecipe recipe_from_json(const nlohmann::ordered_json& json, const std::filesystem::path& folder);
+/// Files of a server's settings become absolute.
+void make_files_absolute(remote::ServerSettings& settings);
 
 /// Key of all requests to the networks before the loop begins, for a scene. Recipes with equal keys find
 /// equal labels.

@@ -175,13 +175,9 @@ EditJob::EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCach
     times_.begin("load_scene");
     recipe_.job.scene = std::filesystem::absolute(recipe_.job.scene).lexically_normal().string();
     recipe_.job.lora = absolute_loras(recipe_.job);
-    for (auto* file :
-         {&recipe_.job.segmenter, &recipe_.job.text_segmenter, &recipe_.server.workflow, &recipe_.server.ca})
+    for (auto* file : {&recipe_.job.segmenter, &recipe_.job.text_segmenter})
         if (!file->empty()) *file = std::filesystem::absolute(*file).lexically_normal().string();
-    for (auto& text : recipe_.server.target_picture) {
-        const auto target = remote::target_picture_of(text);
-        text = target.view + "=" + std::filesystem::absolute(target.file).lexically_normal().string();
-    }
+    make_files_absolute(recipe_.server);
     auto [scene, cameras, notes, up] =
         load_scene_with_cameras(recipe_.job.scene, recipe_.job.cameras, {.activated = recipe_.job.activated});
     if (recipe_.job.up == "auto" && !up.empty()) notes.push_back(up);

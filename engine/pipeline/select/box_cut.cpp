@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "engine/base/check.h"
 #include "engine/localize/clusters.h"
@@ -11,6 +12,7 @@
 namespace gse::pipeline {
 namespace {
 
+constexpr float Solid = 0.5f;      // alpha
 constexpr double LeastCut = 0.15;  // of the mask's width or height, along a side that cuts
 // From a side to where the mask is looked at inside, and to where the thing goes on outside.
 constexpr double Margin = 0.03;  // of the box's shorter side
@@ -22,6 +24,29 @@ bool is_set(const Mask& mask, int x, int y) {
 }
 
 }  // namespace
+
+Mask level_with(const Mask& mask, const PictureDepth& picture, double focal) {
+    constexpr double trim = 0.02, gap = 0.1;  // of the depths; of the mask's longer side
+    std::vector<float> depths;
+    for (std::size_t i = 0; i < mask.data.size(); ++i)
+        if (mask.data[i] != 0 && picture.alpha.data[i] > Solid)
+            depths.push_back(picture.depth.data[i] / picture.alpha.data[i]);
+    Mask level(mask.width, mask.height);
+    if (depths.empty()) return level;
+    std::sort(depths.begin(), depths.end());
+    const auto at = [&](double share) {
+        return static_cast<double>(
+            depths[static_cast<std::size_t>(share * static_cast<double>(depths.size() - 1))]);
+    };
+    const auto box = localize::bounds_of(mask);
+    const double reach = gap * std::max(box.width, box.height) / focal * at(0.5);
+    for (std::size_t i = 0; i < level.data.size(); ++i) {
+        if (!(picture.alpha.data[i] > Solid)) continue;
+        const auto depth = static_cast<double>(picture.depth.data[i] / picture.alpha.data[i]);
+        level.data[i] = depth > at(trim) - reach && depth < at(1 - trim) + reach ? 1 : 0;
+    }
+    return level;
+}
 
 CutSides cut_sides(const Mask& mask, const Mask& level, const edit::BoxPrompt& box) {
     GSE_CHECK(mask.width == level.width && mask.height == level.height);

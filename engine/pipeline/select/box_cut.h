@@ -8,6 +8,14 @@
 
 namespace gse::pipeline {
 
+/// Alpha and depth [H,W,1] of a picture, as raster::ForwardOutput has them.
+struct PictureDepth {
+    Image alpha, depth;
+};
+
+/// Pixels that are opaque at about the depths of the mask's pixels. `focal` is in pixels.
+Mask level_with(const Mask& mask, const PictureDepth& picture, double focal);
+
 /// Sides of a box at which what it holds goes on.
 struct CutSides {
     bool above = false, below = false, left = false, right = false;

@@ -83,7 +83,7 @@ std::vector<std::uint8_t> without_support(const GaussianSet& set, std::vector<st
                                           const BoxedView& view, const raster::Settings& settings,
                                           Painter& painter) {
     GSE_CHECK_EQ(bits.size(), set.size());
-    const auto& picture = painter.paint(set.spans(), view.camera, settings);
+    const auto& picture = view.picture;
     const auto pixel = middle_of(view.mask, picture.alpha);
     if (!pixel) return bits;
     const auto [x, y] = *pixel;
@@ -103,30 +103,6 @@ std::vector<std::uint8_t> without_support(const GaussianSet& set, std::vector<st
     for (std::size_t row = 0; row < bits.size(); ++row)
         bits[row] = bits[row] != 0 && beside[row] == 0 ? 1 : 0;
     return bits;
-}
-
-/// Pixels that are opaque at about the depths of the mask's pixels.
-Mask level_with(const Mask& mask, const raster::ForwardOutput& picture, double focal) {
-    constexpr double trim = 0.02, gap = 0.1;  // of the depths; of the mask's longer side
-    std::vector<float> depths;
-    for (std::size_t i = 0; i < mask.data.size(); ++i)
-        if (mask.data[i] != 0 && picture.alpha.data[i] > Covered)
-            depths.push_back(picture.depth.data[i] / picture.alpha.data[i]);
-    Mask level(mask.width, mask.height);
-    if (depths.empty()) return level;
-    std::sort(depths.begin(), depths.end());
-    const auto at = [&](double share) {
-        return static_cast<double>(
-            depths[static_cast<std::size_t>(share * static_cast<double>(depths.size() - 1))]);
-    };
-    const auto box = localize::bounds_of(mask);
-    const double reach = gap * std::max(box.width, box.height) / focal * at(0.5);
-    for (std::size_t i = 0; i < level.data.size(); ++i) {
-        if (!(picture.alpha.data[i] > Covered)) continue;
-        const auto depth = static_cast<double>(picture.depth.data[i] / picture.alpha.data[i]);
-        level.data[i] = depth > at(trim) - reach && depth < at(1 - trim) + reach ? 1 : 0;
-    }
-    return level;
 }
 
 }  // namespace gse::pipeline

@@ -6,6 +6,7 @@
 
 #include "engine/base/image.h"
 #include "engine/pipeline/scene/scene_tools.h"
+#include "engine/pipeline/select/box_cut.h"
 
 namespace gse::pipeline {
 
@@ -15,6 +16,7 @@ struct BoxedView {
     Mask mask;          // the thing's outline
     double extent = 1;  // height of the whole view over its focal length: how fine things are looked at
     Vec3 up{0, -1, 0};  // of the world
+    PictureDepth picture = {};
 };
 
 /// Label [N] without the support of the thing. The thing grows from the middle of its outline as under a
@@ -23,8 +25,5 @@ struct BoxedView {
 std::vector<std::uint8_t> without_support(const GaussianSet& set, std::vector<std::uint8_t> bits,
                                           const BoxedView& view, const raster::Settings& settings,
                                           Painter& painter);
-
-/// Pixels that are opaque at about the depths of the mask's pixels. `focal` is in pixels.
-Mask level_with(const Mask& mask, const raster::ForwardOutput& picture, double focal);
 
 }  // namespace gse::pipeline

@@ -273,7 +273,8 @@ CutOutThing cut_out(const GaussianSet& set, const CutOutRequest& request, edit::
     const Mask whole = mask_of(*section);
     for (std::size_t i = 0; i < seen.mask.data.size(); ++i) seen.mask.data[i] &= whole.data[i];
     if (seen.mask.count() == 0) seen.mask = whole;
-    const Mask level = level_with(seen.mask, painted, section->camera.fx);
+    const PictureDepth picture_depth{painted.alpha, painted.depth};  // others are painted meanwhile
+    const Mask level = level_with(seen.mask, picture_depth, section->camera.fx);
     auto sides = sides_text(cut_sides(seen.mask, level, section->box));
     close_holes(seen.mask, level);
     seen.front = seen_rows(set, section->camera, seen.mask, settings, painter);
@@ -285,8 +286,8 @@ CutOutThing cut_out(const GaussianSet& set, const CutOutRequest& request, edit::
     auto bits = follow_around(set, seen, settings, *segmenter, painter, control);
     if (request.ground) return {edit::lowest_layer(set, bits, request.up), {}};
     const double extent = request.camera.height / request.camera.fy;
-    bits = without_support(set, std::move(bits), {seen.camera, seen.mask, extent, request.up}, settings,
-                           painter);
+    bits = without_support(set, std::move(bits), {seen.camera, seen.mask, extent, request.up, picture_depth},
+                           settings, painter);
     auto parted = edit::without_parts_beside(set, bits, request.nature, request.up);
     if (parted != bits) sides.clear();  // its shape told it from what goes on beyond the box
     return {std::move(parted), std::move(sides)};

@@ -9,6 +9,7 @@
 
 #include "engine/base/image.h"
 #include "engine/base/progress.h"
+#include "engine/remote/api/server_lora.h"
 
 namespace gse::remote {
 
@@ -29,6 +30,7 @@ struct ServerFacts {
     bool cancels = false;                 // a job of ours can be ended without hitting another's
     std::vector<std::string> notes = {};  // for people: which inputs of a workflow are set
     bool shows_previews = false;          // pictures in the making can be seen
+    LoraNames lora_names = LoraNames::Listed;
 };
 
 /// One picture to redraw. Pictures are [H,W,3] in [0,1], sides multiples of 64, all of one size.
@@ -47,6 +49,9 @@ struct RedrawOrder {
     /// where the server has one; on the thread that waits. Empty = the server is not asked for it.
     std::function<void(const Image&)> preview = {};
 };
+
+/// Stage of a job that is neither sent nor waits: its picture is being drawn.
+constexpr const char* DrawingStage = "the server draws";
 
 /// Hint of every error that says that a picture is too large for a server: a smaller one may do.
 constexpr const char* TooLargeHint = "draw at a smaller size, or free memory at the server";

@@ -20,6 +20,7 @@ using Milliseconds = std::chrono::milliseconds;
 /// Waiting times towards a server. Tests shorten them.
 struct ServerTimes {
     Milliseconds connect{5'000};      // until a connection stands
+    Milliseconds look{5'000};         // first byte, while it is found out what the server speaks
     Milliseconds answer{10'000};      // first byte of a question that needs no drawing
     Milliseconds drawing{1'800'000};  // first byte of an answer that is drawn meanwhile
     Milliseconds silence{60'000};     // between two bytes

@@ -17,6 +17,15 @@ constexpr std::size_t LongestName = 512;
 
 }  // namespace
 
+std::string_view lora_names_name(LoraNames names) {
+    switch (names) {
+        case LoraNames::None: return "none";
+        case LoraNames::Listed: return "listed";
+        case LoraNames::Any: return "any";
+    }
+    return {};
+}
+
 ServerLora parse_server_lora(std::string_view text) {
     ServerLora lora{std::string(text), 1};
     const auto colon = text.rfind(':');

@@ -15,6 +15,7 @@ namespace gse::remote {
 namespace {
 
 constexpr std::size_t MostBytes = 4096;
+constexpr std::string_view ForceMark = "force:";
 constexpr std::array<std::string_view, 6> SecretWords{"token",         "password", "passwd",
                                                       "authorization", "secret",   "api_key"};
 
@@ -24,15 +25,23 @@ bool names_secret(std::string name) {
                        [&](auto word) { return name.find(word) != std::string::npos; });
 }
 
+/// True for one name, and for the name of a field in the other's object.
+bool holds(const std::string& name, const std::string& other) {
+    return other == name || other.starts_with(name + ".");
+}
+
 }  // namespace
 
 ServerOption parse_server_option(std::string_view text) {
     const auto equals = text.find('=');
-    if (text.size() > MostBytes || equals == std::string_view::npos || equals == 0)
+    const bool forced = text.starts_with(ForceMark);
+    const std::size_t first = forced ? ForceMark.size() : 0;
+    if (text.size() > MostBytes || equals == std::string_view::npos || equals <= first)
         throw Error(ErrorCode::InvalidArgument,
                     fmt::format("\"{}\" is no option of a server", printable(text.substr(0, 80))),
                     "write it as NAME=VALUE, such as scheduler=karras");
-    ServerOption option{std::string(text.substr(0, equals)), std::string(text.substr(equals + 1))};
+    ServerOption option{std::string(text.substr(first, equals - first)), std::string(text.substr(equals + 1)),
+                        forced};
     if (names_secret(option.name))
         throw Error(ErrorCode::InvalidArgument,
                     fmt::format("\"{}\" is a secret, which no option holds", printable(option.name)),
@@ -44,8 +53,9 @@ std::vector<ServerOption> parse_server_options(const std::vector<std::string>& t
     std::vector<ServerOption> options;
     for (const auto& text : texts) {
         auto option = parse_server_option(text);
-        if (std::any_of(options.begin(), options.end(),
-                        [&](const auto& other) { return other.name == option.name; }))
+        if (std::any_of(options.begin(), options.end(), [&](const auto& other) {
+                return holds(other.name, option.name) || holds(option.name, other.name);
+            }))
             throw Error(ErrorCode::InvalidArgument,
                         fmt::format("the server's option \"{}\" is given twice", printable(option.name)),
                         "leave one of them out");

@@ -1,6 +1,9 @@
 // Addresses that may be written down.
 #include "engine/remote/api/server_settings.h"
 
+#include <algorithm>
+#include <array>
+
 #include <fmt/format.h>
 
 #include "engine/base/error.h"
@@ -16,6 +19,11 @@ ServerSearch server_search_of(const std::string& name) {
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("\"{}\" is no way to search with a server", printable(name)),
                 "name auto, differences, paint or none");
+}
+
+bool is_bundled_workflow(std::string_view name) {
+    constexpr std::array<std::string_view, 4> bundled{"img2img", "inpainting", "edit", "edit_reference"};
+    return std::find(bundled.begin(), bundled.end(), name) != bundled.end();
 }
 
 TargetPicture target_picture_of(const std::string& text) {

@@ -38,7 +38,9 @@ struct ServerSettings {
           "Protocol of the server: webui (A1111, Forge, SD.Next, koboldcpp), openai, sdcpp (sd-server), "
           "comfy; auto finds it out.");
         f("model", self.model, "Model that the server draws with; empty = the one that it has loaded.");
-        f("workflow", self.workflow, "Workflow of ComfyUI in API format; empty = a bundled one that fits.");
+        f("workflow", self.workflow,
+          "Workflow of ComfyUI: a file in API format, or \"edit\", the bundled one for models that follow "
+          "instructions; empty = a bundled one that fits the model.");
         f("family", self.family,
           "Family of the model, which decides steps, guidance, strength and the form of the sentence; auto = "
           "by the model's name.");
@@ -60,7 +62,7 @@ struct ServerSettings {
         f("option", self.option,
           "Setting of the server's own, as NAME=VALUE; may be given several times. NAME is a field of its "
           "request (\"scheduler\", \"sample_params.flow_shift\"), or with ComfyUI an input of a node "
-          "(\"KSampler.sampler_name\").");
+          "(\"KSampler.sampler_name\"). force:NAME=VALUE sends a name that the program does not know.");
         f("target_picture", self.target_picture,
           "Picture of your own that a view shall look like, as VIEW=FILE; may be given several times. Other "
           "views follow it. --views-only writes the views to paint over.");
@@ -79,6 +81,10 @@ enum class ServerSearch { Auto, Differences, None, Paint };
 
 /// Search of that name. Throws Error (InvalidArgument) that lists the names.
 ServerSearch server_search_of(const std::string& name);
+
+/// True for a workflow of ComfyUI that comes with the program: "img2img", "inpainting", "edit" (a model that
+/// takes instructions), "edit_reference". Others are files.
+bool is_bundled_workflow(std::string_view name);
 
 /// Picture of an artist's own for a view.
 struct TargetPicture {

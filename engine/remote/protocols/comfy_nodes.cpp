@@ -85,7 +85,7 @@ public:
             if (value_of(facts, "api_node") == true)
                 throw Error(ErrorCode::InvalidArgument,
                             fmt::format("the workflow sends pictures on to a paid service ({})", shown(kind)),
-                            "allow it only if you want that");
+                            "if you want that, allow it (--server-paid-nodes; in the window below Workflow)");
     }
 
     std::string model(const std::string& wanted) const {

@@ -8,6 +8,7 @@
 
 #include "engine/base/content_hash.h"
 #include "engine/base/json.h"
+#include "engine/remote/api/server_settings.h"
 #include "engine/remote/http/unique_id.h"
 #include "engine/remote/picture/picture_codec.h"
 #include "engine/remote/protocols/comfy_nodes.h"
@@ -111,10 +112,11 @@ ServerFacts ComfyServer::probe(const JobControl& job) {
     facts.references = 1;
     facts.models = offered_names(*link_, "CheckpointLoaderSimple", "ckpt_name", job);
     const auto unets = offered_names(*link_, "UNETLoader", "unet_name", job);
+    choose_bundled(facts.models, unets);
     facts.models.insert(facts.models.end(), unets.begin(), unets.end());
     facts.loras = offered_names(*link_, "LoraLoader", "lora_name", job);
     choose_loras(facts.loras);
-    if (!workflow_.empty() && !is_bundled_workflow(workflow_)) {
+    if (!is_bundled()) {
         const auto& workflow = workflow_for({}, job);
         facts.references = workflow.count(WorkflowRole::Reference);
         facts.takes_mask = workflow.find(WorkflowRole::Mask) != nullptr || workflow.mask_in_alpha;
@@ -122,12 +124,27 @@ ServerFacts ComfyServer::probe(const JobControl& job) {
         facts.notes = workflow.table();
         facts.model = model_;
     } else {
-        auto fits = load_workflow(bundled_workflow_for(usual_order(), workflow_.string()));
+        auto fits = load_workflow(bundled_workflow_for(usual_order(), bundled_));
         set_inputs(fits, options_);  // said before the first picture
         if (facts.models.size() == 1) facts.model = facts.models[0];
     }
     if (!wanted_model_.empty()) facts.model = wanted_model_;
     return facts_ = facts;
+}
+
+bool ComfyServer::is_bundled() const { return workflow_.empty() || is_bundled_workflow(workflow_.string()); }
+
+/// Models that edit come without text encoder and autoencoder: another node loads them than checkpoints.
+void ComfyServer::choose_bundled(const std::vector<std::string>& checkpoints,
+                                 const std::vector<std::string>& unets) {
+    bundled_ = is_bundled() ? workflow_.string() : std::string();
+    if (!workflow_.empty()) return;
+    const auto has = [&](const auto& names) {
+        return std::find(names.begin(), names.end(), wanted_model_) != names.end();
+    };
+    const bool edits =
+        wanted_model_.empty() ? checkpoints.empty() && !unets.empty() : has(unets) && !has(checkpoints);
+    if (edits) bundled_ = "edit";
 }
 
 void ComfyServer::choose_loras(const std::vector<std::string>& names) {
@@ -139,8 +156,7 @@ void ComfyServer::choose_loras(const std::vector<std::string>& names) {
 }
 
 const Workflow& ComfyServer::workflow_for(const RedrawOrder& order, const JobControl& job) {
-    const bool bundled = workflow_.empty() || is_bundled_workflow(workflow_);
-    const auto name = bundled ? bundled_workflow_for(order, workflow_.string()) : workflow_.string();
+    const auto name = is_bundled() ? bundled_workflow_for(order, bundled_) : workflow_.string();
     if (loaded_ && loaded_name_ == name) return *loaded_;
     auto workflow = load_workflow(name);
     set_inputs(workflow, options_);
@@ -215,7 +231,7 @@ bool ComfyServer::is_queued(const std::string& id, const JobControl& job) {
     how.most_bytes = HistoryBytes;
     const auto json = link_->ask_json(link_->get("/queue"), how, job);
     if (place_in(value_of(json, "queue_running"), id) >= 0) {
-        job.report("the server draws", 0, 0);
+        job.report(DrawingStage, 0, 0);
         return true;
     }
     const int place = place_in(value_of(json, "queue_pending"), id);

@@ -21,6 +21,9 @@ public:
     RedrawnPicture redraw(const RedrawOrder& order, const JobControl& job) override;
 
 private:
+    bool is_bundled() const;
+    /// Chooses among the bundled workflows by the node that loads the model.
+    void choose_bundled(const std::vector<std::string>& checkpoints, const std::vector<std::string>& unets);
     void choose_loras(const std::vector<std::string>& names);
     /// The workflow for an order, checked against the nodes and models that the server has.
     const Workflow& workflow_for(const RedrawOrder& order, const JobControl& job);
@@ -38,7 +41,8 @@ private:
                      const JobControl& job);
 
     std::unique_ptr<ServerLink> link_;
-    const std::filesystem::path workflow_;  // of the artist, or "edit"; empty = what fits
+    const std::filesystem::path workflow_;  // of the artist, or a bundled one; empty = what fits
+    std::string bundled_ = {};              // "edit", or empty: by what an order holds
     const std::string wanted_model_;
     const std::vector<ServerLora> wanted_loras_;
     const std::vector<ServerOption> options_;

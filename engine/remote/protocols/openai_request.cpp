@@ -25,7 +25,7 @@ std::string sd_server_prompt(const RedrawOrder& order, const OpenAiExtras& extra
     if (order.distilled_guidance > 0) guidance["distilled_guidance"] = order.distilled_guidance;
     nlohmann::json sampling{{"sample_steps", steps_to_ask_of_levels(order.steps, order.strength)},
                             {"guidance", guidance}};
-    if (!order.sampler.empty()) sampling["sample_method"] = order.sampler;
+    if (!order.sampler.empty()) sampling["sample_method"] = sdcpp_sampler(order.sampler);
     nlohmann::json settings{{"seed", order.seed},
                             {"strength", order.strength},
                             {"negative_prompt", order.negative_prompt},
@@ -35,15 +35,13 @@ std::string sd_server_prompt(const RedrawOrder& order, const OpenAiExtras& extra
     return order.prompt + " <sd_cpp_extra_args>" + json_text(settings) + "</sd_cpp_extra_args>";
 }
 
-void add_vllm_fields(std::vector<HttpPart>& parts, const RedrawOrder& order,
-                     const std::vector<ChosenLora>& loras) {
+void add_vllm_fields(std::vector<HttpPart>& parts, const RedrawOrder& order) {
     parts.push_back(text_part("seed", fmt::format("{}", order.seed)));
     parts.push_back(text_part("num_inference_steps", fmt::format("{}", order.steps)));
     parts.push_back(text_part("true_cfg_scale", plain_number(order.guidance_scale)));
     if (order.distilled_guidance > 0)
         parts.push_back(text_part("guidance_scale", plain_number(order.distilled_guidance)));
     if (!order.negative_prompt.empty()) parts.push_back(text_part("negative_prompt", order.negative_prompt));
-    if (!loras.empty()) parts.push_back(text_part("lora", json_text(vllm_loras(loras))));
 }
 
 void add_pictures(std::vector<HttpPart>& parts, const RedrawOrder& order, OpenAiProduct product) {
@@ -80,7 +78,9 @@ std::vector<HttpPart> openai_parts(const RedrawOrder& order, OpenAiProduct produ
     if (product != OpenAiProduct::OpenAi) parts.push_back(text_part("response_format", "b64_json"));
     if (product == OpenAiProduct::OpenAi) parts.push_back(text_part("input_fidelity", "high"));
     parts.push_back(text_part("output_format", "png"));
-    if (product == OpenAiProduct::Vllm) add_vllm_fields(parts, order, extras.loras);
+    if (product == OpenAiProduct::Vllm) add_vllm_fields(parts, order);
+    if (!in_prompt && !extras.loras.empty())
+        parts.push_back(text_part("lora", json_text(vllm_loras(extras.loras))));
     for (const auto& option : extras.options) {
         if (in_prompt) break;
         std::erase_if(parts, [&](const auto& part) { return part.name == option.name; });

@@ -17,7 +17,7 @@ std::string openai_product_name(OpenAiProduct product);
 
 /// Parts of a request that are an artist's own.
 struct OpenAiExtras {
-    std::vector<ChosenLora> loras = {};  // for sd-server and vLLM-Omni alone
+    std::vector<ChosenLora> loras = {};  // in sd-server's form, else in vLLM-Omni's
     std::vector<ServerOption> options = {};
 };
 

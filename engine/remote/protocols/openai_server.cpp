@@ -45,8 +45,8 @@ ServerFacts OpenAiServer::probe(const JobControl& job) {
     if (!value_of(models, "data").is_array()) throw answer_error(link_->url(), "without a list of models");
     product_ = product_of(*link_, models, job);
     check_openai_options(options_, product_, link_->url());
-    choose_loras(job);
     ServerFacts facts;
+    choose_loras(facts, job);
     facts.kind = ServerKind::OpenAi;
     facts.product = openai_product_name(product_);
     facts.models = texts_of(value_of(models, "data"), "id");
@@ -62,19 +62,23 @@ ServerFacts OpenAiServer::probe(const JobControl& job) {
     return facts_ = facts;
 }
 
-/// The standard has none, but sd-server and vLLM-Omni take them. The latter tells of none: it refuses those
-/// it lacks when a picture is asked for.
-void OpenAiServer::choose_loras(const JobControl& job) {
-    if (wanted_loras_.empty()) return;
-    if (product_ == OpenAiProduct::Vllm) {
-        loras_ = unlisted_loras(wanted_loras_);
-        return;
-    }
+/// The standard has none, but sd-server and vLLM-Omni take them. The latter has no list. Others may be it
+/// under another name.
+void OpenAiServer::choose_loras(ServerFacts& facts, const JobControl& job) {
     std::vector<OfferedLora> offered;
+    facts.lora_names = product_ == OpenAiProduct::OpenAi ? LoraNames::None : LoraNames::Any;
     if (product_ == OpenAiProduct::SdServer)
-        if (const auto json = link_->look("/sdcpp/v1/capabilities", job))
+        if (const auto json = link_->look("/sdcpp/v1/capabilities", job);
+            json && value_of(*json, "loras").is_array()) {
             offered = offered_loras(value_of(*json, "loras"));
-    loras_ = chosen_loras(wanted_loras_, offered, link_->url());
+            facts.lora_names = LoraNames::Listed;
+        }
+    facts.loras = names_of(offered);
+    loras_ = named_loras(wanted_loras_, offered, facts.lora_names, link_->url());
+    if (product_ == OpenAiProduct::Other && !loras_.empty())
+        facts.notes.emplace_back(
+            "It does not say whether it takes LoRAs. They are sent as vLLM-Omni takes "
+            "them, and one that is passed over changes nothing.");
 }
 
 RedrawnPicture OpenAiServer::redraw(const RedrawOrder& order, const JobControl& job) {
@@ -84,7 +88,7 @@ RedrawnPicture OpenAiServer::redraw(const RedrawOrder& order, const JobControl& 
     how.repeat = Repeat::UnlessStarted;
     how.draws = true;
     how.most_bytes = picture_answer_bytes(order, 0);
-    job.report("the server draws", 0, 0);
+    job.report(DrawingStage, 0, 0);
     const auto request = link_->requests().post_parts(
         "/v1/images/edits", openai_parts(order, product_, facts_.model, {loras_, options_}));
     const auto json = link_->ask_json(request, how, job);

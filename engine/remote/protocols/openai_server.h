@@ -20,7 +20,7 @@ public:
     RedrawnPicture redraw(const RedrawOrder& order, const JobControl& job) override;
 
 private:
-    void choose_loras(const JobControl& job);
+    void choose_loras(ServerFacts& facts, const JobControl& job);
 
     std::unique_ptr<ServerLink> link_;
     const std::string wanted_model_;

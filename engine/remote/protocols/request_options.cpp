@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,6 +12,7 @@
 #include "engine/base/error.h"
 #include "engine/base/printable.h"
 #include "engine/remote/protocols/sdcpp_server.h"
+#include "engine/remote/protocols/server_error.h"
 
 namespace gse::remote {
 namespace {
@@ -40,21 +42,22 @@ constexpr std::array<std::string_view, 23> WebuiNames{"sampler_name",
                                                       "alwayson_scripts",
                                                       "send_as_refimg",
                                                       "override_settings.NAME"};
-constexpr std::array<std::string_view, 9> SdCppNames{"clip_skip",
-                                                     "auto_resize_ref_image",
-                                                     "increase_ref_index",
-                                                     "vae_tiling_params.enabled",
-                                                     "sample_params.sample_method",
-                                                     "sample_params.scheduler",
-                                                     "sample_params.eta",
-                                                     "sample_params.flow_shift",
-                                                     "sample_params.guidance.img_cfg"};
+constexpr std::array<std::string_view, 10> SdCppNames{"clip_skip",
+                                                      "auto_resize_ref_image",
+                                                      "increase_ref_index",
+                                                      "vae_tiling_params.enabled",
+                                                      "sample_params.sample_method",
+                                                      "sample_params.scheduler",
+                                                      "sample_params.eta",
+                                                      "sample_params.custom_sigmas",
+                                                      "sample_params.flow_shift",
+                                                      "sample_params.guidance.img_cfg"};
 constexpr std::array<std::string_view, 5> OpenAiNames{"quality", "background", "moderation",
                                                       "output_compression", "user"};
 constexpr std::array<std::string_view, 2> VllmNames{"guidance_scale", "output_compression"};
 
 // Settings of a WebUI that hold for one request. Those that change what is loaded hold for all its users.
-constexpr std::string_view Overrides = "override_settings.";
+constexpr std::string_view AllOverrides = "override_settings", Overrides = "override_settings.";
 constexpr std::array<std::string_view, 5> LoadedParts{"checkpoint", "vae", "additional_modules", "unet",
                                                       "model"};
 
@@ -68,17 +71,26 @@ RedrawOrder full_order() {
     return order;
 }
 
-const nlohmann::json* field_at(const nlohmann::json& body, std::string_view name) {
+/// True for a field of the body, and for one inside of a field that is no object.
+bool is_set_in(const nlohmann::json& body, std::string_view name) {
     const auto* value = &body;
-    while (!name.empty()) {
+    while (!name.empty() && value->is_object()) {
         const auto dot = name.find('.');
-        if (!value->is_object()) return nullptr;
         const auto found = value->find(std::string(name.substr(0, dot)));
-        if (found == value->end()) return nullptr;
+        if (found == value->end()) return false;
         value = &*found;
         name = dot == std::string_view::npos ? std::string_view() : name.substr(dot + 1);
     }
-    return value;
+    return true;
+}
+
+/// True for words of letters, digits, "_" and "-" with dots between them.
+bool is_field_name(std::string_view name) {
+    const auto plain = [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == '.';
+    };
+    return std::all_of(name.begin(), name.end(), plain) && !name.starts_with('.') && !name.ends_with('.') &&
+           name.find("..") == std::string_view::npos;
 }
 
 bool knows(Names names, std::string_view name) {
@@ -95,12 +107,15 @@ Error set_already(const std::string& name) {
 
 Error unknown_option(const std::string& name, const std::string& product, Names known) {
     return {ErrorCode::InvalidArgument, fmt::format("{} has no option \"{}\"", product, printable(name)),
-            known.empty() ? "it takes none" : fmt::format("it takes {}", fmt::join(known, ", "))};
+            fmt::format("it takes {}; force:NAME=VALUE sends one that is newer than this program",
+                        fmt::join(known, ", "))};
 }
 
+/// Throws Error for settings that stay for all users of the server, or that it loads something else for.
 void check_override(const std::string& name) {
+    const bool whole = !name.starts_with(Overrides) || name.size() == Overrides.size();
     for (const auto part : LoadedParts)
-        if (name.find(part) != std::string::npos)
+        if (whole || name.find(part) != std::string::npos)
             throw Error(ErrorCode::InvalidArgument,
                         fmt::format("\"{}\" would change what the server has loaded for all its users",
                                     printable(name)),
@@ -109,9 +124,13 @@ void check_override(const std::string& name) {
 
 void check_in_body(const std::vector<ServerOption>& options, const nlohmann::json& body, Names known,
                    const std::string& product) {
-    for (const auto& [name, value] : options) {
-        if (field_at(body, name) != nullptr || name == "lora") throw set_already(name);
-        if (!knows(known, name)) throw unknown_option(name, product, known);
+    for (const auto& option : options) {
+        if (is_set_in(body, option.name) || option.name == "lora") throw set_already(option.name);
+        if (option.forced && !is_field_name(option.name))
+            throw Error(ErrorCode::InvalidArgument,
+                        fmt::format("\"{}\" is no name of a field", printable(option.name)),
+                        "write letters, digits, \"_\" and \"-\", with dots between names of inner fields");
+        if (!option.forced && !knows(known, option.name)) throw unknown_option(option.name, product, known);
     }
 }
 
@@ -121,11 +140,9 @@ void check_webui_options(const std::vector<ServerOption>& options, WebuiProduct 
                          const ServerUrl& url) {
     std::vector<ServerOption> fields;
     for (const auto& option : options) {
-        if (!option.name.starts_with(Overrides) || option.name.size() == Overrides.size()) {
-            fields.push_back(option);
-            continue;
-        }
-        check_override(option.name);
+        const bool named = option.name.starts_with(Overrides) && option.name.size() > Overrides.size();
+        if (named || (option.forced && option.name.starts_with(AllOverrides))) check_override(option.name);
+        else fields.push_back(option);
     }
     check_in_body(fields, webui_body(full_order(), product, "task"), WebuiNames,
                   fmt::format("{} ({})", url.nickname(), webui_product_name(product)));
@@ -136,10 +153,22 @@ void check_sdcpp_options(const std::vector<ServerOption>& options, const ServerU
                   fmt::format("{} (sd-server)", url.nickname()));
 }
 
+void check_offered_value(const std::vector<ServerOption>& options, std::string_view name,
+                         const std::vector<std::string>& offered, const ServerUrl& url) {
+    for (const auto& option : options) {
+        if (option.name != name || option.forced || offered.empty()) continue;
+        if (std::find(offered.begin(), offered.end(), option.value) == offered.end())
+            throw Error(
+                ErrorCode::InvalidArgument,
+                fmt::format("{} has no \"{}\" for {}", url.nickname(), printable(option.value), option.name),
+                "it has: " + listed(offered));
+    }
+}
+
 void check_openai_options(const std::vector<ServerOption>& options, OpenAiProduct product,
                           const ServerUrl& url) {
     if (product == OpenAiProduct::SdServer) return check_sdcpp_options(options, url);
-    nlohmann::json body;
+    nlohmann::json body{{"image", ""}};  // its name where nothing is beside it
     for (const auto& part : openai_parts(full_order(), product, "model")) body[part.name] = "";
     check_in_body(options, body, product == OpenAiProduct::Vllm ? Names(VllmNames) : Names(OpenAiNames),
                   fmt::format("{} ({})", url.nickname(), openai_product_name(product)));

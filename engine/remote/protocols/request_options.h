@@ -14,12 +14,17 @@
 
 namespace gse::remote {
 
-/// Throws Error (InvalidArgument) for the first option that a WebUI does not know, that the program sets
-/// itself, or that would change the server's model for others.
+/// Throws Error (InvalidArgument) for the first option that a WebUI does not know, unless it is forced.
+/// Others that are refused are set by the program, or would change the server's model or settings for others.
 void check_webui_options(const std::vector<ServerOption>& options, WebuiProduct product,
                          const ServerUrl& url);
 /// As check_webui_options(), for sd-server's jobs. Inner fields have dots: "sample_params.flow_shift".
 void check_sdcpp_options(const std::vector<ServerOption>& options, const ServerUrl& url);
+/// Throws Error (InvalidArgument) for an option of that name whose value is not among those that the server
+/// offers: sd-server passes over it without a word. A forced option, and a server that offers none, may be
+/// right.
+void check_offered_value(const std::vector<ServerOption>& options, std::string_view name,
+                         const std::vector<std::string>& offered, const ServerUrl& url);
 /// As check_webui_options(), for forms of the OpenAI protocol. sd-server takes there what its jobs take.
 void check_openai_options(const std::vector<ServerOption>& options, OpenAiProduct product,
                           const ServerUrl& url);

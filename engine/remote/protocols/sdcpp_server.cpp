@@ -2,6 +2,7 @@
 #include "engine/remote/protocols/sdcpp_server.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <span>
 
@@ -38,12 +39,18 @@ int steps_to_ask_of_levels(int real, double strength) {
     return std::max(1, static_cast<int>(std::ceil((real - 1) / strength - 1e-9)));
 }
 
+std::string sdcpp_sampler(std::string_view name) {
+    std::string known(name);
+    for (char& c : known) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return known;
+}
+
 nlohmann::json sdcpp_body(const RedrawOrder& order) {
     nlohmann::json guidance{{"txt_cfg", order.guidance_scale}};
     if (order.distilled_guidance > 0) guidance["distilled_guidance"] = order.distilled_guidance;
     nlohmann::json sampling{{"sample_steps", steps_to_ask_of_levels(order.steps, order.strength)},
                             {"guidance", guidance}};
-    if (!order.sampler.empty()) sampling["sample_method"] = order.sampler;
+    if (!order.sampler.empty()) sampling["sample_method"] = sdcpp_sampler(order.sampler);
     nlohmann::json body{{"prompt", order.prompt},
                         {"negative_prompt", order.negative_prompt},
                         {"width", order.picture.width},
@@ -67,6 +74,9 @@ ServerFacts SdCppServer::probe(const JobControl& job) {
     how.most_bytes = CapabilityBytes;
     const auto json = link_->ask_json(link_->get("/sdcpp/v1/capabilities"), how, job);
     if (!json.is_object()) throw answer_error(link_->url(), "as no sd-server does");
+    for (const auto& [name, list] : {std::pair{"sample_params.sample_method", "samplers"},
+                                     std::pair{"sample_params.scheduler", "schedulers"}})
+        check_offered_value(options_, name, texts_of(value_of(json, list), nullptr), link_->url());
     const auto& model = value_of(json, "model");
     const auto& features = value_of(value_of(json, "features_by_mode"), "img_gen");
     ServerFacts facts;
@@ -76,7 +86,8 @@ ServerFacts SdCppServer::probe(const JobControl& job) {
     check_only_model(link_->url(), wanted_model_, facts.model);
     const auto offered = offered_loras(value_of(json, "loras"));
     facts.loras = names_of(offered);
-    loras_ = chosen_loras(wanted_loras_, offered, link_->url());
+    if (!value_of(json, "loras").is_array()) facts.lora_names = LoraNames::Any;
+    loras_ = named_loras(wanted_loras_, offered, facts.lora_names, link_->url());
     facts.references = value_of(features, "ref_images") == false ? 0 : MostReferences;
     facts.takes_mask = value_of(features, "mask_image") != false;
     facts.cancels = value_of(features, "cancel_queued") != false;
@@ -125,7 +136,7 @@ nlohmann::json SdCppServer::wait_for_job(const std::string& id, std::size_t most
         if (status == "queued")
             job.report("waiting in the server's queue",
                        static_cast<int>(number_of(json, "queue_position", 0, LongestQueue, 0)), 0);
-        else job.report("the server draws", 0, 0);
+        else job.report(DrawingStage, 0, 0);
         const bool quick = std::chrono::steady_clock::now() - begin < QuickPolls;
         wait_stoppable(job.stop, quick ? link_->times().poll : link_->times().slow_poll);
     }

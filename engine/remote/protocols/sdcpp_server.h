@@ -17,6 +17,10 @@ nlohmann::json sdcpp_body(const RedrawOrder& order);
 /// Steps to ask of samplers that run the last int(strength * steps) + 1 of `steps`, so that `real` ones run.
 int steps_to_ask_of_levels(int real, double strength);
 
+/// Name of a sampler as sd-server's jobs know it ("euler" for "Euler"). They pass over other spellings, and
+/// draw with an ancestral sampler.
+std::string sdcpp_sampler(std::string_view name);
+
 class SdCppServer final : public ImageServer {
 public:
     /// The address's model is the one that it must have; empty = any.

@@ -54,7 +54,7 @@ HttpRequest RequestMaker::with_limits(HttpRequest request, const Ask& how) const
     request.repeatable = how.repeat == Repeat::Always;
     request.limits.body_bytes = how.most_bytes;
     request.limits.connect = times_.connect;
-    request.limits.first_byte = how.draws ? times_.drawing : times_.answer;
+    request.limits.first_byte = how.draws ? times_.drawing : how.looks ? times_.look : times_.answer;
     request.limits.silence = times_.silence;
     request.limits.body = times_.body;
     return request;
@@ -109,7 +109,9 @@ nlohmann::json ServerLink::ask_json(HttpRequest request, const Ask& how, const J
 }
 
 std::optional<nlohmann::json> ServerLink::look(const std::string& place, const JobControl& job) {
-    const auto result = ask_once(get(place), {}, job);
+    Ask how;
+    how.looks = true;
+    const auto result = ask_once(get(place), how, job);
     if (!result.ok()) throw network_error(result, url());
     const int status = result.answer.status;
     if ((status >= 300 && status < 400) || status == 401 || status == 403)

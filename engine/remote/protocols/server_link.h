@@ -20,6 +20,7 @@ namespace gse::remote {
 struct Ask {
     Repeat repeat = Repeat::Always;
     bool draws = false;                             // the answer comes when the picture is drawn
+    bool looks = false;                             // it is not known yet what the server speaks
     std::size_t most_bytes = std::size_t{1} << 20;  // of the answer
     std::function<void()> meanwhile = {};           // called every second while waiting
     FollowUp after_stop = {};                       // see HttpClient::start()

@@ -21,6 +21,16 @@ std::string bare_name(std::string_view path) {
     return std::string(path);
 }
 
+/// LoRAs of a server that lists none. A name with a slash is a path at the server.
+std::vector<ChosenLora> unlisted_loras(const std::vector<ServerLora>& wanted) {
+    std::vector<ChosenLora> chosen;
+    for (const auto& [name, weight] : wanted) {
+        const bool path = name.find_first_of("/\\") != std::string::npos;
+        chosen.push_back({path ? bare_name(name) : name, path ? name : std::string(), weight});
+    }
+    return chosen;
+}
+
 }  // namespace
 
 std::vector<OfferedLora> offered_loras(const nlohmann::json& list) {
@@ -58,13 +68,10 @@ std::vector<ChosenLora> chosen_loras(const std::vector<ServerLora>& wanted,
     return chosen;
 }
 
-std::vector<ChosenLora> unlisted_loras(const std::vector<ServerLora>& wanted) {
-    std::vector<ChosenLora> chosen;
-    for (const auto& [name, weight] : wanted) {
-        const bool path = name.find_first_of("/\\") != std::string::npos;
-        chosen.push_back({path ? bare_name(name) : name, path ? name : std::string(), weight});
-    }
-    return chosen;
+std::vector<ChosenLora> named_loras(const std::vector<ServerLora>& wanted,
+                                    const std::vector<OfferedLora>& offered, LoraNames names,
+                                    const ServerUrl& url) {
+    return names == LoraNames::Any ? unlisted_loras(wanted) : chosen_loras(wanted, offered, url);
 }
 
 std::string prompt_with_loras(const std::string& prompt, const std::vector<ChosenLora>& loras) {

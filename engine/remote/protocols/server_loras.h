@@ -31,8 +31,10 @@ std::vector<std::string> names_of(const std::vector<OfferedLora>& loras);
 std::vector<ChosenLora> chosen_loras(const std::vector<ServerLora>& wanted,
                                      const std::vector<OfferedLora>& offered, const ServerUrl& url);
 
-/// The LoRAs that are wanted, of a server that tells of none. A name with a slash is a path at the server.
-std::vector<ChosenLora> unlisted_loras(const std::vector<ServerLora>& wanted);
+/// The LoRAs that are wanted, of a server that takes those names. Throws Error as chosen_loras().
+std::vector<ChosenLora> named_loras(const std::vector<ServerLora>& wanted,
+                                    const std::vector<OfferedLora>& offered, LoraNames names,
+                                    const ServerUrl& url);
 
 /// The prompt with "<lora:name:weight>" for each.
 std::string prompt_with_loras(const std::string& prompt, const std::vector<ChosenLora>& loras);

@@ -45,7 +45,7 @@ void WebuiProgress::look(const JobControl& job) {
     if (has_tasks_ && value_of(*json, "queued") == true)
         return job.report("waiting in the server's queue", 0, 0);
     const double share = number_of(*json, "progress", 0, 1, 0);
-    job.report("the server draws", static_cast<int>(share * ProgressSteps), ProgressSteps);
+    job.report(DrawingStage, static_cast<int>(share * ProgressSteps), ProgressSteps);
     if (previews_) show_preview(*json);
 }
 

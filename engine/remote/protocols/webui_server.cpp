@@ -67,10 +67,11 @@ void WebuiServer::read_models(ServerFacts& facts, const JobControl& job) {
     if (const auto options = link_->try_json(link_->get("/sdapi/v1/options"), job))
         if (const auto model = text_of(*options, "sd_model_checkpoint"); !model.empty()) facts.model = model;
     std::vector<OfferedLora> offered;
-    if (const auto loras = link_->try_json(link_->get("/sdapi/v1/loras"), job, LoraBytes))
-        offered = offered_loras(*loras);
+    const auto loras = link_->try_json(link_->get("/sdapi/v1/loras"), job, LoraBytes);
+    if (loras && loras->is_array()) offered = offered_loras(*loras);
+    else facts.lora_names = LoraNames::Any;
     facts.loras = names_of(offered);
-    loras_ = chosen_loras(wanted_loras_, offered, link_->url());
+    loras_ = named_loras(wanted_loras_, offered, facts.lora_names, link_->url());
     if (product_ == WebuiProduct::SdNext)
         if (const auto version = link_->try_json(link_->get("/sdapi/v1/version"), job))
             facts.version = shown(text_of(*version, "version"));
@@ -125,7 +126,7 @@ RedrawnPicture WebuiServer::redraw(const RedrawOrder& order, const JobControl& j
     how.most_bytes = picture_answer_bytes(order, EchoedPictures);
     WebuiProgress progress(*link_, product_, task, order);
     if (facts_.reports_progress) how.meanwhile = [&] { progress.look(job); };
-    job.report("the server draws", 0, 0);
+    job.report(DrawingStage, 0, 0);
     try {
         auto body = webui_body(order, product_, task);
         if (!loras_.empty() && webui_lists_loras(product_)) body["lora"] = lora_list(loras_);

@@ -17,7 +17,7 @@ namespace {
 constexpr auto Describes = PromptForm::Description, Instructs = PromptForm::Instruction;
 
 // Settings: METHOD.md, Families of models.
-constexpr std::array<ModelFamily, 16> Families{{
+constexpr std::array<ModelFamily, 17> Families{{
     {.name = "sd15", .strength = 0.85, .sampler = "Euler"},
     {.name = "sd15-inpainting", .inpaints = true, .strength = 1, .sampler = "Euler"},
     {.name = "ip2p", .form = Instructs, .distilled_guidance = 1.5, .strength = 1, .again_strength = 1},
@@ -116,6 +116,7 @@ constexpr std::array<ModelFamily, 16> Families{{
      .side = 1024,
      .latent_cell = 16,
      .negative = false},
+    {.name = "z-image-base", .guidance_scale = 5, .strength = 0.8, .side = 1024, .latent_cell = 16},
     {.name = "editor",
      .form = Instructs,
      .guidance_scale = 1,
@@ -134,7 +135,7 @@ struct NamePattern {
 };
 
 // The first that fits counts.
-constexpr std::array<NamePattern, 31> Patterns{{{"kontext", "kontext"},
+constexpr std::array<NamePattern, 34> Patterns{{{"kontext", "kontext"},
                                                 {"klein*base", "flux2-klein-base"},
                                                 {"klein", "flux2-klein"},
                                                 {"flux.2", "flux2"},
@@ -146,6 +147,9 @@ constexpr std::array<NamePattern, 31> Patterns{{{"kontext", "kontext"},
                                                 {"qwen*edit*2511", "qwen-edit-plus"},
                                                 {"qwen*edit*plus", "qwen-edit-plus"},
                                                 {"qwen*edit", "qwen-edit"},
+                                                {"z-image*base", "z-image-base"},
+                                                {"z_image*base", "z-image-base"},
+                                                {"zimage*base", "z-image-base"},
                                                 {"z-image", "z-image"},
                                                 {"z_image", "z-image"},
                                                 {"zimage", "z-image"},

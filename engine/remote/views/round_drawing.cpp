@@ -87,8 +87,7 @@ void RoundDrawing::take_own_pictures() {
             if (outside < ToldShare) continue;
             round_.warnings.push_back(
                 fmt::format("{:.0f} % of what your picture of {} changes lies outside of what may change, "
-                            "and is left out: "
-                            "widen the label, or let its masks grow (--dilate-px)",
+                            "and is left out: widen the label, or let its masks grow (--dilate-px)",
                             100 * outside, printable(views_[v].view.name)));
         }
 }
@@ -285,10 +284,15 @@ Image RoundDrawing::ask_server(RedrawOrder order) {
     suit_to_server(order, source_.facts(), drawing_.family);
     const int total = static_cast<int>(views_.size()),
               now = static_cast<int>(std::min(done_, views_.size() - 1));
-    const auto stage = fmt::format("view {} of {} at the server", now + 1, total);
+    const auto stage = fmt::format("view {} of {} at {}", now + 1, total, drawing_.nickname);
     job_.report(stage, now, total);
-    return source_.ask(order,
-                       {{}, job_.stop});  // steps inside a view are not asked for: few servers tell them
+    // Steps inside a view are not shown: few servers tell them.
+    const auto waits = [&](std::string_view words, int place, int) {
+        if (words == DrawingStage) return job_.report(stage, now, total);
+        job_.report(fmt::format("{}: {}{}", stage, words, place > 0 ? fmt::format(", place {}", place) : ""),
+                    now, total);
+    };
+    return source_.ask(order, {waits, job_.stop});
 }
 
 void RoundDrawing::take(std::size_t view, CheckedPicture checked) {

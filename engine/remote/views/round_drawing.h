@@ -29,6 +29,7 @@ struct RemoteDrawing {
     int side = 512;                         // px of the pictures that are sent: a multiple of 64
     std::vector<OwnPicture> own = {};       // of views that are not drawn: the others follow them
     std::string key_view = {};              // drawn first; empty = the one with the most to change
+    std::string nickname = "the server";    // in words about the progress
 };
 
 /// Picture of the view that the others are drawn like.

@@ -8,10 +8,6 @@
 
 namespace gse::remote {
 
-/// Names of bundled workflows: "img2img", "inpainting", "edit" (a model that takes instructions), and
-/// "edit_reference".
-bool is_bundled_workflow(const std::filesystem::path& name);
-
 /// The bundled one of that name, or the file. Throws Error with the path.
 Workflow load_workflow(const std::filesystem::path& name);
 

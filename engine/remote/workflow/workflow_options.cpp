@@ -73,10 +73,12 @@ void set_one_input(Workflow& workflow, const ServerOption& option) {
     if (nodes.size() > 1)
         throw bad_input(option, "belongs to several nodes of the workflow",
                         fmt::format("name one by its title or number: {}", fmt::join(nodes, ", ")));
-    if (nodes.empty() || !workflow.graph[nodes[0]]["inputs"].contains(input))
-        throw bad_input(
-            option, "is no input of the workflow",
-            fmt::format("name one as NODE.input; it has {}", fmt::join(free_inputs(workflow), ", ")));
+    const bool there = !nodes.empty() && workflow.graph[nodes[0]]["inputs"].contains(input);
+    if (nodes.empty() || !(there || (option.forced && !input.empty())))
+        throw bad_input(option, "is no input of the workflow",
+                        fmt::format("name one as NODE.input; it has {}; force:NODE.input=VALUE gives a node "
+                                    "an input that the workflow leaves out",
+                                    fmt::join(free_inputs(workflow), ", ")));
     auto& value = workflow.graph[nodes[0]]["inputs"][input];
     if (value.is_structured())
         throw bad_input(option, "is linked to another node", "set an input of that node");

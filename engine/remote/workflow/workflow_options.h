@@ -10,7 +10,7 @@ namespace gse::remote {
 
 /// Sets inputs "NODE.input", where NODE is a title, a class or a number. Throws Error (InvalidArgument):
 /// - no node is meant, or several;
-/// - the node has no such input, it is a link, or it is set for every picture;
+/// - the node has no such input and it is not forced, it is a link, or it is set for every picture;
 /// - the value is of another kind than the workflow's.
 void set_inputs(Workflow& workflow, const std::vector<ServerOption>& options);
 

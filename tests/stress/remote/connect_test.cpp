@@ -49,8 +49,24 @@ DOCTEST_TEST_CASE("each server is recognised by what it answers") {
         DOCTEST_CAPTURE(known.flavour);
         DOCTEST_CHECK(facts.kind == known.kind);
         DOCTEST_CHECK(facts.product == known.product);
-        for (const auto& entry : stand_in.log()) DOCTEST_CHECK(entry["method"] == "GET");
+        for (const auto& entry : stand_in.log()) {
+            DOCTEST_CHECK(entry["method"] == "GET");
+            const auto path = entry["path"].get<std::string>();  // places that hand out a server's passwords
+            DOCTEST_CHECK(path.find("cmd-flags") == std::string::npos);
+            DOCTEST_CHECK(path.find("sysinfo") == std::string::npos);
+        }
     }
+}
+
+DOCTEST_TEST_CASE("a server that hangs is not waited for as long as an answer may take") {
+    if (!can_stand_in()) return;
+    auto& stand_in = shared_stand_in("forge");
+    stand_in.set({{"fault", "hang"}, {"at", "probe"}});
+    auto address = stand_in.address();
+    address.times.look = Milliseconds(300);
+    address.times.answer = Milliseconds(60'000);  // longer than the stand-in hangs
+    DOCTEST_CHECK(caught([&] { connect(address, {}); }).says("says nothing any more"));
+    stand_in.reset();
 }
 
 DOCTEST_TEST_CASE("servers that speak no known protocol are told apart") {

@@ -158,6 +158,12 @@ DOCTEST_TEST_CASE("the workflow follows from mask, references and wish") {
     DOCTEST_CHECK(count(redrawn(address), "ReferenceLatent") == 1);
     order.references = {order.picture};
     DOCTEST_CHECK(count(redrawn(address), "ReferenceLatent") == 2);
+    order.references.clear();
+    address.workflow.clear();
+    address.model = "flux-2-klein-4b.safetensors";  // no checkpoint: it comes without a text encoder
+    DOCTEST_CHECK(count(redrawn(address), "ReferenceLatent") == 1);
+    address.model = "stand-in.safetensors";
+    DOCTEST_CHECK(count(redrawn(address), "ReferenceLatent") == 0);
 }
 
 DOCTEST_TEST_CASE("loaders that know no temporary folder get their pictures from another") {

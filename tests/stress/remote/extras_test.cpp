@@ -74,6 +74,47 @@ DOCTEST_TEST_CASE("options reach the requests, and wrong ones are refused before
     DOCTEST_CHECK(comfy.asked("/upload/image").empty());
 }
 
+DOCTEST_TEST_CASE("an option that is forced reaches the request though the program does not know its name") {
+    if (!can_stand_in()) return;
+    const char* options[] = {"force:hr.scale=2", "force:layers=4", "force:hires.scale=2",
+                             "force:KSampler.eta=0.5"};
+    for (std::size_t i = 0; i < spoken().size(); ++i) {
+        const auto& [flavour, kind, place] = spoken()[i];
+        DOCTEST_CAPTURE(flavour);
+        auto& stand_in = shared_stand_in(flavour);
+        auto address = address_of(stand_in, kind);
+        address.options = {parse_server_option(std::string(options[i]).substr(6))};
+        DOCTEST_CHECK(caught([&] { connect(address, {}); }).hint.find("force:") != std::string::npos);
+        address.options = {parse_server_option(options[i])};
+        connect(address, {})->redraw(small_order(), {});
+        const auto sent = stand_in.asked(place).at(0);
+        const auto fields = sent["fields"];
+        if (kind == ServerKind::Webui) DOCTEST_CHECK(sent["json"]["hr"]["scale"] == 2);
+        if (kind == ServerKind::SdCpp) DOCTEST_CHECK(sent["json"]["hires"]["scale"] == 2);
+        if (kind == ServerKind::Comfy) DOCTEST_CHECK(sent["json"]["prompt"]["7"]["inputs"]["eta"] == 0.5);
+        if (kind == ServerKind::OpenAi)
+            DOCTEST_CHECK(
+                std::count(fields.begin(), fields.end(), nlohmann::json::array({"layers", "", "4"})) == 1);
+    }
+}
+
+DOCTEST_TEST_CASE("sd-server is told samplers by its own names: it passes over others without a word") {
+    if (!can_stand_in()) return;
+    auto& stand_in = shared_stand_in("sdserver");
+    auto order = small_order();
+    order.sampler = "Euler";
+    connect(address_of(stand_in, ServerKind::SdCpp), {})->redraw(order, {});
+    DOCTEST_CHECK(stand_in.asked("/img_gen").at(0)["json"]["sample_params"]["sample_method"] == "euler");
+    connect(address_of(stand_in, ServerKind::OpenAi), {})->redraw(order, {});
+    DOCTEST_CHECK(stand_in.asked("/edits").at(0)["fields"].dump().find("\"sample_method\\\":\\\"euler") !=
+                  std::string::npos);
+    auto address = address_of(stand_in, ServerKind::SdCpp);
+    for (const char* name : {"sample_params.scheduler", "sample_params.sample_method"}) {
+        address.options = {{name, "nonsense"}};
+        DOCTEST_CHECK(caught([&] { connect(address, {}); }).says("no \"nonsense\""));
+    }
+}
+
 DOCTEST_TEST_CASE("vLLM-Omni is told LoRAs by name or path, and says itself which it lacks") {
     if (!can_stand_in()) return;
     auto& vllm = shared_stand_in("vllm");
@@ -105,14 +146,14 @@ DOCTEST_TEST_CASE("LoRAs are told as each server takes them, and those it lacks 
     for (const auto& [flavour, kind] :
          {Told{"forge", ServerKind::Webui}, Told{"kcpp", ServerKind::Webui},
           Told{"sdserver", ServerKind::SdCpp}, Told{"sdserver", ServerKind::OpenAi},
-          Told{"comfy", ServerKind::Comfy}, Told{"local", ServerKind::OpenAi}}) {
+          Told{"comfy", ServerKind::Comfy}, Told{"openai", ServerKind::OpenAi}}) {
         DOCTEST_CAPTURE(flavour);
         auto& stand_in = shared_stand_in(flavour);
         auto address = address_of(stand_in, kind);
         address.loras = {{"brass", 1}};
         const auto refused = caught([&] { connect(address, {}); });
         DOCTEST_CHECK(refused.says("has no LoRA \"brass\""));
-        const bool has_any = std::string(flavour) != "local";
+        const bool has_any = std::string(flavour) != "openai";
         DOCTEST_CHECK((refused.hint.find("it has: bronze") != std::string::npos) == has_any);
         if (!has_any) continue;
         address.loras = {{"bronze", 0.5}};
@@ -134,6 +175,48 @@ DOCTEST_TEST_CASE("LoRAs are told as each server takes them, and those it lacks 
             DOCTEST_CHECK(sent["prompt"] == (tagged ? "a golden bear <lora:bronze:0.5>" : "a golden bear"));
             if (!tagged) DOCTEST_CHECK(sent["lora"] == listed);
         }
+    }
+}
+
+DOCTEST_TEST_CASE("servers tell whether they take LoRAs; one without a list is told any name") {
+    if (!can_stand_in()) return;
+    struct Taken {
+        const char* flavour;
+        ServerKind kind;
+        LoraNames names;
+    };
+    for (const auto& [flavour, kind, names] : {Taken{"forge", ServerKind::Webui, LoraNames::Listed},
+                                               Taken{"sdserver", ServerKind::SdCpp, LoraNames::Listed},
+                                               Taken{"sdserver", ServerKind::OpenAi, LoraNames::Listed},
+                                               Taken{"comfy", ServerKind::Comfy, LoraNames::Listed},
+                                               Taken{"vllm", ServerKind::OpenAi, LoraNames::Any},
+                                               Taken{"local", ServerKind::OpenAi, LoraNames::Any},
+                                               Taken{"openai", ServerKind::OpenAi, LoraNames::None}}) {
+        DOCTEST_CAPTURE(flavour);
+        const auto facts = connect(address_of(shared_stand_in(flavour), kind), {})->probe({});
+        DOCTEST_CHECK(facts.lora_names == names);
+        DOCTEST_CHECK(facts.loras.empty() == (names != LoraNames::Listed));
+    }
+    auto& local = shared_stand_in("local");
+    auto address = address_of(local, ServerKind::OpenAi);
+    address.loras = {{"looks/brass.safetensors", 0.5}};
+    const auto server = connect(address, {});
+    DOCTEST_CHECK(server->probe({}).notes.at(0).find("LoRAs") != std::string::npos);
+    DOCTEST_CHECK(server->redraw(small_order(), {}).picture.width == 64);
+    const auto form = local.asked("/edits").at(0)["fields"];
+    const nlohmann::json told{{"name", "brass"}, {"scale", 0.5}, {"local_path", "looks/brass.safetensors"}};
+    DOCTEST_CHECK(std::count(form.begin(), form.end(), nlohmann::json::array({"lora", "", told.dump()})) ==
+                  1);
+    for (const char* flavour : {"forge", "kcpp"}) {
+        auto& webui = shared_stand_in(flavour);
+        webui.set({{"no_loras", "1"}});
+        auto unlisted = address_of(webui, ServerKind::Webui);
+        unlisted.loras = {{"brass", 1}};
+        connect(unlisted, {})->redraw(small_order(), {});
+        const auto sent = webui.asked("/img2img").at(0)["json"];
+        const bool tagged = std::string(flavour) == "forge";
+        if (tagged) DOCTEST_CHECK(sent["prompt"] == "a golden bear <lora:brass:1>");
+        else DOCTEST_CHECK(sent["lora"][0]["path"] == "brass");
     }
 }
 

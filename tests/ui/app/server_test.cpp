@@ -186,6 +186,50 @@ DOCTEST_TEST_CASE("settings of the drawing are checked, keep their origin, and o
     again.app.shut_down();
 }
 
+DOCTEST_TEST_CASE("a model that the server lacks leaves the list to choose another from") {
+    if (!can_ask()) return;
+    const Place place;
+    Session session;
+    remote::StandIn server("forge");
+    const auto& view = session.app.model().server;
+    choose(session, server.url());
+    session.app.run(command::TestServer{});
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_REQUIRE(view.models.size() == 2);
+    auto choice = view.choice;
+    choice.model = "nonsense";
+    session.app.run(command::SetServer{choice});
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_CHECK(view.problem.find("nonsense") != std::string::npos);
+    DOCTEST_CHECK(view.models.size() == 2);
+    session.app.shut_down();
+}
+
+DOCTEST_TEST_CASE("a server without a list of LoRAs says so, and one that is typed is kept for it") {
+    if (!can_ask()) return;
+    const Place place;
+    Session session;
+    const auto& view = session.app.model().server;
+    for (const auto& [flavour, names] : {std::pair{"vllm", gse::remote::LoraNames::Any},
+                                         std::pair{"openai", gse::remote::LoraNames::None}}) {
+        DOCTEST_CAPTURE(flavour);
+        remote::StandIn server(flavour);
+        choose(session, server.url());
+        session.app.run(command::TestServer{});
+        DOCTEST_REQUIRE(session.idle());
+        DOCTEST_CHECK(view.loras.empty());
+        DOCTEST_CHECK(view.lora_names == names);
+        auto choice = view.choice;
+        choice.lora = {"looks/brass:0.5"};
+        session.app.run(command::SetServer{choice});
+        DOCTEST_REQUIRE(session.idle());
+        DOCTEST_CHECK(view.problem.empty() == (names == gse::remote::LoraNames::Any));
+        DOCTEST_CHECK(view.lora_names == names);
+        DOCTEST_CHECK(view.choice.lora == choice.lora);
+    }
+    session.app.shut_down();
+}
+
 DOCTEST_TEST_CASE("a server that nobody runs is a sentence with a remedy, and no question to the artist") {
     if (!can_ask()) return;
     const Place place;
@@ -277,7 +321,7 @@ DOCTEST_TEST_CASE(
     asked.edit_again();
     DOCTEST_CHECK(questions(session) == before);
     DOCTEST_REQUIRE(session.until(
-        [&] { return session.app.model().job.stage.find("at the server") != std::string::npos; }));
+        [&] { return session.app.model().job.stage.find(" at 127.0.0.1:") != std::string::npos; }));
     session.app.run(command::Cancel{});
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK(session.app.model().job.outcome == "stopped");
@@ -450,7 +494,24 @@ DOCTEST_TEST_CASE("a thing without a word is found by the server, after a click 
     DOCTEST_REQUIRE(model.document->state().labels.size() == 1);
     DOCTEST_CHECK(model.document->state().labels[0].name == "gizmo");
     DOCTEST_CHECK(model.labelled > 100);
-    DOCTEST_REQUIRE(session.until([&] { return model.server_search.empty(); }));  // the label says it now
+    DOCTEST_REQUIRE(session.until([&] { return model.labelled_by_hand; }));
+    DOCTEST_CHECK_FALSE(model.server_search.empty());  // what was found may be wrong
+    request.prompt = "a blue gizmo", request.target = "blue";
+    session.app.run(command::SetRequest{request});
+    DOCTEST_REQUIRE(
+        session.until([&] { return model.server_search.find("a blue gizmo") != std::string::npos; }));
+    session.app.run(command::Locate{false, true});
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_CHECK(model.job.error == "");
+    DOCTEST_CHECK(server.asked("/img_gen").size() >= asked.size() + 16);
+    DOCTEST_CHECK(model.document->state().labels.size() == 1);  // in place of the first
+    for (int step = 0; step < 2; ++step) session.app.run(command::Undo{});
+    DOCTEST_CHECK(model.document->state().labels.empty());
+    session.app.update(session.preview);
+    DOCTEST_CHECK_FALSE(model.server_search.empty());
+    session.app.run(command::Redo{});
+    request.prompt = "a golden gizmo", request.target = "golden";
+    session.app.run(command::SetRequest{request});
     session.app.run(command::Edit{});
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK(model.job.error == "");

@@ -125,7 +125,7 @@ template <class C> std::string fields_of(const C& wanted) {
                    fmt::format(" {} {} {} {}", choice.side, choice.steps, choice.guidance, choice.strength) +
                    fmt::format(" [{}] [{}] [{}]", fmt::join(choice.lora, ", "),
                                fmt::join(choice.option, ", "), fmt::join(choice.target_picture, ", ")) +
-                   two(choice.workflow, choice.ca);
+                   two(choice.workflow, choice.ca) + (choice.paid_nodes ? " paid" : "");
         },
         [&](const command::KeepServerPassword& one) { return two(one.name, one.password.size()); },
         [&](const command::UseServer& one) { return text(one.on ? "on" : "off"); },

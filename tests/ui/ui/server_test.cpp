@@ -140,6 +140,30 @@ DOCTEST_TEST_CASE("LoRAs of the server are picked from its list, weighed and tak
                              "set_server http://127.0.0.1:1234  auto auto 0 0 0 0 [] []"));
 }
 
+DOCTEST_TEST_CASE("a LoRA is typed where the server has no list, and there is no field where it takes none") {
+    Drawing panel;
+    panel.server().loras.clear();
+    panel.server().lora_names = remote::LoraNames::Any;
+    panel.frame(3);
+    DOCTEST_CHECK_FALSE(panel.rect("models.server.lora.add").enabled);
+    panel.write("models.server.lora", "looks/brass:0.5");
+    DOCTEST_CHECK(panel.asks("models.server.lora.add",
+                             "set_server http://127.0.0.1:1234  auto auto 0 0 0 0 [looks/brass:0.5]"));
+    DOCTEST_CHECK(panel.shell.state().models.server_lora.empty());
+    panel.server().choice.lora = {"looks/brass:0.5"};
+    panel.frame(3);
+    DOCTEST_CHECK(panel.rect("models.server.lora.0.weight").y < panel.rect("models.server.lora").y);
+    panel.write("models.server.lora", "looks/brass");
+    DOCTEST_CHECK_FALSE(panel.rect("models.server.lora.add").enabled);  // it is used already
+    panel.server().choice.lora.clear();
+    panel.server().lora_names = remote::LoraNames::None;
+    panel.frame(3);
+    DOCTEST_CHECK(panel.find("models.server.lora") == nullptr);
+    panel.server().lora_names = remote::LoraNames::Listed;
+    panel.frame(3);
+    DOCTEST_CHECK(panel.find("models.server.lora") == nullptr);  // it has none
+}
+
 DOCTEST_TEST_CASE("a picture in the making stands beside what was sent, and leaves no gap when it has come") {
     Harness harness({1600, 1000, 1, Situation::Editing});
     harness.shell.show(ui::PanelId::Progress);
@@ -173,6 +197,13 @@ DOCTEST_TEST_CASE("a source without a word is looked for by the server where tha
     model.server_search = "16 pictures of your scene go to 127.0.0.1:1234.";
     harness.frame(3);
     DOCTEST_CHECK(harness.asks("prompt.source.by_server", "locate by server"));
+    DOCTEST_CHECK(harness.shell.state().prompt.locate_problem.find("let the server find it") !=
+                  std::string::npos);
+    const float first = harness.rect("prompt.source.by_server").width;
+    model.labelled_by_hand = true;  // by what it found, which may be wrong
+    harness.frame(3);
+    DOCTEST_CHECK(harness.rect("prompt.source.by_server").width > first);  // "... again"
+    DOCTEST_CHECK(harness.asks("prompt.source.by_server", "locate by server"));
     model.job.running = true;
     harness.frame(3);
     DOCTEST_CHECK_FALSE(harness.rect("prompt.source.by_server").enabled);
@@ -203,6 +234,8 @@ DOCTEST_TEST_CASE("certificates are a file for every server, a workflow is one f
     panel.write("models.server.workflow", "/tmp/flow.json");
     DOCTEST_CHECK(panel.asks("models.server.workflow.use",
                              "set_server http://127.0.0.1:1234  auto auto 0 0 0 0 [] [] [] /tmp/flow.json"));
+    DOCTEST_CHECK(panel.asks("models.server.paid_nodes",
+                             "set_server http://127.0.0.1:1234  auto auto 0 0 0 0 [] [] []   paid"));
     panel.click("models.server.ca.browse");
     panel.frame(2);
     DOCTEST_CHECK(panel.shell.state().files.is_open());

@@ -93,6 +93,19 @@ class Server(WindowTest):
         self.assertGreaterEqual(len(server.drawings()), 8)
         self.assertTrue(all("bronze" in json.dumps(entry["json"]) for entry in server.drawings()))
 
+    def test_a_lora_is_typed_where_the_server_has_no_list(self):
+        window, _ = self.tested("vllm")
+        window.scroll_to("models.server.drawing", "panel.Models")
+        window.click("models.server.drawing")
+        window.scroll_to("models.server.lora.add", "panel.Models")
+        window.write("models.server.lora", "/models/brass.safetensors:0.5")
+        window.press("models.server.lora.add",
+                     lambda s: s["server"]["lora"] == ["/models/brass.safetensors:0.5"],
+                     "the LoRA was not taken")
+        window.wait(lambda s: s["server"]["facts"] > 0 and not s["server"]["problem"], "it is refused", 30)
+        window.picture("server_09_typed_lora")
+        self.assertIn("models.server.lora.0.weight", window.widgets())
+
     def test_a_picture_in_the_making_is_shown_beside_what_was_sent(self):
         window, server = self.tested("forge")
         server.ask("set?draw_s=4&previews=1")
@@ -135,6 +148,9 @@ class Server(WindowTest):
         window.picture("server_08_found")
         self.assertIn(len(server.drawings()), (16, 32))
         self.assertGreater(window.state()["labelled"], 0)
+        window.click("tab.Prompt")
+        window.wait_widget("prompt.source.by_server", 20)   # what it found may be wrong
+        window.picture("server_10_again")
 
     def test_an_edit_at_the_server_is_stopped(self):
         window, server = self.start()

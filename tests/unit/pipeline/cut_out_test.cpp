@@ -180,6 +180,8 @@ DOCTEST_TEST_CASE("what a boxed thing stands on is no part of it where it goes o
         for (int y = 0; y < view.mask.height; ++y)
             for (int x = 0; x < view.mask.width; ++x)
                 view.mask.at(x, y) = std::abs(x - cx) < reach && std::abs(y - cy) < reach ? 1 : 0;
+        const auto& painted = painter.paint(set.spans(), view.camera, {});
+        view.picture = {painted.alpha, painted.depth};
         return without_support(set, bits, view, {}, painter);
     };
     const auto table = on_disc(2);

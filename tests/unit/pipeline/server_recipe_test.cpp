@@ -38,7 +38,12 @@ DOCTEST_TEST_CASE("server recipe: options, LoRAs and pictures come back, files b
     recipe.server.lora = {"bronze:0.8"};
     recipe.server.target_picture = {"view 3=mine=1.png"};
     recipe.server.key_view = "view 3";
-    const auto read = recipe_from_json(recipe_to_json(recipe), "/tmp");
+    recipe.server.workflow = "flow.json";
+    auto read = recipe_from_json(recipe_to_json(recipe), "/tmp");
+    DOCTEST_CHECK(read.server.workflow == "/tmp/flow.json");
+    recipe.server.workflow = "edit";  // a bundled one is no file
+    read = recipe_from_json(recipe_to_json(recipe), "/tmp");
+    DOCTEST_CHECK(read.server.workflow == "edit");
     DOCTEST_CHECK(read.server.option == recipe.server.option);
     DOCTEST_CHECK(read.server.lora == recipe.server.lora);
     DOCTEST_CHECK(read.server.target_picture == std::vector<std::string>{"view 3=/tmp/mine=1.png"});

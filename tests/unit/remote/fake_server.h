@@ -47,10 +47,13 @@ public:
     std::size_t lost_at = ~std::size_t{0};     // call that ends when all its previews were shown
     std::string model = {};                    // that it says has drawn
     std::size_t previews = 0;                  // pictures in the making that it shows for each, if asked
+    int place = 0;                             // in its queue, which it tells before it draws; 0 = it draws
 
     remote::ServerFacts probe(const JobControl&) override { return facts; }
     remote::RedrawnPicture redraw(const remote::RedrawOrder& order, const JobControl& job) override {
         if (job.stop_requested()) throw Error(ErrorCode::Cancelled, "stopped");
+        if (place > 0) job.report("waiting in the server's queue", place, 0);
+        job.report(remote::DrawingStage, 0, 0);
         const std::size_t call = orders.size();
         if (call >= fails_from) throw Error(ErrorCode::Foreign, "nobody answers");
         for (std::size_t i = 0; i < previews && order.preview; ++i)

@@ -35,6 +35,7 @@ DOCTEST_TEST_CASE("family: names of real models lead to the family that drives t
         {"Qwen-Image-Edit", "qwen-edit"},
         {"qwen_image_edit_2509_fp8.safetensors", "qwen-edit-plus"},
         {"z_image_turbo_bf16.safetensors", "z-image"},
+        {"Z-Image-Base-Q8_0.gguf", "z-image-base"},
         {"gpt-image-1", "editor"}};
     for (const auto& [model, family] : cases) {
         DOCTEST_CAPTURE(model);

@@ -124,6 +124,21 @@ DOCTEST_TEST_CASE("editor: one seed for all views, which another round does not 
     DOCTEST_CHECK(setup.server.orders[first].strength == family_named("sd15").again_strength);
 }
 
+DOCTEST_TEST_CASE("editor: progress names the server, and its queue while a view waits there") {
+    Setup setup;
+    setup.server.place = 3;
+    auto drawing = drawing_of(Agreement::None);
+    drawing.nickname = "10.0.0.5:7860";
+    std::vector<std::string> stages;
+    const JobControl job{[&](std::string_view stage, int, int) { stages.emplace_back(stage); }, {}};
+    PictureSource source(setup.server, setup.server.facts, "", nullptr);
+    RemoteViewEditor(source, drawing).edit(views_of_wall(2), request_of(), job);
+    const std::string first = "view 1 of 2 at 10.0.0.5:7860", second = "view 2 of 2 at 10.0.0.5:7860",
+                      waits = ": waiting in the server's queue, place 3";
+    DOCTEST_CHECK(stages ==
+                  std::vector<std::string>{first, first + waits, first, second, second + waits, second});
+}
+
 DOCTEST_TEST_CASE("editor: an edit that failed asks only for what is missing when it is run again") {
     Setup setup;
     setup.server.fails_from = 3;

@@ -49,6 +49,57 @@ DOCTEST_TEST_CASE("options: other forms, secrets and names given twice are refus
         DOCTEST_CHECK(!says(words, "abc"));
     }
     DOCTEST_CHECK(says(refusal([] { parse_server_options({"eta=1", "eta=2"}); }), "twice"));
+    DOCTEST_CHECK(says(refusal([] { parse_server_options({"eta=1", "force:eta=2"}); }), "twice"));
+    DOCTEST_CHECK(says(refusal([] { parse_server_options({"force:a.b=1", "force:a=2"}); }), "twice"));
+    DOCTEST_CHECK(parse_server_options({"force:a.b=1", "force:a.bc=2"}).size() == 2);
+}
+
+DOCTEST_TEST_CASE("options: a name that is forced is sent unknown, but no secret and no field of ours") {
+    const auto forced = parse_server_option("force:hires.scale=1.5");
+    DOCTEST_CHECK(forced.name == "hires.scale");
+    DOCTEST_CHECK(forced.forced);
+    DOCTEST_CHECK_FALSE(parse_server_option("eta=force:1").forced);
+    for (const char* text : {"force:=3", "force:eta", "force:"})
+        DOCTEST_CHECK(says(refusal([&] { parse_server_option(text); }), "NAME=VALUE"));
+    DOCTEST_CHECK(says(refusal([] { parse_server_option("force:api_key=x"); }), "GSEDITPRO_SERVER_TOKEN"));
+    const auto webui = [](const char* text) {
+        return refusal(
+            [&] { check_webui_options(parse_server_options({text}), WebuiProduct::Forge, server()); });
+    };
+    DOCTEST_CHECK(says(webui("hr_scale=2"), "force:NAME=VALUE"));
+    DOCTEST_CHECK(webui("force:hr_scale=2").empty());
+    DOCTEST_CHECK(webui("force:scheduler=karras").empty());
+    for (const char* text : {"force:width=64", "force:mask=x", "force:width.x=1", "force:lora=[]"})
+        DOCTEST_CHECK(says(webui(text), "is set by the program"));
+    for (const char* text : {"force:override_settings={}", "force:override_settings.sd_vae=x",
+                             "force:override_settings_restore_afterwards=false"})
+        DOCTEST_CHECK(says(webui(text), "--server-model"));
+    for (const char* text : {"force:a..b=1", "force:.a=1", "force:a.=1", "force:a b=1", "force:a\"b=1"})
+        DOCTEST_CHECK(says(webui(text), "is no name of a field"));
+    const auto forms = [](const char* text) {
+        return refusal(
+            [&] { check_openai_options(parse_server_options({text}), OpenAiProduct::Vllm, server()); });
+    };
+    DOCTEST_CHECK(forms("force:layers=4").empty());
+    for (const char* text : {"force:image=x", "force:mask_image=x", "force:seed=2"})
+        DOCTEST_CHECK(says(forms(text), "is set by the program"));
+    nlohmann::json body;
+    add_options(body, {forced});
+    DOCTEST_CHECK(body["hires"]["scale"] == 1.5);
+}
+
+DOCTEST_TEST_CASE("options: a value that the server does not offer is refused, unless it is forced") {
+    const auto check = [](const char* text, const std::vector<std::string>& offered) {
+        return refusal([&] {
+            check_offered_value(parse_server_options({text}), "sample_params.scheduler", offered, server());
+        });
+    };
+    DOCTEST_CHECK(check("sample_params.scheduler=karras", {"discrete", "karras"}).empty());
+    DOCTEST_CHECK(says(check("sample_params.scheduler=karas", {"discrete", "karras"}),
+                       "\"karas\" for sample_params.scheduler; it has: discrete, karras"));
+    DOCTEST_CHECK(check("force:sample_params.scheduler=karas", {"karras"}).empty());
+    DOCTEST_CHECK(check("sample_params.scheduler=karas", {}).empty());
+    DOCTEST_CHECK(check("sample_params.eta=1", {"karras"}).empty());
 }
 
 DOCTEST_TEST_CASE("options: fields that the program sets are refused, and so are unknown ones") {
@@ -141,6 +192,19 @@ DOCTEST_TEST_CASE("loras: a server's own name is told, and a missing one is refu
     const auto missing = refusal([&] { chosen_loras(parse_server_loras({"brass"}), offered, server()); });
     DOCTEST_CHECK(says(missing, "has no LoRA \"brass\"; it has: bronze, oil paint"));
     DOCTEST_CHECK(says(refusal([] { chosen_loras(parse_server_loras({"x"}), {}, server()); }), "none"));
+}
+
+DOCTEST_TEST_CASE("loras: where a server has no list, any name goes, and a path keeps its folders") {
+    const auto named = [](LoraNames names) {
+        return named_loras(parse_server_loras({"looks/brass.safetensors:0.5"}), {}, names, server());
+    };
+    const auto any = named(LoraNames::Any);
+    DOCTEST_REQUIRE(any.size() == 1);
+    DOCTEST_CHECK(any[0].name == "brass");
+    DOCTEST_CHECK(any[0].path == "looks/brass.safetensors");
+    DOCTEST_CHECK(prompt_with_loras("a bear", any) == "a bear <lora:brass:0.5>");
+    for (const auto names : {LoraNames::None, LoraNames::Listed})
+        DOCTEST_CHECK(says(refusal([&] { named(names); }), "has no LoRA"));
 }
 
 }  // namespace

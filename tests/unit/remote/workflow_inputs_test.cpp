@@ -56,6 +56,20 @@ DOCTEST_TEST_CASE("workflow options: what is missing, linked, of several nodes o
     DOCTEST_CHECK(says("InpaintModelConditioning.noise_mask=3", "takes no such value"));
 }
 
+DOCTEST_TEST_CASE("workflow options: a forced input is given to a node that the workflow has, and no link") {
+    auto workflow = bundled("inpainting");
+    set_inputs(workflow, parse_server_options({"force:KSampler.eta=0.5", "force:KSampler.cfg_end=2"}));
+    DOCTEST_CHECK(workflow.graph["7"]["inputs"]["eta"] == 0.5);
+    DOCTEST_CHECK(workflow.graph["7"]["inputs"]["cfg_end"] == 2);
+    for (const char* option : {"force:Sampler.eta=1", "force:KSampler.=1", "force:eta=1"})
+        DOCTEST_CHECK(refusal(workflow, option).find("is no input of the workflow") != std::string::npos);
+    DOCTEST_CHECK(refusal(workflow, "force:KSampler.seed=1").find("is set by the program") !=
+                  std::string::npos);
+    DOCTEST_CHECK(refusal(workflow, "force:KSampler.model=1").find("is linked") != std::string::npos);
+    DOCTEST_CHECK(refusal(workflow, "force:KSampler.sigmas=[\"1\", 0]").find("takes no such value") !=
+                  std::string::npos);
+}
+
 DOCTEST_TEST_CASE("workflow loras: everything gets model and text encoder through the loaders, in a chain") {
     auto workflow = bundled("inpainting");
     add_lora_loaders(workflow, {{"a.safetensors", 1}, {"b.safetensors", 0.5}});

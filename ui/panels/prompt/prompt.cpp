@@ -35,14 +35,18 @@ constexpr std::array<const char*, 4> ModeHelp{
     "Put something new there, such as a hat on the bear."};
 
 /// Offer to have the image server look for what the model has no word for. Nothing goes there before the
-/// click.
+/// click. What it found may be wrong: the offer stays beside the label.
 void draw_server_search(Context& context) {
     if (context.model.server_search.empty()) return;
+    const bool again = context.model.labelled_by_hand;
     dim_text(context.model.server_search);
-    if (button(context, {.name = "prompt.source.by_server",
-                         .text = "Let the server find it",
-                         .why_off = why_not_work(context),
-                         .tooltip = "What it changes becomes a label, which you can look at and correct"}))
+    if (button(context,
+               {.name = "prompt.source.by_server",
+                .text = again ? "Let the server find it again" : "Let the server find it",
+                .why_off = why_not_work(context),
+                .tooltip = again ? "What it changes takes the label's place; undo brings that back. Another "
+                                   "sentence or seed gives other pictures"
+                                 : "What it changes becomes a label, which you can look at and correct"}))
         run_server_search(context);
 }
 
@@ -53,6 +57,7 @@ void draw_unknown_source(Context& context) {
     const std::string synonym = language::known_synonym(word, context.model.known_words);
     if (context.model.labelled_by_hand) {
         dim_text(fmt::format("The model cannot find \"{}\": the label says where it is.", word));
+        draw_server_search(context);
         return;
     }
     if (!synonym.empty()) wrapped_text(fmt::format("\"{}\" is another word for \"{}\".", word, synonym));
@@ -79,8 +84,7 @@ void draw_unknown_source(Context& context) {
                          .text = by_hand,
                          .why_off = context.scene_open() ? "" : "Open a scene first",
                          .tooltip = "Gives you Cut out: click on the thing that may change, or drag a box "
-                                    "around it. It becomes a label "
-                                    "of that name"}))
+                                    "around it. It becomes a label of that name"}))
         label_by_hand(context, context.request.source);
     if (prompt.source_suggestions.empty()) dim_text(fmt::format("Or use {}.", prompt.source_help));
     draw_server_search(context);

@@ -77,16 +77,37 @@ void draw_lora(Context& context, std::vector<std::string>& loras, std::size_t in
         loras[index] = fmt::format("{}:{}", lora.name, std::clamp(weight, -10.0, 10.0));
 }
 
-/// LoRAs in use, and those that the server has besides.
-void draw_loras(Context& context, ServerSettings& choice) {
-    const auto& offered = context.model.server.loras;
-    if (offered.empty() && choice.lora.empty()) return dim_text("The server names no LoRAs.");
-    dim_text("LoRAs of the server");
-    note(context, "models.server.loras");
-    tooltip(help_of("lora"));
-    for (std::size_t index = 0; index < choice.lora.size(); ++index) draw_lora(context, choice.lora, index);
+/// Why a text is no LoRA that can be added; empty = it is one.
+std::string lora_problem(const std::string& text, const std::vector<std::string>& loras) {
+    if (text.empty()) return "Type the name of a LoRA first";
+    try {
+        const auto lora = remote::parse_server_lora(text);
+        const bool used = std::any_of(loras.begin(), loras.end(), [&](const auto& other) {
+            return remote::parse_server_lora(other).name == lora.name;
+        });
+        return used ? fmt::format("\"{}\" is used already: change its weight above", lora.name) : "";
+    } catch (const Error& error) { return fmt::format("{}; {}", error.message(), error.hint()); }
+}
+
+/// Field for a LoRA of a server that has no list.
+void draw_typed_lora(Context& context, ServerSettings& choice) {
+    auto& typed = context.state.models.server_lora;
+    dim_text("The server does not list its LoRAs: type a name, or a path at the server.");
+    const bool entered = text_input(context, "models.server.lora", typed, "name, or name:0.8",
+                                    ImGuiInputTextFlags_EnterReturnsTrue);
+    const auto problem = lora_problem(typed, choice.lora);
+    if (!typed.empty() && !problem.empty()) coloured_text(palette::Warning, problem);
+    const bool pressed =
+        button(context, {.name = "models.server.lora.add", .text = "Add LoRA", .why_off = problem});
+    if (!problem.empty() || !(pressed || entered)) return;
+    const auto lora = remote::parse_server_lora(std::exchange(typed, {}));
+    choice.lora.push_back(fmt::format("{}:{}", lora.name, lora.weight));
+}
+
+/// List of the server's LoRAs that are not used yet.
+void draw_listed_loras(Context& context, ServerSettings& choice) {
     std::vector<const char*> names;
-    for (const auto& name : offered)
+    for (const auto& name : context.model.server.loras)
         if (std::none_of(choice.lora.begin(), choice.lora.end(), [&](const std::string& text) {
                 return remote::parse_server_lora(text).name == name;
             }))
@@ -96,6 +117,24 @@ void draw_loras(Context& context, ServerSettings& choice) {
     int chosen = -1;
     if (combo(context, "models.server.lora", names, chosen))
         choice.lora.push_back(fmt::format("{}:1", names[static_cast<std::size_t>(chosen)]));
+}
+
+/// LoRAs in use, and those that the server has besides.
+void draw_loras(Context& context, ServerSettings& choice) {
+    const auto& server = context.model.server;
+    if (!choice.lora.empty()) {
+        row_label(context, "LoRA of the server", help_of("lora"));
+        note(context, "models.server.loras");
+        dim_text("Weight");
+    }
+    for (std::size_t index = 0; index < choice.lora.size(); ++index) draw_lora(context, choice.lora, index);
+    switch (server.lora_names) {
+        case remote::LoraNames::None: return dim_text("The server takes no LoRAs.");
+        case remote::LoraNames::Any: return draw_typed_lora(context, choice);
+        case remote::LoraNames::Listed: break;
+    }
+    if (server.loras.empty()) return dim_text("The server has no LoRAs.");
+    draw_listed_loras(context, choice);
 }
 
 /// Why a text is no option that can be added; empty = it is one.
@@ -187,6 +226,9 @@ void draw_files(Context& context, ServerSettings& choice) {
                    {".json"},
                    &ServerSettings::workflow},
                   typed.server_workflow, choice);
+    if (comfy)
+        checkbox(context, "models.server.paid_nodes", "Allow nodes that cost money", choice.paid_nodes,
+                 help_of("paid_nodes"));
     draw_file(context,
               {"ca",
                "Certificates",

@@ -26,10 +26,8 @@ struct RealParameters {
           "generated scenes.");
         f("real_modes", self.real_modes,
           "Ways to make each edit of --real: word, upright, box, click. A word is the sentence alone. The "
-          "others "
-          "add the true up axis: upright where the program guesses another. A box surrounds the thing, a "
-          "click "
-          "points at it.");
+          "others add the true up axis: upright where the program guesses another. A box surrounds the "
+          "thing, a click points at it.");
         f("real_only", self.real_only, "Tasks of --real whose name contains this; empty = all.");
         f("real_root", self.real_root,
           "Folder of scenes in place of the one that the suite of --real names, as NAME=FOLDER. It may be "
