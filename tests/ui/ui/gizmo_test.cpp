@@ -109,8 +109,8 @@ DOCTEST_TEST_CASE("no drag throws the thing out of the picture, far away or behi
     constexpr double Edge = 1;          // pixels
     constexpr double FarthestDrag = 3;  // of the eye's distance
     int drags = 0;
-    for (const double degrees : {2.0, 12.0, 25.0, 60.0, 90.0, 170.0, 185.0, 300.0})
-        for (const double height : {0.3, 1.5, 4.0})
+    for (const double degrees : {2.0, 25.0, 90.0, 185.0, 300.0})
+        for (const double height : {0.3, 1.5})
             for (const char* handle : {"gizmo.side", "gizmo.up", "gizmo.front", "gizmo.ground"})
                 for (const ImVec2 corner : {ImVec2{-50, -50}, {1400, 300}, {700, 900}, {500, 60}}) {
                     Placing placing;
@@ -135,7 +135,7 @@ DOCTEST_TEST_CASE("no drag throws the thing out of the picture, far away or behi
                     DOCTEST_CHECK((x >= -Edge && x <= camera.width + Edge));
                     DOCTEST_CHECK((y >= -Edge && y <= camera.height + Edge));
                 }
-    DOCTEST_CHECK(drags > 300);
+    DOCTEST_CHECK(drags > 120);
 }
 
 DOCTEST_TEST_CASE(
