@@ -16,11 +16,15 @@
 #include "engine/base/printable.h"
 #include "engine/pipeline/scene/scene_loading.h"
 #include "engine/pipeline/scene/scene_tools.h"
+#include "engine/pipeline/scene/shown_surface.h"
 #include "engine/scene/transform/merge.h"
 #include "engine/scene/transform/merge_place.h"
+#include "engine/scene/transform/transformed.h"
 
 namespace gse::app {
 namespace {
+
+constexpr int ViewWidth = 1280, ViewHeight = 720;  // of the first view of the scene
 
 struct MergeOptions {
     std::filesystem::path host, guest, output;
@@ -45,7 +49,12 @@ void merge(const MergeOptions& options) {
     if (!options.at.empty()) wishes.at = Vec3{options.at[0], options.at[1], options.at[2]} - host.info.offset;
     wishes.turn = options.turn;
     if (options.scale > 0) wishes.scale = options.scale;
-    const MergePlace place = merge_place(host, guest, wishes);
+    MergePlace place = merge_place(host, guest, wishes);
+    if (!wishes.at && !is_seen_from_around(host, transformed(guest.gaussians, place.placement))) {
+        wishes.seen =
+            shown_surface(host.gaussians, first_view(host, ViewWidth, ViewHeight), host.info.antialiased);
+        place = merge_place(host, guest, wishes);
+    }
     const std::string name = options.name.empty() ? pipeline::name_of_thing(options.guest) : options.name;
     for (const std::string& note : place.notes) log::info("{}: {}", printable(name), note);
     if (host.info.antialiased != guest.info.antialiased)

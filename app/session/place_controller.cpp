@@ -14,6 +14,7 @@
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/pipeline/scene/scene_loading.h"
+#include "engine/pipeline/scene/shown_surface.h"
 #include "engine/scene/label_ops.h"
 #include "engine/scene/stack_edits.h"
 #include "engine/scene/transform/merge.h"
@@ -219,10 +220,13 @@ template <> void PlaceController::on(const command::PutIn& one) {
     auto node = std::make_shared<EditNode>();
     const std::string name = pipeline::name_of_thing(one.path);
     auto work = [node, host = workspace_.scene(), state = state(), path = one.path, name,
+                 seen = view_.seen_document(), camera = view_.camera(),
                  id = workspace_.next_edit_id++](const JobControl& control) {
         control.report("reading the scene", 0, 0);
         const Scene guest = pipeline::load_standing_scene(path);
-        const auto place = merge_place(host, guest);
+        MergeWishes wishes;
+        if (camera.width > 0) wishes.seen = pipeline::shown_surface(seen, camera, host.info.antialiased);
+        const auto place = merge_place(host, guest, wishes);
         for (const auto& note : place.notes) log::info("{}: {}", name, note);
         *node = merge_of(state, guest, place.placement, name, id);
     };
@@ -239,8 +243,7 @@ template <> void PlaceController::on(const command::PutIn& one) {
 
 namespace {
 
-constexpr double RestSeconds = 0.15;  // without a move, after which the shadow of a large scene's thing comes
-constexpr std::size_t MostShadedWhileDragging = 100'000;  // splats, whose light takes less than a frame
+constexpr double RestSeconds = 0.15;  // without a move, after which the shadow of a large thing comes
 
 }  // namespace
 
@@ -257,7 +260,7 @@ template <> void PlaceController::on(const command::PlaceThing& one) {
     if (one.settings == edit::RearrangeSettings{}) return goes_on ? workspace_.run(command::Undo{}) : void();
     if (!goes_on) step_ = Step{0, workspace_.next_edit_id++};
     try {
-        const bool small = thing_->rows().size() <= MostShadedWhileDragging;
+        const bool small = thing_->rows().size() <= workspace_.options.most_shaded_while_dragging;
         const auto* shadow = small ? known_shadow() : nullptr;
         place(one.settings, shadow);
         step_->settings = one.settings;

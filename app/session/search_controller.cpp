@@ -17,6 +17,7 @@
 #include "engine/edit/request/edit_method.h"
 #include "engine/edit/request/excluded_views.h"
 #include "engine/language/news.h"
+#include "engine/language/plan/words/file_words.h"
 #include "engine/language/vocabulary.h"
 #include "engine/language/words.h"
 #include "engine/pipeline/models/model_settings.h"
@@ -402,6 +403,8 @@ void SearchController::set_scope(bool by_label) {
 void SearchController::choose_label_by_hand() {
     const NamedLabel* label = workspace_.active_label();
     if (label == nullptr || sentence_.speaks_of(language::normalised_prompt(label->name))) return;
+    const auto thing = language::plan::thing_of_file_name(label->name);
+    if (!thing.empty() && sentence_.speaks_of(thing)) return;
     if (made_by_hand(*label) || count_labelled(*label) == 0) set_scope(true);
 }
 

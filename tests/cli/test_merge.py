@@ -84,6 +84,16 @@ class Merge(ProgramTest):
         _, y, _ = self.guest_bounds()
         self.assertAlmostEqual(y[1] - y[0], 3 * 0.9, places=3)
 
+    def test_a_name_of_a_file_answers_to_its_thing(self):
+        """A sentence says "guitar" where the label is named "object_guitar"."""
+        guest = self.write("object_guitar.ply", self.guest.read_bytes())
+        process = run("merge", self.host, guest, "--out", self.folder / "both.ply", *self.up)
+        self.assertEqual(process.returncode, 0, process.stderr)
+        process = run("edit", self.folder / "both.ply", "--source", "guitar", "--prompt",
+                      "make the guitar smaller", "--out", self.folder / "small", "--turntable-frames", 0)
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertIn("1000 labelled", process.stderr + process.stdout)
+
     def test_formats_without_labels_and_with_view_dependent_colour(self):
         process = self.merge(*self.up, out="both.splat")
         self.assertEqual(process.returncode, 0, process.stderr)

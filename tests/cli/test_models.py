@@ -123,6 +123,9 @@ class Models(ProgramTest):
                 ("style.SFT", safetensors({lora: [4, 768]}), ("LoRA of Stable Diffusion 1.x", "--lora")),
                 ("flux.safetensors", safetensors(FLUX), ("FLUX.1 diffusion model", "--server")),
                 ("q4.gguf", gguf("flux"), ("FLUX.1", "GGUF", "--server")),
+                ("vae.safetensors", safetensors({"decoder.conv_in.weight": [512, 4, 3, 3],
+                                                 "encoder.conv_in.weight": [128, 3, 3, 3]}),
+                 ("VAE of Stable Diffusion", "NAME.vae.safetensors")),
                 ("other.safetensors", safetensors({"a": [1]}), ("unknown weights", "gseditpro models")),
                 ("page.safetensors", b"<!DOCTYPE html>", ("by its name", "not a file of weights",
                                                           "download it again")),
@@ -132,6 +135,11 @@ class Models(ProgramTest):
             path = self.put(f"weights/{name}", data)
             commands = [["open", path], [path], ["convert", path, self.folder / "out.ply"],
                         ["render", path, self.folder / "out.png"],
+                        ["turntable", path, self.folder / "out.mp4"],
+                        ["turntable", SCENE, self.folder / "out.mp4", "--before", path],
+                        ["transform", path, self.folder / "out.ply", "--turn", 20],
+                        ["edit", path, "--source", "bear", "--prompt", "a golden bear", "--out",
+                         self.folder / "out"],
                         ["merge", SCENE, path, "--out", self.folder / "out.ply"]]
             if name in ("page.safetensors", "chkpnt30000.pth", "v1.ckpt", "sam.pt"):
                 commands.append(["info", path])   # of others it prints the facts
@@ -139,7 +147,7 @@ class Models(ProgramTest):
                 with self.subTest(command=command[0], name=name):
                     process = run(*command)
                     self.assert_one_sentence(process, *words, name)
-                    self.assertGreater(process.returncode, 0)
+                    self.assertEqual(process.returncode, 2)
         self.assertEqual(self.folder_listing(), sorted(
             ["weights", *(f"weights/{path.name}" for path in (self.folder / "weights").iterdir())]))
 

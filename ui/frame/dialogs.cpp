@@ -93,7 +93,7 @@ void draw_question(Context& context) {
                                 ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove))
         return;
     ImGui::PushTextWrapPos(context.em * AnswersEm);
-    plain_text(question.text);
+    plain_text(broken_at_spaces(question.text, context.em * AnswersEm - ImGui::GetCursorPosX()));
     ImGui::PopTextWrapPos();
     ImGui::Spacing();
     const bool done = ImGui::IsKeyPressed(key::Escape, false) && !ImGui::IsWindowAppearing();

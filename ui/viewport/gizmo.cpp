@@ -8,7 +8,9 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <utility>
 
+#include "ui/commands/guarded.h"
 #include "ui/state/state.h"
 #include "ui/viewport/viewport.h"
 
@@ -27,6 +29,9 @@ constexpr double TurnSnap = 15;        // degrees, while Ctrl is held
 constexpr double MoveSnapShare = 0.1;  // of the thing's height, while Ctrl is held
 constexpr double SizeSnap = 0.1;
 constexpr double LeastSize = 0.05, LargestSize = 20;
+constexpr double FarthestDrag = 3;    // of the eye's distance: the thing is still seen at a quarter its size
+constexpr double NearestDrag = 0.25;  // of the thing's depth: a drag brings it no nearer to the eye
+constexpr double LeastSlant = 0.17;   // sine of an axis's angle to the ray to the thing: 10 degrees
 
 constexpr std::array<ImU32, HandleCount> Colours{IM_COL32(226, 104, 98, 255), IM_COL32(124, 196, 104, 255),
                                                  IM_COL32(98, 150, 232, 255), IM_COL32(230, 230, 230, 255),
@@ -36,6 +41,25 @@ constexpr std::array<const char*, HandleCount> Names{"side", "up", "front", "gro
 double snapped(double value, double step) {
     return ImGui::GetIO().KeyCtrl && step > 0 ? std::round(value / step) * step : value;
 }
+
+/// Interval of a drag.
+struct Reach {
+    double least = 0, most = 0;
+};
+
+/// An axis through the thing as it lies on the screen. A place on it, in world units from the thing, is seen
+/// at q = slant t / (depth + recede t) pixels from the thing, along one direction of the screen.
+struct SeenAxis {
+    ImVec2 direction{};  // unit, on the screen
+    double slant = 0;    // pixels
+    double depth = 0, recede = 0;
+
+    /// Place that is seen at q; a far one where q lies behind the axis's vanishing point.
+    double at(double q) const {
+        constexpr double LeastLeft = 1e-6;  // of the slant
+        return q * depth / std::max(slant - recede * q, LeastLeft * slant);
+    }
+};
 
 /// The handles as they lie on the screen.
 class Gizmo {
@@ -53,11 +77,11 @@ public:
         const auto& state = context.state.viewport;
         const double pixels = camera.fx / depth * (state.high.x - state.low.x) / std::max(1, camera.width);
         arm_ = context.em * ArmEm / std::max(1e-9, pixels);
+        farthest_ = FarthestDrag * length(middle_ - camera.centre());
         seen_ = true;
     }
     bool seen() const { return seen_; }
     ImVec2 centre() const { return centre_; }
-    const Vec3& foot() const { return foot_; }
     Vec3 axis(int handle) const {
         return handle == Side ? thing_.side : handle == Up ? thing_.up : thing_.front;
     }
@@ -75,37 +99,81 @@ public:
             context_,
             middle_ + (thing_.side * std::cos(angle) + thing_.front * std::sin(angle)) * (arm_ * RingShare));
     }
-    /// World units along an axis that a drag on the screen means; 0 for an axis that points at the eye.
-    double along(int handle, ImVec2 drag) const {
-        const auto end = tip(handle);
-        if (!end) return 0;
-        const double x = end->x - centre_.x, y = end->y - centre_.y, squared = x * x + y * y;
-        constexpr double LeastPixels = 4;
-        return squared < LeastPixels * LeastPixels ? 0 : (drag.x * x + drag.y * y) / squared * arm_;
+    /// True for an arrow that is seen from the side; one that points at the eye cannot be dragged.
+    bool slants(int handle) const { return seen_axis(handle).has_value(); }
+    /// World units along an axis by which the thing follows the mouse. The thing stays in the picture.
+    double along(int handle, ImVec2 from, ImVec2 to) const {
+        const auto axis = seen_axis(handle);
+        if (!axis) return 0;
+        const auto pixels = [&](ImVec2 at) {
+            return double{(at.x - centre_.x) * axis->direction.x + (at.y - centre_.y) * axis->direction.y};
+        };
+        const Reach reach = reach_of(*axis);
+        return std::clamp(axis->at(pixels(to)) - axis->at(pixels(from)), reach.least, reach.most);
     }
-    /// Point of the plane through the foot, at right angles to up, that lies under the mouse.
-    std::optional<Vec3> on_ground(ImVec2 mouse) const {
+    /// Shift of the thing's middle to where the mouse drags it, in its plane at right angles to up. It comes
+    /// no farther away than a drag goes, and no nearer to the eye; the plane ends there, before its horizon.
+    Vec3 over_plane(ImVec2 from, ImVec2 to) const {
+        if (from.x == to.x && from.y == to.y) return {};
         const Camera& camera = context_.model.camera;
         const auto& state = context_.state.viewport;
-        const double px = (mouse.x - state.low.x) / (state.high.x - state.low.x) * camera.width,
-                     py = (mouse.y - state.low.y) / (state.high.y - state.low.y) * camera.height;
+        const auto share = [](float at, float low, float high) {
+            return std::clamp((at - low) / (high - low), 0.0f, 1.0f);
+        };
+        const double px = share(centre_.x + to.x - from.x, state.low.x, state.high.x) * camera.width,
+                     py = share(centre_.y + to.y - from.y, state.low.y, state.high.y) * camera.height;
         const Vec3 ray = camera.rotation.transposed() *
                          Vec3{(px - camera.cx) / camera.fx, (py - camera.cy) / camera.fy, 1};
-        const double falls = dot(ray, thing_.up);
-        constexpr double LeastSlope = 1e-3;
-        if (std::abs(falls) < LeastSlope) return std::nullopt;
-        const double t = dot(foot_ - camera.centre(), thing_.up) / falls;
-        return t > 0 ? std::optional(camera.centre() + ray * t) : std::nullopt;
+        const double falls = dot(ray, thing_.up), height = dot(middle_ - camera.centre(), thing_.up);
+        const bool hits = falls * height > 0;
+        Vec3 away = hits ? camera.centre() + ray * (height / falls) - middle_ : ray - thing_.up * falls;
+        if (const double far = length(away); !hits || far > farthest_) away = away * (farthest_ / far);
+        const double depth = camera.to_camera(middle_).z, nearer = -dot(away, camera.forward());
+        const double most = (1 - NearestDrag) * depth;
+        return nearer > most ? away * (most / nearer) : away;
     }
     /// Distance of a handle from a point of the screen, pixels.
     float distance(int handle, ImVec2 at) const;
 
 private:
+    /// Nothing for an axis that points at the eye, or nearly so.
+    std::optional<SeenAxis> seen_axis(int handle) const {
+        const Camera& camera = context_.model.camera;
+        const auto& state = context_.state.viewport;
+        const Vec3 from = camera.to_camera(middle_), along = camera.rotation * axis(handle);
+        if (length(cross(normalized(from), along)) < LeastSlant) return std::nullopt;
+        const double scale = (state.high.x - state.low.x) / std::max(1, camera.width);
+        const double x = camera.fx * scale * (along.x - along.z * from.x / from.z),
+                     y = camera.fy * scale * (along.y - along.z * from.y / from.z);
+        const double slant = std::hypot(x, y);
+        return SeenAxis{
+            {static_cast<float>(x / slant), static_cast<float>(y / slant)}, slant, from.z, along.z};
+    }
+    /// Drags along an axis that leave the thing in the picture, not too far and not too near.
+    Reach reach_of(const SeenAxis& axis) const {
+        const auto& state = context_.state.viewport;
+        constexpr double Endless = std::numeric_limits<double>::infinity();
+        double least = -Endless, most = Endless;  // pixels to the picture's edges
+        for (const auto& [at, low, high, step] :
+             {std::array{centre_.x, state.low.x, state.high.x, axis.direction.x},
+              std::array{centre_.y, state.low.y, state.high.y, axis.direction.y}}) {
+            if (step == 0) continue;
+            const auto [back, on] = std::minmax({(low - at) / step, (high - at) / step});
+            least = std::max(least, double{back}), most = std::min(most, double{on});
+        }
+        Reach reach{std::min(0.0, std::max(axis.at(least), -farthest_)),
+                    std::max(0.0, std::min(axis.at(most), farthest_))};
+        const double nearest = (NearestDrag - 1) * axis.depth;  // change of the depth
+        if (axis.recede < 0) reach.most = std::min(reach.most, nearest / axis.recede);
+        if (axis.recede > 0) reach.least = std::max(reach.least, nearest / axis.recede);
+        return reach;
+    }
+
     const Context& context_;
     const PlacedThing& thing_;
     Vec3 foot_, middle_;
     ImVec2 centre_{};
-    double arm_ = 0;  // world units
+    double arm_ = 0, farthest_ = 0;  // world units
     bool seen_ = false;
 };
 
@@ -128,7 +196,7 @@ float Gizmo::distance(int handle, ImVec2 at) const {
         return least;
     }
     const auto end = tip(handle);
-    return end ? distance_to_segment(at, centre_, *end) : Far;
+    return end && slants(handle) ? distance_to_segment(at, centre_, *end) : Far;
 }
 
 /// The handle under the mouse, -1 = none. The plate and the arrows win over the ring.
@@ -143,7 +211,7 @@ edit::RearrangeSettings dragged(const Context& context, const PlacedThing& thing
     const auto& place = context.state.by_hand.place;
     auto values = place.start_values;
     const Gizmo gizmo(context, thing, place.start_values);
-    const ImVec2 drag{mouse.x - place.start.x, mouse.y - place.start.y};
+    const auto along = [&](int handle) { return gizmo.along(handle, place.start, mouse); };
     const double step = MoveSnapShare * thing.height;
     const auto angle = [&](ImVec2 at) {
         return std::atan2(at.y - gizmo.centre().y, at.x - gizmo.centre().x);
@@ -152,16 +220,13 @@ edit::RearrangeSettings dragged(const Context& context, const PlacedThing& thing
         return std::max(1.0f, std::hypot(at.x - gizmo.centre().x, at.y - gizmo.centre().y));
     };
     switch (place.handle) {
-        case Side: values.move_right = snapped(values.move_right + gizmo.along(Side, drag), step); break;
-        case Up: values.move_up = snapped(values.move_up + gizmo.along(Up, drag), step); break;
-        case Front:
-            values.move_forward = snapped(values.move_forward + gizmo.along(Front, drag), step);
-            break;
+        case Side: values.move_right = snapped(values.move_right + along(Side), step); break;
+        case Up: values.move_up = snapped(values.move_up + along(Up), step); break;
+        case Front: values.move_forward = snapped(values.move_forward + along(Front), step); break;
         case Ground: {
-            const auto from = gizmo.on_ground(place.start), to = gizmo.on_ground(mouse);
-            if (!from || !to) break;
-            values.move_right = snapped(values.move_right + dot(*to - *from, thing.side), step);
-            values.move_forward = snapped(values.move_forward + dot(*to - *from, thing.front), step);
+            const Vec3 by = gizmo.over_plane(place.start, mouse);
+            values.move_right = snapped(values.move_right + dot(by, thing.side), step);
+            values.move_forward = snapped(values.move_forward + dot(by, thing.front), step);
             break;
         }
         case Turn: {
@@ -208,7 +273,7 @@ void draw_handles(Context& context, ImDrawList* list, const Gizmo& gizmo, int ch
     if (const auto at = gizmo.ring(RingSteps / 8)) noted(Turn, *at);
     for (const int handle : {int{Side}, int{Up}, int{Front}}) {
         const auto end = gizmo.tip(handle);
-        if (!end) continue;
+        if (!end || !gizmo.slants(handle)) continue;
         list->AddLine(gizmo.centre(), *end, colour(handle), line);
         list->AddCircleFilled(*end, head, colour(handle));
         noted(handle, *end);
@@ -226,7 +291,7 @@ void draw_handles(Context& context, ImDrawList* list, const Gizmo& gizmo, int ch
 bool use_gizmo(Context& context, bool hovered) {
     auto& place = context.state.by_hand.place;
     const auto& thing = context.model.placed;
-    if (!thing) return place.dragged = false;
+    if (!thing || !why_not_work(context).empty()) return place.dragged = false;
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     if (!place.dragged) {
         const Gizmo gizmo(context, *thing, place.values);
@@ -251,7 +316,7 @@ bool use_gizmo(Context& context, bool hovered) {
 void draw_gizmo(Context& context, ImDrawList* list) {
     const auto& place = context.state.by_hand.place;
     const auto& thing = context.model.placed;
-    if (context.state.viewport.tool != Tool::Place || !thing) return;
+    if (context.state.viewport.tool != Tool::Place || !thing || !why_not_work(context).empty()) return;
     const Gizmo gizmo(context, *thing, place.values);
     if (!gizmo.seen()) return;
     draw_handles(context, list, gizmo, place.handle);

@@ -156,6 +156,9 @@ void draw_hint(Context& context, ImDrawList* list) {
     const ImVec2 corner{state.low.x + context.em * 0.5f, state.low.y + context.em * below};
     if (state.tool == Tool::PickColour)
         return shaded_text(context, list, corner, "Click a colour   Esc leaves");
+    const std::string why = why_not_work(context);
+    if (state.tool == Tool::Place && !why.empty())
+        return shaded_text(context, list, corner, fmt::format("Place: {}   Esc leaves", why));
     if (state.tool == Tool::Place)
         return shaded_text(context, list, corner,
                            context.model.placed ? "Place: drag a handle   Ctrl snaps   Esc leaves"

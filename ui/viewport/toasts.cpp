@@ -49,7 +49,8 @@ struct ToastPlan {
 ToastPlan plan_of(const Context& context, const Toast& toast, float width, float height) {
     const ImGuiStyle& style = ImGui::GetStyle();
     const float inner = width - style.WindowPadding.x * 2;
-    ToastPlan plan{toast.text, ImGui::CalcTextSize(toast.text.c_str(), nullptr, false, inner), 0, false, {}};
+    ToastPlan plan{broken_at_spaces(toast.text, inner), {}, 0, false, {}};
+    plan.text_size = ImGui::CalcTextSize(plan.text.c_str(), nullptr, false, inner);
     plan.buttons = button_width("Close");
     if (!toast.button.empty()) plan.buttons += button_width(toast.button) + style.ItemSpacing.x;
     plan.size = {

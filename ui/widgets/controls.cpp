@@ -6,6 +6,8 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
 
 #include "ui/keys/keyboard.h"
@@ -123,10 +125,11 @@ void tooltip(std::string_view text) {
     storage->SetFloat(seen_id, now);
     if (now - storage->GetFloat(since_id, now) < TooltipDelay) return await_tooltip();
     const float width = ImGui::GetFontSize() * TooltipEm;
-    const Shown shown(text);
+    const std::string lines = broken_at_spaces(text, width);
+    const Shown shown(lines);
     begin_tooltip(ImGui::CalcTextSize(shown.begin(), shown.end(), false, width));
     ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + width);
-    put_text(text);
+    put_text(lines);
     ImGui::PopTextWrapPos();
     ImGui::EndTooltip();
 }
@@ -138,11 +141,47 @@ void heading(Context& context, std::string_view text) {
     if (context.fonts.bold != nullptr) ImGui::PopFont();
 }
 
+namespace {
+
+/// True for "1", "0.5", "(12": a digit at the end, and nothing else but digits and their marks.
+bool is_number(std::string_view word) {
+    return !word.empty() && std::isdigit(static_cast<unsigned char>(word.back())) != 0 &&
+           word.find_first_not_of("0123456789.,+-~(") == std::string_view::npos;
+}
+
+/// True for what belongs to the number in front of it: its next three digits, or its unit.
+bool belongs_to_number(std::string_view word) {
+    constexpr std::array<std::string_view, 16> Units{"s",  "ms", "min", "h",  "%",  "B",  "kB",    "MB",
+                                                     "GB", "TB", "px",  "mm", "cm", "km", "TFLOP", "degrees"};
+    while (!word.empty() && std::string_view(".,;:)!?").find(word.back()) != std::string_view::npos)
+        word.remove_suffix(1);
+    const bool digits = word.size() == 3 && word.find_first_not_of("0123456789") == std::string_view::npos;
+    return digits || std::find(Units.begin(), Units.end(), word) != Units.end();
+}
+
+/// End of the word at `at`, with what no line break may part from it.
+std::size_t end_of_piece(std::string_view text, std::size_t at) {
+    const auto end_of = [&](std::size_t from) {
+        return std::min(text.find_first_of(" \n", from), text.size());
+    };
+    std::size_t end = end_of(at);
+    while (end < text.size() && text[end] == ' ') {
+        const std::size_t next = end_of(end + 1);
+        if (!is_number(text.substr(at, end - at)) || !belongs_to_number(text.substr(end + 1, next - end - 1)))
+            break;
+        at = end + 1;
+        end = next;
+    }
+    return end;
+}
+
+}  // namespace
+
 std::string broken_at_spaces(std::string_view text, float width) {
     std::string lines;
     std::size_t begin = 0, at = 0;  // of the line, of the word
     while (at < text.size()) {
-        const std::size_t end = std::min(text.find_first_of(" \n", at), text.size());
+        const std::size_t end = end_of_piece(text, at);
         const bool breaks = at > begin && text_size(text.substr(begin, end - begin)).x > width;
         if (breaks) lines.back() = '\n', begin = at;
         lines += text.substr(at, end - at);

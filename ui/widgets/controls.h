@@ -35,7 +35,8 @@ void tooltip(std::string_view text);
 void heading(Context& context, std::string_view text);
 void dim_text(std::string_view text);  // wrapped, grey
 void wrapped_text(std::string_view text);
-/// The text with a line break for the space before every word that would reach beyond `width` pixels.
+/// The text with a line break for the space before every word that would reach beyond `width` pixels. A
+/// number stays whole, and with its unit.
 std::string broken_at_spaces(std::string_view text, float width);
 void plain_text(std::string_view text);                   // as ImGui::TextUnformatted
 void coloured_text(ImU32 colour, std::string_view text);  // wrapped

@@ -8,6 +8,7 @@
 #include "engine/base/error.h"
 #include "engine/base/json.h"
 #include "engine/edit/request/unchecked_request.h"
+#include "engine/language/plan/words/file_words.h"
 #include "engine/language/sentence.h"
 #include "engine/language/vocabulary.h"
 #include "engine/language/words.h"
@@ -36,6 +37,11 @@ bool corrected_after_search(const std::vector<NamedLabel>& labels, const std::ve
 
 bool is_label_of(const NamedLabel& label, const std::string& word) {
     return !word.empty() && (label.name == word || label.found_for == word);
+}
+
+bool answers_to(const NamedLabel& label, const std::string& word) {
+    return is_label_of(label, word) ||
+           (!word.empty() && language::plan::thing_of_file_name(label.name) == word);
 }
 
 std::optional<edit::EditRequest> recorded_request(const EditNode& node) {
@@ -111,7 +117,7 @@ bool same_vote(const edit::LabelThresholds& a, const edit::LabelThresholds& b) {
 bool stands_alone(const NamedLabel& label, const edit::EditRequest& request,
                   const std::vector<std::string>& known) {
     return made_by_hand(label) ||
-           (is_label_of(label, language::normalised_prompt(request.source)) &&
+           (answers_to(label, language::normalised_prompt(request.source)) &&
             !language::vocabulary_contains(known, language::normalised_prompt(request.source)));
 }
 
@@ -122,7 +128,7 @@ bool label_says(const NamedLabel& label, const edit::EditRequest& request,
                target = language::normalised_prompt(request.target);
     if (choice && choice->label == label.name && (choice->source.empty() || choice->source == source))
         return choice->by_label;
-    if (is_label_of(label, source) || is_label_of(label, target)) return true;
+    if (answers_to(label, source) || answers_to(label, target)) return true;
     return made_by_hand(label) && !language::vocabulary_contains(known, source.empty() ? target : source);
 }
 
@@ -137,12 +143,24 @@ bool is_addition(const NamedLabel& label, const std::vector<RowId>& row_ids) {
     return any;
 }
 
+namespace {
+
+/// Words that a sentence may call the label's thing by.
+std::vector<std::string> names_of(const NamedLabel& label) {
+    std::vector<std::string> names{language::normalised_prompt(label.name)};
+    if (auto thing = language::plan::thing_of_file_name(label.name); !thing.empty() && thing != names[0])
+        names.push_back(std::move(thing));
+    return names;
+}
+
+}  // namespace
+
 std::vector<std::string> things_added(const DocumentState& state) {
     auto things = things_made(state.stack);
     for (const NamedLabel& label : state.labels) {
-        auto name = language::normalised_prompt(label.name);
-        if (state.row_ids && is_addition(label, *state.row_ids) && !language::contains(things, name))
-            things.push_back(std::move(name));
+        if (!state.row_ids || !is_addition(label, *state.row_ids)) continue;
+        for (auto& name : names_of(label))
+            if (!language::contains(things, name)) things.push_back(std::move(name));
     }
     return things;
 }
@@ -150,7 +168,8 @@ std::vector<std::string> things_added(const DocumentState& state) {
 std::vector<std::string> things_labelled(const DocumentState& state) {
     std::vector<std::string> things;
     for (const NamedLabel& label : state.labels)
-        if (made_by_hand(label)) things.push_back(language::normalised_prompt(label.name));
+        if (made_by_hand(label))
+            for (auto& name : names_of(label)) things.push_back(std::move(name));
     return things;
 }
 
@@ -181,18 +200,23 @@ std::optional<std::size_t> scope_label(const DocumentState& state, const edit::E
                target = language::normalised_prompt(request.target);
     const auto& labels = state.labels;
     const auto active = static_cast<std::size_t>(std::max(state.active_label, 0));
+    // A label with the very name goes before one whose name is that of a file.
+    const bool exact = std::any_of(labels.begin(), labels.end(), [&](const NamedLabel& label) {
+        return count_labelled(label) > 0 && is_label_of(label, source.empty() ? target : source);
+    });
+    const auto is_of = exact ? is_label_of : answers_to;
     const bool some = state.active_label >= 0 && active < labels.size() && count_labelled(labels[active]) > 0;
     if (some) {
         const auto& label = labels[active];
         if (const auto said = chosen(label, source, choice, true))
             return *said ? std::optional(active) : std::nullopt;
-        if (is_label_of(label, source) || is_label_of(label, target)) return active;
+        if (is_of(label, source) || is_of(label, target)) return active;
     }
     for (std::size_t index = 0; index < labels.size(); ++index) {
         const auto& label = labels[index];
         if ((some && index == active) || count_labelled(label) == 0) continue;
         const auto said = chosen(label, source, choice, false);
-        if (said.value_or(is_label_of(label, source.empty() ? target : source))) return index;
+        if (said.value_or(is_of(label, source.empty() ? target : source))) return index;
     }
     return some && stands_in(labels[active], state, source, choice) &&
                    label_says(labels[active], request, known, {})
@@ -232,7 +256,7 @@ std::string present_already(const DocumentState& state, const edit::EditRequest&
         return node.enabled && added_by(node, thing);
     });
     const bool labelled = std::any_of(state.labels.begin(), state.labels.end(), [&](const NamedLabel& label) {
-        return is_label_of(label, thing) && count_labelled(label) > 0;
+        return answers_to(label, thing) && count_labelled(label) > 0;
     });
     return added || labelled ? thing : std::string();
 }

@@ -30,6 +30,9 @@ bool corrected_after_search(const std::vector<NamedLabel>& labels, const std::ve
 /// Tells whether it is the label of that word: by its name, or because a search for the word made it.
 bool is_label_of(const NamedLabel& label, const std::string& word);
 
+/// is_label_of(), or its name is that of a file with a thing of that word: "object_guitar" for "guitar".
+bool answers_to(const NamedLabel& label, const std::string& word);
+
 /// True when the label, and not a search, is the scope of the request. Its name is in the request's words,
 /// and the model does not know them and it was made by hand, or the artist chose it. `known` holds the words
 /// of the model; empty = it takes any.

@@ -25,6 +25,9 @@ struct ApplicationOptions {
     float ui_scale = 0;       // for this start only; 0 = as the artist chose last
     float desktop_scale = 1;  // until the artist chooses
     std::function<void()> on_fullscreen = {};
+    // Splats of a scene up to which the shadow of a dragged thing follows every move. The light of more takes
+    // longer than a frame: there the shadow comes where the drag rests.
+    std::size_t most_shaded_while_dragging = 100'000;
 };
 
 /// Kinds of jobs on the work thread.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/language/plan/words/file_words.h"
 #include "engine/language/vocabulary.h"
 #include "engine/language/words.h"
 
@@ -21,6 +22,8 @@ const Label* label_named(const LabelSet& labels, std::string_view name) {
     if (wanted.empty()) return nullptr;
     for (const Label& label : labels.labels)
         if (language::normalised_prompt(label.name) == wanted && marks_splats(label)) return &label;
+    for (const Label& label : labels.labels)
+        if (language::plan::thing_of_file_name(label.name) == wanted && marks_splats(label)) return &label;
     return nullptr;
 }
 
@@ -30,8 +33,12 @@ const Label* label_for(const LabelSet& labels, std::string_view word, const std:
 
 std::vector<std::string> label_names(const LabelSet& labels) {
     std::vector<std::string> names;
-    for (const Label& label : labels.labels)
-        if (marks_splats(label)) names.push_back(language::normalised_prompt(label.name));
+    for (const Label& label : labels.labels) {
+        if (!marks_splats(label)) continue;
+        names.push_back(language::normalised_prompt(label.name));
+        auto thing = language::plan::thing_of_file_name(label.name);
+        if (!thing.empty() && thing != names.back()) names.push_back(std::move(thing));
+    }
     return names;
 }
 

@@ -174,33 +174,69 @@ Points required_points(const Scene& scene, const Affine& map, const char* which)
 
 }  // namespace
 
+namespace {
+
+/// Foot and factor, with what was chosen.
+struct Chosen {
+    Vec3 foot;
+    double factor = 1;
+    std::vector<std::string> notes;
+};
+
+std::string size_note(double factor, const char* as) {
+    return fmt::format("its size is multiplied by {:.3g}, so that it {}", factor, as);
+}
+
+/// In front of what a view shows; nothing where it shows nothing. `upright`: of the host.
+std::optional<Chosen> before_what_is_seen(const MergeWishes& wishes, const Affine& upright, const Vec3& size,
+                                          double factor) {
+    if (!wishes.seen || wishes.seen->empty() || !(size.x + size.y + size.z > 0)) return std::nullopt;
+    SeenSurface seen = *wishes.seen;
+    seen.camera.rotation = seen.camera.rotation * upright.linear.transposed();
+    const SeenPlace place = seen_place(seen, size * factor, wishes.scale.has_value());
+    Chosen chosen{place.foot, factor * place.factor, {}};
+    if (!place.suits)
+        chosen.notes.push_back(size_note(chosen.factor, "can be seen and has room where it is put"));
+    chosen.notes.emplace_back(place.stands ? "it stands near the middle of the view"
+                                           : "it hangs in front of the middle of the view, which shows "
+                                             "nothing that it could stand on");
+    return chosen;
+}
+
+/// At a place that is given, else on the ground of the host, or beside it.
+Chosen in_the_scene(const Points& host, const std::optional<Vec3>& at, const Vec3& size, double factor,
+                    bool fixed) {
+    const UprightBox box = robust_box(host, RobustTrim);
+    const double suits = GuestShare * box.longest(), longest = std::max({size.x, size.y, size.z});
+    Chosen chosen{{}, factor, {}};
+    if (!fixed && longest > 0 && suits > 0 && (longest > MostOff * suits || longest < suits / MostOff)) {
+        chosen.factor = suits / longest;
+        chosen.notes.push_back(size_note(chosen.factor, "is a third as large as the scene"));
+    }
+    if (at) chosen.foot = *at;
+    else chosen.foot = chosen_foot(host, box, size * chosen.factor, chosen.notes.emplace_back());
+    return chosen;
+}
+
+}  // namespace
+
 MergePlace merge_place(const Scene& host, const Scene& guest, const MergeWishes& wishes) {
     const Affine host_upright = upright(host.info), guest_upright = upright(guest.info);
     const Points of_host = required_points(host, host_upright, "first");
     const Affine turned =
         Affine::turn_about({0, 1, 0}, wishes.turn * std::numbers::pi / 180, {}) * guest_upright;
-    const UprightBox host_box = robust_box(of_host, RobustTrim),
-                     own = robust_box(required_points(guest, turned, "second"), GuestTrim);
-    MergePlace result;
-    const double suits = GuestShare * host_box.longest(), size = own.longest();
-    double factor = wishes.scale.value_or(1);
-    if (!wishes.scale && size > 0 && suits > 0 && (size > MostOff * suits || size < suits / MostOff)) {
-        factor = suits / size;
-        result.notes.push_back(fmt::format(
-            "its size is multiplied by {:.3g}, so that it is a third as large as the scene", factor));
-    }
+    const UprightBox own = robust_box(required_points(guest, turned, "second"), GuestTrim);
+    const double factor = wishes.scale.value_or(1);
+    std::optional<Chosen> seen;
+    std::optional<Vec3> at;
+    if (wishes.at) at = host_upright(*wishes.at);
+    else seen = before_what_is_seen(wishes, host_upright, own.size(), factor);
+    const Chosen chosen =
+        seen ? *seen : in_the_scene(of_host, at, own.size(), factor, wishes.scale.has_value());
     const Vec3 foot{own.middle().x, own.low.y, own.middle().z};
-    Vec3 to{};
-    if (wishes.at) {
-        to = host_upright(*wishes.at);
-    } else {
-        std::string where;
-        to = chosen_foot(of_host, host_box, own.size() * factor, where);
-        result.notes.push_back(where);
-    }
-    result.placement = inverse(host_upright) * Affine::move_by(to - foot * factor) *
-                       Affine::scale_about(factor, {}) * turned;
-    return result;
+    return {inverse(host_upright) * Affine::move_by(chosen.foot - foot * chosen.factor) *
+                Affine::scale_about(chosen.factor, {}) * turned,
+            chosen.notes};
 }
 
 }  // namespace gse

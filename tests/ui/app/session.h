@@ -46,7 +46,9 @@ struct Place {
 struct Session {
     NoPreview preview;
     app::Application app;
-    explicit Session(bool autosave = true) : app({.autosave = autosave, .autosave_seconds = 0.2}) {
+    explicit Session(bool autosave = true)
+        : Session(app::ApplicationOptions{.autosave = autosave, .autosave_seconds = 0.2}) {}
+    explicit Session(const app::ApplicationOptions& options) : app(options) {
         app.run(command::SetViewportSize{320, 240});
     }
     /// Frames until the condition holds; false after `seconds`, times GSE_PATIENCE: instrumented builds are

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "tests/ui/support/harness.h"
@@ -84,6 +85,95 @@ DOCTEST_TEST_CASE("the thing follows the mouse over the ground") {
     placing.drag("gizmo.ground", 60, 30);
     DOCTEST_CHECK(placing.values().move_up == 0);
     DOCTEST_CHECK(std::hypot(placing.values().move_right, placing.values().move_forward) > 0);
+}
+
+namespace {
+
+/// A camera four units from the thing, at an angle to its side.
+Camera from_around(double degrees, double height) {
+    const Vec3 middle{0, -0.5, 0};
+    const double angle = degrees * std::numbers::pi / 180;
+    const Vec3 eye = middle + Vec3{-4 * std::cos(angle), -height, 4 * std::sin(angle)};
+    return Camera::look_at(eye, middle, {0, -1, 0}, 0.87, 640, 480);
+}
+
+/// Middle of the placed thing.
+Vec3 middle_of(const ui::PlacedThing& thing, const edit::RearrangeSettings& values) {
+    return thing.foot + thing.side * values.move_right + thing.front * values.move_forward +
+           thing.up * (values.move_up + thing.height * values.resize / 2);
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("no drag throws the thing out of the picture, far away or behind the eye") {
+    constexpr double Edge = 1;          // pixels
+    constexpr double FarthestDrag = 3;  // of the eye's distance
+    int drags = 0;
+    for (const double degrees : {2.0, 25.0, 90.0, 185.0, 300.0})
+        for (const double height : {0.3, 1.5})
+            for (const char* handle : {"gizmo.side", "gizmo.up", "gizmo.front", "gizmo.ground"})
+                for (const ImVec2 corner : {ImVec2{-50, -50}, {1400, 300}, {700, 900}, {500, 60}}) {
+                    Placing placing;
+                    auto& model = placing.harness.application.model();
+                    model.camera = from_around(degrees, height);
+                    placing.harness.frame(3);
+                    if (placing.harness.find(handle) == nullptr) continue;
+                    const Camera& camera = model.camera;
+                    const double eye = length(camera.centre() - middle_of(*model.placed, {}));
+                    placing.harness.drag(placing.middle(handle), corner);
+                    ++drags;
+                    DOCTEST_CAPTURE(degrees);
+                    DOCTEST_CAPTURE(height);
+                    DOCTEST_CAPTURE(std::string(handle));
+                    DOCTEST_CAPTURE(corner.x);
+                    const Vec3 moved = middle_of(*model.placed, placing.values());
+                    DOCTEST_CHECK(length(moved - middle_of(*model.placed, {})) <= 1.01 * FarthestDrag * eye);
+                    const Vec3 at = camera.to_camera(moved);
+                    DOCTEST_REQUIRE(at.z > 0);
+                    const double x = camera.fx * at.x / at.z + camera.cx,
+                                 y = camera.fy * at.y / at.z + camera.cy;
+                    DOCTEST_CHECK((x >= -Edge && x <= camera.width + Edge));
+                    DOCTEST_CHECK((y >= -Edge && y <= camera.height + Edge));
+                }
+    DOCTEST_CHECK(drags > 120);
+}
+
+DOCTEST_TEST_CASE(
+    "the thing stays under the mouse along an arrow, and one that points at the eye is not shown") {
+    Placing placing;
+    auto& model = placing.harness.application.model();
+    model.camera = from_around(40, 1);
+    placing.harness.frame(3);
+    const ImVec2 from = placing.middle("gizmo.side"), centre = placing.middle("gizmo.ground");
+    const float x = from.x - centre.x, y = from.y - centre.y;
+    placing.harness.drag(from, {from.x + x * 1.5f, from.y + y * 1.5f});
+    placing.harness.frame(2);
+    const ImVec2 now = placing.middle("gizmo.ground");  // has followed by as much
+    constexpr float Pixels = 12;  // where it was grabbed and where it has come to, the perspective differs
+    DOCTEST_CHECK(std::abs(now.x - centre.x - x * 1.5f) < Pixels);
+    DOCTEST_CHECK(std::abs(now.y - centre.y - y * 1.5f) < Pixels);
+
+    Placing end_on;
+    end_on.harness.application.model().camera = from_around(0, 0.3);
+    end_on.harness.frame(3);
+    DOCTEST_CHECK(end_on.harness.find("gizmo.side") == nullptr);
+    DOCTEST_CHECK(end_on.harness.find("gizmo.up") != nullptr);
+    DOCTEST_CHECK(end_on.harness.find("gizmo.front") != nullptr);
+}
+
+DOCTEST_TEST_CASE("while a finished edit waits, no handle is shown or dragged, and the hint says why") {
+    Placing placing;
+    const ImVec2 from = placing.middle("gizmo.side");
+    placing.harness.application.model().result_waiting = true;
+    placing.harness.frame(2);
+    DOCTEST_CHECK(placing.harness.find("gizmo.side") == nullptr);
+    placing.harness.application.calls.clear();
+    placing.harness.drag(from, {from.x + 60, from.y});
+    DOCTEST_CHECK_FALSE(placing.harness.application.asked("place_thing"));
+    DOCTEST_CHECK(placing.values() == edit::RearrangeSettings{});
+    placing.harness.application.model().result_waiting = false;
+    placing.harness.frame(2);
+    DOCTEST_CHECK(placing.harness.find("gizmo.side") != nullptr);
 }
 
 DOCTEST_TEST_CASE("with Ctrl a drag goes in steps") {

@@ -177,6 +177,24 @@ DOCTEST_TEST_CASE(
     DOCTEST_CHECK(harness.find("prompt.scope") != nullptr);
 }
 
+DOCTEST_TEST_CASE("the reading of a sentence is shown where it is not the sentence that was typed") {
+    Harness harness({Wide, High, 1, Situation::Scene, false});
+    auto& request = harness.application.model().request;
+    request.target.clear();
+    const auto shows_reading = [&](const std::string& sentence) {
+        request.prompt = sentence;
+        harness.frame(2);
+        DOCTEST_REQUIRE(harness.find("prompt.scope") != nullptr);
+        return harness.find("prompt.read_as") != nullptr;
+    };
+    DOCTEST_CHECK(shows_reading("give the bear a red hat"));
+    const std::string told = harness.shell.state().prompt.told.prompt;
+    DOCTEST_REQUIRE_FALSE(told.empty());
+    DOCTEST_CHECK_FALSE(shows_reading(told));
+    DOCTEST_CHECK_FALSE(shows_reading("A  bear wearing a Red hat ."));
+    DOCTEST_CHECK_FALSE(shows_reading(told + "."));
+}
+
 DOCTEST_TEST_CASE("a search that labelled nothing shows its pictures and the ways on") {
     Harness harness({Wide, High, 1, Situation::Failed, false});
     DOCTEST_REQUIRE(harness.find("panel.Attention") != nullptr);  // it came to the front by itself

@@ -2,7 +2,9 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
+#include <string>
 
 #include "tests/ui/support/harness.h"
 
@@ -85,6 +87,29 @@ DOCTEST_TEST_CASE("no toast lies over a button or another toast") {
             drawn = check_free(harness);
             if (situation == Situation::Nothing) DOCTEST_CHECK(drawn == 1);
         }
+}
+
+DOCTEST_TEST_CASE("no line of a toast ends within a number") {
+    Harness harness({1280, 720, 1, Situation::Scene, false});
+    auto& model = harness.application.model();
+    const std::string number = "1,234,567.891,011,121";
+    std::string line = "A line of";
+    const auto width_of = [](const std::string& text) { return ImGui::CalcTextSize(text.c_str()).x; };
+    const float edges = 2 * ImGui::GetStyle().WindowPadding.x, rounding = 2;
+    int broken = 0;
+    for (int words = 0; words < 12; ++words) {
+        line += " splat";
+        model.toasts = {{line + " " + number, false, 1, {}}};
+        harness.frame(3);
+        const auto toast = harness.rect("toast.0");
+        const float longest = std::max(width_of(line), width_of(number)),
+                    whole = width_of(line + " " + number);
+        const float text = toast.width - edges;
+        if (text >= whole) continue;  // it has one line
+        ++broken;
+        if (text >= width_of(line)) DOCTEST_CHECK(text <= longest + rounding);
+    }
+    DOCTEST_CHECK(broken > 3);
 }
 
 DOCTEST_TEST_CASE("a dialog lies above the toasts") {

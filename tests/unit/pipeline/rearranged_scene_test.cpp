@@ -89,6 +89,11 @@ DOCTEST_TEST_CASE("labels are found by their names, whatever the case, and follo
     const auto moved = gathered(scene.labels, sources);
     DOCTEST_CHECK(*moved.labels[0].bits == std::vector<std::uint8_t>{0, 1, bits[0]});
     DOCTEST_CHECK(label_names(gathered(scene.labels, std::vector<std::int64_t>{-1})).empty());
+    LabelSet files = scene.labels;
+    files.labels[0].name = "object_guitar";
+    DOCTEST_CHECK(label_named(files, "guitar") == &files.labels[0]);
+    DOCTEST_CHECK(label_named(files, "object") == nullptr);
+    DOCTEST_CHECK(label_names(files) == std::vector<std::string>{"object guitar", "guitar"});
 }
 
 DOCTEST_TEST_CASE("the name of a label is a word of the scene: what it marks is removed, and nothing else") {

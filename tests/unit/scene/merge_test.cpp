@@ -11,6 +11,7 @@
 #include "engine/scene/transform/merge_place.h"
 #include "engine/scene/transform/transformed.h"
 #include "tests/unit/scene/random_sets.h"
+#include "tests/unit/scene/seen_blocks.h"
 
 namespace merge_test {
 
@@ -187,6 +188,25 @@ DOCTEST_TEST_CASE("beside a host without a ground, and nothing to see") {
     DOCTEST_CHECK(std::abs(high.y) < 0.2);
     DOCTEST_CHECK_THROWS_AS(merge_place(scene_of({}), guest), Error);
     DOCTEST_CHECK_THROWS_AS(merge_place(host, scene_of({})), Error);
+}
+
+DOCTEST_TEST_CASE("a view of the host says where the other scene stands, unless a place is given") {
+    const Scene host = yard(), guest = thing(1);
+    MergeWishes wishes;
+    wishes.seen = test::seen({{{-5, 0, -5}, {5, 0.1, 5}}, {{-1, -3, -1}, {1, 0, 1}}}, {0, -3, -7}, {0, -1, 0},
+                             {0, -1, 0});
+    const MergePlace place = merge_place(host, guest, wishes);
+    DOCTEST_REQUIRE(place.notes.size() == 1);
+    DOCTEST_CHECK(place.notes[0] == "it stands near the middle of the view");
+    const auto [low, high] = guest_box(merged(host, guest, place.placement, "x"), host.gaussians.size());
+    DOCTEST_CHECK(std::abs(high.y) < 2 * Close);  // its foot, -y up
+    DOCTEST_CHECK(std::abs(low.x + high.x) < 0.5);
+    DOCTEST_CHECK(high.z < -1 + Close);  // in front of the block
+    wishes.at = Vec3{3, 0, 3};
+    DOCTEST_CHECK(merge_place(host, guest, wishes).notes.empty());
+    wishes.at.reset();
+    wishes.seen = SeenSurface{};  // nothing is seen
+    DOCTEST_CHECK(merge_place(host, guest, wishes).placement == merge_place(host, guest).placement);
 }
 
 }  // namespace merge_test

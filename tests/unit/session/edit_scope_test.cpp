@@ -51,6 +51,20 @@ DOCTEST_TEST_CASE(
     DOCTEST_CHECK_FALSE(label_says(painted("label"), about("", "golden"), Known, {}));
 }
 
+DOCTEST_TEST_CASE("a label named like a file answers to its thing, behind one with the very name") {
+    using app::scope_label;
+    DocumentState state;
+    state.labels = {painted("bear"), painted("object_guitar")};
+    state.active_label = 0;
+    DOCTEST_CHECK(scope_label(state, about("guitar", "blue"), Known, {}) == std::size_t{1});
+    DOCTEST_CHECK(scope_label(state, about("bear", "blue"), Known, {}) == std::size_t{0});
+    state.labels.push_back(painted("guitar"));
+    state.active_label = 1;
+    DOCTEST_CHECK(scope_label(state, about("guitar", "blue"), Known, {}) == std::size_t{2});
+    DOCTEST_CHECK(app::things_labelled(state) ==
+                  std::vector<std::string>{"bear", "object guitar", "guitar", "guitar"});
+}
+
 DOCTEST_TEST_CASE("the artist's word goes first, for the source it was given for") {
     const ScopeChoice label{true, "label", "bear"}, search{false, "bear", "bear"}, any{true, "label", ""};
     DOCTEST_CHECK(label_says(painted("label"), about("bear", "golden"), Known, label));

@@ -394,13 +394,19 @@ std::string reach_text(const Context& context) {
     return fmt::format("Will search for \"{}\" first.", word);
 }
 
+/// True where the model is told other words than those typed, and nothing else shows them.
+bool read_otherwise(const Context& context) {
+    const auto& told = context.state.prompt.told.prompt;
+    const bool listed = context.state.prompt.steps.size() > 1;
+    return !told.empty() && !listed && context.request.target.empty() &&
+           language::normalised_prompt(told) != language::normalised_prompt(context.request.prompt);
+}
+
 /// reach_text() behind the sentence that the model is told, where that is not the typed one.
 std::string plan_text(const Context& context) {
     const std::string reach = reach_text(context);
-    const auto& told = context.state.prompt.told.prompt;
-    const bool listed = context.state.prompt.steps.size() > 1;
-    if (reach.empty() || told.empty() || listed || !context.request.target.empty()) return reach;
-    return fmt::format("Read as \"{}\". {}", told, reach);
+    if (reach.empty() || !read_otherwise(context)) return reach;
+    return fmt::format("Read as \"{}\". {}", context.state.prompt.told.prompt, reach);
 }
 
 /// The other way; empty = there is none.
@@ -437,6 +443,7 @@ void draw_reach(Context& context) {
     if (in_line) ImGui::AlignTextToFramePadding();
     wrapped_text(text);
     note(context, "prompt.scope");
+    if (read_otherwise(context)) note(context, "prompt.read_as");
     if (other.empty()) return;
     if (in_line) ImGui::SameLine();
     const bool by_label = context.model.scope.by_label;
