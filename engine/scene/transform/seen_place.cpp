@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/math/quantile.h"
 #include "engine/math/unproject.h"
 
 namespace gse {
@@ -109,8 +110,7 @@ std::optional<double> support_height(const SeenView& view, const Vec3& foot, con
                 heights.push_back(seen->y);
         }
     if (static_cast<double>(heights.size()) < CarriedShare * FootSteps * FootSteps) return std::nullopt;
-    std::nth_element(heights.begin(), heights.begin() + static_cast<int>(heights.size() / 2), heights.end());
-    return heights[heights.size() / 2];
+    return upper_median(heights);
 }
 
 /// True for a box that lies in the picture with nothing in front of it.
