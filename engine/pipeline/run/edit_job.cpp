@@ -41,7 +41,7 @@ namespace {
 constexpr std::size_t InstanceViews = 12;  // renders a tuning learns from (METHOD.md, DreamBooth: 8 to 16)
 // Share of the fitted distance of every other one, where views are automatic.
 constexpr double NearInstance = 0.6;
-constexpr double SameGround = 1.0 / 3;  // IoU with what a search found
+constexpr double SameGround = 1.0 / 3, BorneOut = 0.75;  // IoU of a ground by shape with one by word
 
 /// The label of a scene file that is named like the source, else the first.
 std::vector<std::uint8_t> label_of(const Scene& scene, const std::filesystem::path& path,
@@ -425,7 +425,8 @@ bool EditJob::take_scene_ground(const Located* found) {
                     fmt::format("no ground is told by the scene's shape for \"{}\"", source),
                     "label it by hand: --at X,Y clicks on it, --cut-out puts a box around it");
     const auto* other = found != nullptr && found->found() ? found->result.source_label.bits.get() : nullptr;
-    if (!any || (other != nullptr && evaluate::row_overlap(rows, *other).iou < SameGround)) return false;
+    const double alike = other != nullptr ? evaluate::row_overlap(rows, *other).iou : SameGround;
+    if (!any || alike < SameGround || alike > BorneOut) return false;
     hints_.label = std::move(rows);
     hints_.label_alone = true;
     hints_.label_doubt =
