@@ -228,6 +228,27 @@ double ssim(const Image& a, const Image& b, const Region& region) {
     return count > 0 ? sum / static_cast<double>(count) : 1;
 }
 
+double gradient_energy(const Image& image, const Region& region) {
+    check_same_size(image, image, region);
+    const auto width = static_cast<std::size_t>(image.width),
+               channels = static_cast<std::size_t>(image.channels);
+    double sum = 0;
+    std::size_t count = 0;
+    for (int y = 0; y + 1 < image.height; ++y)
+        for (int x = 0; x + 1 < image.width; ++x) {
+            const auto pixel = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
+            if (!region.contains(pixel) || !region.contains(pixel + 1) || !region.contains(pixel + width))
+                continue;
+            for (int c = 0; c < image.channels; ++c) {
+                const double value = image.at(x, y, c), across = image.at(x + 1, y, c) - value,
+                             down = image.at(x, y + 1, c) - value;
+                sum += across * across + down * down;
+            }
+            count += channels;
+        }
+    return count > 0 ? sum / static_cast<double>(count) : 0;
+}
+
 double leak_rate(const Image& a, const Image& b, const Region& region, double threshold) {
     check_same_size(a, b, region);
     std::size_t leaked = 0, count = 0;

@@ -57,6 +57,10 @@ double mean_absolute_error(const Image& a, const Image& b, const Region& region 
 /// padding).
 double ssim(const Image& a, const Image& b, const Region& region = {});
 
+/// Mean squared magnitude of the gradient: forward differences, mean over channels. A pixel counts where the
+/// region holds it and its neighbours to the right and below. 0 where no pixel counts.
+double gradient_energy(const Image& image, const Region& region = {});
+
 /// Colour difference that a display of 8 bits shows beyond rounding.
 inline constexpr double LeakTolerance = 2.0 / 255;
 

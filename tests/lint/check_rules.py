@@ -84,6 +84,7 @@ SUB_ROOMS = {
         "synth": {"synth/objects"},
         "synth/objects": set(),
         "starter": set(),
+        "starter/upscaler": {"starter"},
         "training": {"synth", "starter"},
         "eval": {"synth"},
         "eval/real": {"eval"},

@@ -13,6 +13,7 @@
 #include "engine/evaluate/consistency.h"
 #include "engine/evaluate/direction.h"
 #include "engine/evaluate/metrics.h"
+#include "engine/laboratory/eval/sharpness.h"
 #include "engine/localize/clusters.h"
 
 namespace gse::bench {
@@ -206,6 +207,20 @@ void add_silhouette(const EvalSetting& setting, const edit::EditResult& result, 
     json["silhouette_iou"] = overlap.iou();
     json["silhouette_recall"] = overlap.recall();
     json["silhouette_precision"] = overlap.precision();
+}
+
+/// Sharpness of the new thing in pictures of SharpSide, from the held-out views.
+void add_sharpness(const EvalSetting& setting, const GaussianSet& edited, pipeline::Painter& painter,
+                   Json& json) {
+    SharpnessFigures figures;
+    for (const auto& view : setting.held_out.views) {
+        const Camera camera = view.camera.resized(SharpSide, SharpSide);
+        figures.add(picture(painter, edited, camera),
+                    picture(painter, setting.target.scene.gaussians, camera),
+                    part_mask(painter, setting.target, setting.edit.part, camera, PartShare));
+    }
+    json["sharp_ssim"] = figures.ssim();
+    json["gradient_energy"] = figures.gradient_energy();
 }
 
 /// Shares of the old object's pixels that should clearly change. One counts those nearer to the old object
@@ -451,7 +466,10 @@ Json edited_figures(const EvalSetting& setting, const edit::EditPlan& plan, cons
     const HeldOut seen = look(setting, result.set, tools.painter);
     add_inside(seen, json);
     if (setting.edit.kind == "add") add_changed(seen, json);
-    if (new_outline(setting.edit)) add_silhouette(setting, result, seen, tools.painter, json);
+    if (new_outline(setting.edit)) {
+        add_silhouette(setting, result, seen, tools.painter, json);
+        add_sharpness(setting, result.set, tools.painter, json);
+    }
     if (setting.edit.kind == "replace") {
         add_old_left(seen, json);
         add_old_shown(setting, result, seen, tools.painter, json);

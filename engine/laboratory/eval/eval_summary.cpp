@@ -68,6 +68,17 @@ Json mean(const Edits& edits, const char* key) {
     return sum / static_cast<double>(edits.size());
 }
 
+/// Median over the edits that have the figure; null without any.
+Json median(const Edits& edits, const char* key) {
+    std::vector<double> values;
+    for (const auto* edit : edits)
+        if (edit->contains(key) && (*edit)[key].is_number()) values.push_back((*edit)[key].get<double>());
+    if (values.empty()) return nullptr;
+    std::sort(values.begin(), values.end());
+    const auto half = values.size() / 2;
+    return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
+}
+
 Json lowest(const Edits& edits, const char* key) {
     if (edits.empty()) return nullptr;
     double least = value_of(*edits.front(), key, 0);
@@ -194,6 +205,14 @@ void add_replacements(const Json& report, const Json& edits, Json& summary) {
     summary["replace_weighted_iou"] = figure(mean(replaced, "weighted_iou"), {});
 }
 
+/// Sharpness of what is new. Medians, as a thing of one plain colour hardly has gradients to compare with.
+void add_sharpness_of(const std::string& name, const Edits& edits, Json& summary) {
+    const Edits done = finished(edits);
+    if (median(done, "sharp_ssim").is_null()) return;
+    summary[name + "_sharp_ssim"] = figure(median(done, "sharp_ssim"), {});
+    summary[name + "_gradient_energy"] = figure(median(done, "gradient_energy"), {">=", 0.6});
+}
+
 /// Rate of warnings by the verdict on the redrawn views: for edits that bring the scene no nearer to the
 /// truth, and for the others.
 void add_verdicts(const Json& edits, Json& summary) {
@@ -299,6 +318,9 @@ std::string edit_line(const Json& edit) {
                             number(edit, "leak_rate", 4), number(edit, "drift", 0),
                             number(edit, "direction", 2), number(edit["seconds"], "total", 1));
         if (edit.contains("silhouette_iou")) line += "  outline " + number(edit, "silhouette_iou", 2);
+        if (edit.contains("sharp_ssim"))
+            line += fmt::format(", at 256 px SSIM {}, gradients {}", number(edit, "sharp_ssim", 2),
+                                number(edit, "gradient_energy", 2));
         if (edit.contains("old_left")) line += ", old left " + number(edit, "old_left", 2);
     }
     return fmt::format("{}  {}  [{} -> {}]\n", line, edit["prompt"].get<std::string>(),
@@ -379,6 +401,8 @@ Json eval_summary(const Json& report) {
     add_edits(report, edits, summary);
     add_preservation(edits, summary);
     add_replacements(report, edits, summary);
+    add_sharpness_of("added", of_kinds(edits, {"add"}), summary);
+    add_sharpness_of("replace", of_kinds(edits, {"replace"}), summary);
     add_verdicts(edits, summary);
     const Json compounds = compound_summary(edits);
     for (const auto& [name, value] : compounds.items())

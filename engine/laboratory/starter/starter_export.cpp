@@ -49,6 +49,11 @@ bool keeps_networks(const StarterTrainParameters& parameters) {
            parameters.unet_minutes == 0;
 }
 
+/// Tells whether the VAE is exported as it was: an upscaler speaks of its latents and pictures.
+bool keeps_vae(const StarterTrainParameters& parameters) {
+    return !parameters.initial.empty() && parameters.vae_steps == 0 && parameters.vae_minutes == 0;
+}
+
 /// Facts of the initial model; empty where it has none.
 Json initial_facts(const StarterTrainParameters& parameters) {
     const auto file = std::filesystem::path(parameters.initial) / "gseditpro.json";
@@ -91,6 +96,7 @@ Json facts_of(const UNetTraining& training) {
         for (const char* key : {"shape_unet", "shape_lora", "shape_cameras", "shape_views", "shape_training"})
             facts.erase(key);
     }
+    if (!keeps_vae(training.parameters)) facts.erase("upscaler");
     const auto words = training.source.vocabulary();
     facts["vocabulary"] = words;
     if (std::find(words.begin(), words.end(), "left") != words.end())
@@ -133,6 +139,7 @@ void export_starter(const UNetTraining& training, AutoencoderKl& vae, StarterNet
                                              {"vae", {"diffusers", "AutoencoderKL"}},
                                              {"scheduler", {"diffusers", "DDIMScheduler"}}});
     copy_named(training.parameters, {"viewpoint"}, output);  // it has nothing to do with the other networks
+    if (keeps_vae(training.parameters)) copy_named(training.parameters, {"upscaler"}, output);
     if (keeps_networks(training.parameters))
         copy_named(training.parameters, {"shape_unet", "shape_lora", "shape_cameras"}, output);
     write_json(output / "gseditpro.json", facts_of(training));

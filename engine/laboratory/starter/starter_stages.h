@@ -3,6 +3,7 @@
 
 #include "engine/laboratory/starter/starter_training.h"
 #include "engine/neural/clip/clip_model.h"
+#include "engine/neural/diffusion/model_bundle.h"
 #include "engine/neural/diffusion/text_encoder.h"
 #include "engine/neural/diffusion/unet.h"
 #include "engine/neural/diffusion/vae.h"
@@ -86,6 +87,12 @@ void train_clip(ClipModel& clip, const ClipTraining& training, const std::filesy
                 const JobControl& job);
 /// Writes config.json and model.safetensors (fp16) as transformers does; the tokenizer is the bundle's.
 void export_clip(const ClipModel& clip, const std::filesystem::path& folder);
+
+/// Trains an upscaler for a finished model and writes config.json and model.safetensors (fp16) into `folder`.
+/// Pictures of the source are drawn at the model's size and at the upscaler's.
+void train_upscaler(const ModelBundle& model, const StarterTrainParameters& parameters,
+                    const StarterSource& source, const std::filesystem::path& work,
+                    const std::filesystem::path& folder, const JobControl& job);
 
 /// Writes the diffusers folder in fp16. Files that the initial model's gseditpro.json names go along while
 /// they fit.

@@ -5,6 +5,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/base/json.h"
 #include "engine/base/log.h"
 #include "engine/laboratory/starter/starter_stages.h"
 
@@ -14,6 +15,7 @@ namespace {
 
 constexpr int ClipProjection = 96;  // numbers per picture or sentence
 constexpr int ClipPatches = 8;      // patches along a side
+constexpr const char* UpscalerFolder = "upscaler";
 
 }  // namespace
 
@@ -106,12 +108,46 @@ void add_clip(const StarterTrainParameters& parameters, const StarterSource& sou
     export_clip(clip, folder);
 }
 
+/// Trains an upscaler for the model in `output`, which comes to name it.
+void add_upscaler(const StarterTrainParameters& parameters, const StarterSource& source,
+                  const std::filesystem::path& work, const std::filesystem::path& output,
+                  const JobControl& job) {
+    if (!trains(parameters.upscaler_steps, parameters.upscaler_minutes)) return;
+    train_upscaler(load_bundle(output), parameters, source.drawn_pictures(), work, output / UpscalerFolder,
+                   job);
+    const auto file = output / "gseditpro.json";
+    auto facts = read_json_file(file);
+    facts["upscaler"] = UpscalerFolder;
+    write_file(file, facts.dump(2) + "\n");
+}
+
+/// Tells whether a finished model gets an upscaler and stays as it is otherwise, whatever its words are.
+bool trains_upscaler_alone(const StarterTrainParameters& parameters) {
+    return !parameters.initial.empty() && parameters.average.empty() &&
+           trains(parameters.upscaler_steps, parameters.upscaler_minutes) &&
+           !trains(parameters.vae_steps, parameters.vae_minutes) &&
+           !trains(parameters.unet_steps, parameters.unet_minutes) &&
+           !trains(parameters.clip_steps, parameters.clip_minutes);
+}
+
+void copy_model(const std::filesystem::path& from, const std::filesystem::path& to) {
+    namespace fs = std::filesystem;
+    if (fs::exists(to) && fs::equivalent(from, to)) return;
+    fs::create_directories(to);
+    fs::copy(from, to, fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+}
+
 }  // namespace
 
 void train_starter(const StarterTrainParameters& requested, const StarterSource& source,
                    const std::filesystem::path& work, const std::filesystem::path& output,
                    const JobControl& job) {
     const StarterTrainParameters parameters = checked(requested, source);
+    if (trains_upscaler_alone(parameters)) {
+        std::filesystem::create_directories(work);
+        copy_model(parameters.initial, output);
+        return add_upscaler(parameters, source, work, output, job);
+    }
     const bool new_vae = trains(parameters.vae_steps, parameters.vae_minutes);
     const bool new_unet = trains(parameters.unet_steps, parameters.unet_minutes);
     const auto vocabulary = build_vocabulary(source.vocabulary());
@@ -142,6 +178,7 @@ void train_starter(const StarterTrainParameters& requested, const StarterSource&
     export_starter(training, parts.vae, parts.networks, output);
     pictures = {};
     add_clip(parameters, source, work, output / "clip", job);
+    add_upscaler(parameters, source, work, output, job);
     log::info("the model is in {}", output.string());
 }
 

@@ -81,6 +81,8 @@ public:
     virtual std::string identity() const = 0;
     /// Pictures for the image-text encoder; null = there are none.
     virtual const ContrastivePairs* contrastive_pairs() const { return nullptr; }
+    /// Pictures for the upscaler: framed as what an edit draws.
+    virtual const StarterSource& drawn_pictures() const { return *this; }
 };
 
 /// A sentence and what it states: bit k is fact k ("the object is a bear", "there is no accessory").
@@ -117,6 +119,11 @@ struct StarterTrainParameters {
     int vae_steps = 0;
     int unet_steps = 0;
     int clip_steps = 0;
+    double upscaler_minutes = 0;
+    int upscaler_steps = 0;
+    int upscaler_pictures = 4000;
+    int upscaler_batch = 16;
+    double upscaler_lr = 1e-3;
     int threads = 0;
     int vae_batch = 8;
     int unet_batch = 16;
@@ -157,6 +164,7 @@ struct StarterTrainParameters {
         f("vae_steps", self.vae_steps, "Steps of the VAE; 0 = go by time.", Range{0, 1e8});
         f("unet_steps", self.unet_steps, "Steps of the UNet; 0 = go by time.", Range{0, 1e8});
         f("clip_steps", self.clip_steps, "Steps of the image-text encoder; 0 = go by time.", Range{0, 1e8});
+        visit_upscaler_fields(self, f);
         f("threads", self.threads, "Single-threaded replicas whose gradients are averaged; 0 = one per core.",
           Range{0, 64});
         f("vae_batch", self.vae_batch, "Pictures per replica and VAE step.", Range{1, 4096});
@@ -198,6 +206,17 @@ struct StarterTrainParameters {
           "Compute convolutions and matrix products of text encoder and UNet in bfloat16.");
         f("device", self.device, "cpu or cuda.");
         f("seed", self.seed, "Seed of pictures, weights, wording and noise.");
+    }
+    template <class Self, class F> static void visit_upscaler_fields(Self& self, F&& f) {
+        f("upscaler_minutes", self.upscaler_minutes, "Time for the upscaler, unless steps are set.",
+          Range{0, 1e5});
+        f("upscaler_steps", self.upscaler_steps, "Steps of the upscaler; 0 = go by time.", Range{0, 1e8});
+        f("upscaler_pictures", self.upscaler_pictures, "Pictures rendered for the upscaler, at both sizes.",
+          Range{8, 1e6});
+        f("upscaler_batch", self.upscaler_batch, "Sections of pictures per replica and step of the upscaler.",
+          Range{1, 4096});
+        f("upscaler_lr", self.upscaler_lr, "Peak learning rate of the upscaler (cosine to zero).",
+          Range{0, 1});
     }
 };
 

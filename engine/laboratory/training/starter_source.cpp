@@ -374,7 +374,8 @@ private:
 
 class SyntheticSource : public StarterSource {
 public:
-    explicit SyntheticSource(std::uint64_t seed) : seed_(seed), pairs_(make_contrastive_pairs(seed)) {}
+    explicit SyntheticSource(std::uint64_t seed)
+        : seed_(seed), pairs_(make_contrastive_pairs(seed)), drawn_(seed, {0, MoreDrawn, false}) {}
 
     StarterPicture picture(std::uint64_t index, int size) const override {
         thread_local ShotPainter painter;
@@ -402,8 +403,11 @@ public:
     std::vector<std::string> vocabulary() const override { return synth::vocabulary(); }
     std::string identity() const override { return "synthetic-3 " + std::to_string(seed_); }
     const ContrastivePairs* contrastive_pairs() const override { return pairs_.get(); }
+    const StarterSource& drawn_pictures() const override { return drawn_; }
 
 private:
+    static constexpr double MoreDrawn = 0.5;  // share with words that are drawn only
+
     /// Insertion captions must name the accessory.
     static synth::Caption accessory_caption(const Shot& shot, Random& random) {
         for (int attempt = 0; attempt < 4; ++attempt) {
@@ -427,6 +431,7 @@ private:
 
     std::uint64_t seed_;
     std::unique_ptr<ContrastivePairs> pairs_;
+    ShapeSource drawn_;
 };
 
 }  // namespace

@@ -181,8 +181,8 @@ void read_facts(Parts& parts) {
     auto facts = ModelFacts::from_json(read_json_file(file), file);
     if (!parts.single_file) {
         for (const auto& named :
-             {facts.shape_lora, facts.shape_cameras, facts.shape_unet,
-              facts.viewpoint})  // read when something new is drawn: too late to learn of it
+             {facts.shape_lora, facts.shape_cameras, facts.shape_unet, facts.viewpoint,
+              facts.upscaler})  // read when something new is drawn: too late to learn of it
             if (!named.empty() && !fs::exists(parts.folder() / named))
                 throw Error(ErrorCode::NotFound,
                             fmt::format("the model has no \"{}\", which this file names", named),
@@ -215,6 +215,18 @@ TinyAutoencoder load_tiny(const fs::path& folder, const VaeConfig& vae) {
                                 config.latent_channels, config.factor(), vae.latent_channels, vae.factor()),
                     "use the one that was made for this model, or none", folder);
     return tiny;
+}
+
+/// Loaded, and checked against the VAE whose pictures it lifts.
+Upscaler load_fitting_upscaler(const fs::path& folder, const VaeConfig& vae, const torch::Device& device) {
+    auto upscaler = load_upscaler(folder, device);
+    if (upscaler->config().latent_channels != vae.latent_channels)
+        throw Error(ErrorCode::Model,
+                    fmt::format("the upscaler takes {} latent channels, and the model's VAE has {}",
+                                upscaler->config().latent_channels, vae.latent_channels),
+                    "use the one that was made for this model, or take \"upscaler\" out of gseditpro.json",
+                    folder);
+    return upscaler;
 }
 
 Origin origin_of(const Parts& parts) {
@@ -317,6 +329,7 @@ ModelFacts ModelFacts::from_json(const Json& json, const std::filesystem::path& 
     get("shape_unet", facts.shape_unet);
     get("shape_restyles", facts.shape_restyles);
     get("viewpoint", facts.viewpoint);
+    get("upscaler", facts.upscaler);
     get("shape_views", facts.shape_views);
     if (facts.image_size < 0 || facts.image_size > LargestImageSize)
         throw Error(ErrorCode::Malformed, fmt::format("\"image_size\" is outside 0..{}", LargestImageSize),
@@ -403,6 +416,8 @@ ModelBundle load_bundle(const std::filesystem::path& path, const torch::Device& 
             bundle.tiny = load_tiny(folder, parts.vae);
             freeze(bundle.tiny, device);
         }
+        if (!parts.facts.upscaler.empty())
+            bundle.upscaler = load_fitting_upscaler(parts.folder() / parts.facts.upscaler, parts.vae, device);
         return bundle;
     });
 }

@@ -12,6 +12,7 @@
 #include "engine/neural/diffusion/taesd.h"
 #include "engine/neural/diffusion/text_encoder.h"
 #include "engine/neural/diffusion/unet.h"
+#include "engine/neural/diffusion/upscaler.h"
 #include "engine/neural/diffusion/vae.h"
 #include "engine/neural/weights/lora.h"
 
@@ -56,6 +57,9 @@ struct ModelFacts {
     /// Folder of the classifier that tells from where a picture shows a thing (ViewpointReader), relative to
     /// the model's; it needs an image-text encoder beside it. Empty = it has none.
     std::string viewpoint;
+    /// Folder of the decoder to pictures of UpscaleFactor times the size, relative to the model's. It takes
+    /// the place of a plain enlargement where new objects are drawn. Empty = it has none.
+    std::string upscaler;
     /// Views of a scene that are denoised together with it (SceneViews).
     std::int64_t shape_views = 1;
 
@@ -85,6 +89,8 @@ struct ModelBundle {
     BundleKind kind = BundleKind::Plain;
     TinyAutoencoder tiny{nullptr};        // where its files are
     std::vector<std::string> notes = {};  // TextToImage::notes()
+
+    Upscaler upscaler{nullptr};  // where its facts name one
 
     bool has_tiny() const { return !tiny.is_empty(); }
     std::int64_t latent_channels() const { return vae->config().latent_channels; }

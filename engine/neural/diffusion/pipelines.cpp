@@ -57,6 +57,11 @@ torch::Tensor latents_to_image(const ModelBundle& bundle, const torch::Tensor& l
     return (bundle.vae->decode(latents / bundle.scaling_factor()) / 2 + 0.5).clamp(0, 1);
 }
 
+torch::Tensor upscaled(const ModelBundle& bundle, const torch::Tensor& image, const torch::Tensor& latents) {
+    GSE_CHECK(!bundle.upscaler.is_empty());
+    return (bundle.upscaler->forward(image * 2 - 1, latents) / 2 + 0.5).clamp(0, 1);
+}
+
 torch::Tensor picture_latents(const ModelBundle& bundle, const torch::Tensor& image) {
     if (!takes_picture(bundle.unet->config())) return {};
     return bundle.vae->encode_moments(image * 2 - 1).mean;

@@ -46,6 +46,9 @@ torch::Tensor image_to_latents(const ModelBundle& bundle, const torch::Tensor& i
                                Codec codec = Codec::Full);
 torch::Tensor latents_to_image(const ModelBundle& bundle, const torch::Tensor& latents,
                                Codec codec = Codec::Full);
+/// `image` of these latents, lifted by the model's upscaler to UpscaleFactor times its size. Needs an
+/// upscaler.
+torch::Tensor upscaled(const ModelBundle& bundle, const torch::Tensor& image, const torch::Tensor& latents);
 /// Latents of a picture that conditions the model: the mean, not scaled. Undefined for models that take no
 /// picture.
 torch::Tensor picture_latents(const ModelBundle& bundle, const torch::Tensor& image);

@@ -317,14 +317,17 @@ edit::EditedViews DiffusionViewEditor::finish(const Batch& batch, const std::vec
     parallel_for_batches(
         static_cast<std::int64_t>(views.size()), apart_, [&](std::int64_t begin, std::int64_t end) {
             for (auto row = begin; row < end; ++row) {
+                const Image& rendered = views[static_cast<std::size_t>(row)].rendered;
                 auto decoded = latents_to_image(*bundle_, batch.x.narrow(0, row, 1), codec);
                 if (!anew)
                     decoded = decoded - latents_to_image(*bundle_, batch.clean.narrow(0, row, 1), codec);
-                const Image& rendered = views[static_cast<std::size_t>(row)].rendered;
                 const auto enlarge = [&](const torch::Tensor& picture) {
                     return torch::upsample_bilinear2d(picture, {rendered.height, rendered.width}, false);
                 };
-                auto enlarged = enlarge(decoded);
+                auto enlarged = input.anew && upscales(codec, rendered)
+                                    ? resize_square(upscaled(*bundle_, decoded, batch.x.narrow(0, row, 1)),
+                                                    rendered.height)
+                                    : enlarge(decoded);
                 if (tells) {
                     const auto change =
                         (decoded.clamp(0, 1) -

@@ -40,6 +40,11 @@ private:
     bool shown_scene(const edit::EditViewsRequest& input) const {
         return shapes_ != nullptr && (input.anew || restyles_);
     }
+    /// Tells whether new objects in pictures of this size get more detail than the model's size holds.
+    bool upscales(Codec codec, const Image& picture) const {
+        return codec == Codec::Full && !bundle_->upscaler.is_empty() && picture.width == picture.height &&
+               picture.height > bundle_->image_size();
+    }
     edit::EditedViews redraw(const std::vector<edit::EditView>& views, const edit::EditViewsRequest& input,
                              const JobControl& job);
     Batch prepare(const std::vector<edit::EditView>& views, const edit::EditViewsRequest& input);

@@ -14,6 +14,8 @@
 #include "engine/laboratory/eval/eval_scenes.h"
 #include "engine/laboratory/eval/eval_suite.h"
 #include "engine/laboratory/eval/eval_summary.h"
+#include "engine/laboratory/eval/sharpness.h"
+#include "engine/localize/clusters.h"
 #include "tests/test_paths.h"
 
 namespace eval_test {
@@ -169,6 +171,39 @@ DOCTEST_TEST_CASE("another object of a held-out combination takes the place, as 
     DOCTEST_CHECK(pairs.size() > 12);
 }
 
+DOCTEST_TEST_CASE(
+    "sharpness is 1 for the truth, less for a blurred one, and asks nothing of the surroundings") {
+    constexpr int Side = 64, Blurred = 16;
+    Random random(3);
+    Image truth(Side, Side, 3);
+    for (auto& value : truth.data) value = static_cast<float>(random.uniform());
+    Mask outline(Side, Side);
+    for (int y = 16; y < 48; ++y)
+        for (int x = 16; x < 48; ++x) outline.at(x, y) = 1;
+    const auto measured = [&](const Image& shown) {
+        SharpnessFigures figures;
+        figures.add(shown, truth, outline);
+        figures.add(shown, truth, Mask(Side, Side));  // a view that does not show the thing
+        return std::pair{figures.ssim(), figures.gradient_energy()};
+    };
+    const auto same = measured(truth);
+    DOCTEST_CHECK(same.first == doctest::Approx(1));
+    DOCTEST_CHECK(same.second == doctest::Approx(1));
+    const auto blurred =
+        measured(localize::resize_image(localize::resize_image(truth, Blurred, Blurred), Side, Side));
+    DOCTEST_CHECK(blurred.first < 0.5);
+    DOCTEST_CHECK(blurred.second < 0.2);
+    Image elsewhere = truth;  // the window of SSIM reaches a few pixels beyond the outline
+    for (int y = 0; y < 8; ++y)
+        for (int x = 0; x < Side; ++x) elsewhere.at(x, y, 0) = 0;
+    DOCTEST_CHECK(measured(elsewhere) == same);
+    Image rim = truth;  // the outline itself is not the thing's detail
+    for (int x = 16; x < 48; ++x) rim.at(x, 16, 1) = 1 - rim.at(x, 16, 1);
+    DOCTEST_CHECK(measured(rim).second == same.second);
+    DOCTEST_CHECK(SharpnessFigures().ssim() == 0);
+    DOCTEST_CHECK(SharpnessFigures().gradient_energy() == 0);
+}
+
 DOCTEST_TEST_CASE("of a new thing the true scene is taken in the heading and size that the edit gave it") {
     const auto edit = make_suite(2, 1, {"replace"}).front();
     edit::EditRequest request;
@@ -192,6 +227,8 @@ DOCTEST_TEST_CASE("of a new thing the true scene is taken in the heading and siz
     result.base_to_new.assign(setting.source.scene.gaussians.size(), -1);
     const auto perfect = edited_figures(setting, plan, result, {painter});
     DOCTEST_CHECK(perfect["silhouette_iou"].get<double>() == doctest::Approx(1));
+    DOCTEST_CHECK(perfect["sharp_ssim"].get<double>() == doctest::Approx(1));
+    DOCTEST_CHECK(perfect["gradient_energy"].get<double>() == doctest::Approx(1));
     DOCTEST_CHECK(perfect["old_left"].get<double>() == doctest::Approx(0));
     DOCTEST_CHECK(perfect["old_unchanged"].get<double>() == 0);
     DOCTEST_CHECK(perfect["old_shown"].get<double>() == 0);
@@ -211,6 +248,7 @@ DOCTEST_TEST_CASE("of a new thing the true scene is taken in the heading and siz
     std::iota(result.base_to_new.begin(), result.base_to_new.end(), std::int64_t{0});
     const auto nothing = edited_figures(setting, plan, result, {painter});
     DOCTEST_CHECK(nothing["silhouette_iou"].get<double>() < 0.9);
+    DOCTEST_CHECK(nothing["sharp_ssim"].get<double>() < perfect["sharp_ssim"].get<double>());
     DOCTEST_CHECK(nothing["old_left"].get<double>() == doctest::Approx(1));
     DOCTEST_CHECK(nothing["old_unchanged"].get<double>() == doctest::Approx(1));
     DOCTEST_CHECK(nothing["old_shown"].get<double>() == doctest::Approx(1));
@@ -224,6 +262,8 @@ DOCTEST_TEST_CASE(
     Json replaced = changed_edit(1, 0.5, 0.25, 20);
     replaced["kind"] = "replace";
     replaced["silhouette_iou"] = 0.75;
+    replaced["sharp_ssim"] = 0.625;
+    replaced["gradient_energy"] = 0.5;
     replaced["old_left"] = 0.125;
     replaced["old_unchanged"] = 0.0625;
     replaced["old_shown"] = 0.03125;
@@ -232,9 +272,12 @@ DOCTEST_TEST_CASE(
     hat["kind"] = "add";
     hat["target"] = "hat";
     hat["silhouette_iou"] = 0.5;
+    hat["sharp_ssim"] = 0.5;
+    hat["gradient_energy"] = 2.0;
     Json crown = hat, failed = hat;
+    crown["gradient_energy"] = 1.0;
     crown["target"] = "crown";
-    failed.erase("silhouette_iou");
+    for (const char* key : {"silhouette_iou", "sharp_ssim", "gradient_energy"}) failed.erase(key);
     failed["error"] = "no place";
     const auto before = eval_summary(plain);
     const auto with = eval_summary(report_of(Json::array({changed_edit(0, 0.9, 0.8, 40), replaced})));
@@ -250,7 +293,12 @@ DOCTEST_TEST_CASE(
     DOCTEST_CHECK(with["replace_old_shown"]["value"] == doctest::Approx(0.03125));
     DOCTEST_CHECK(with["replace_mean_truth_l1_reduction"]["value"] == doctest::Approx(0.75));
     DOCTEST_CHECK(with["replace_mean_truth_old_left"]["value"] == doctest::Approx(0.0625));
-    const auto table = eval_summary(report_of(Json::array({hat, crown, failed})))["added_means"];
+    DOCTEST_CHECK(with["replace_sharp_ssim"]["value"] == doctest::Approx(0.625));
+    DOCTEST_CHECK(with["replace_gradient_energy"]["met"] == false);
+    DOCTEST_CHECK(!with.contains("added_gradient_energy"));
+    const auto added = eval_summary(report_of(Json::array({hat, crown, failed})));
+    DOCTEST_CHECK(added["added_gradient_energy"]["value"] == doctest::Approx(1.5));  // a failed one has none
+    const auto table = added["added_means"];
     DOCTEST_REQUIRE(table.size() == 2);
     DOCTEST_CHECK(table[1]["thing"] == "hat");
     DOCTEST_CHECK(table[1]["edits"] == 2);

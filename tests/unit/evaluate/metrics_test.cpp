@@ -83,6 +83,39 @@ DOCTEST_TEST_CASE("SSIM is 1 for equal pictures, symmetric, and falls with noise
     DOCTEST_CHECK(ssim(dark, light, {&middle, true}) == doctest::Approx(expected).epsilon(1e-4));
 }
 
+DOCTEST_TEST_CASE("gradient energy is that of a ramp, falls with blur, and looks at its region only") {
+    Image ramp(32, 24, 3);
+    for (int y = 0; y < 24; ++y)
+        for (int x = 0; x < 32; ++x)
+            for (int c = 0; c < 3; ++c) ramp.at(x, y, c) = 0.01f * static_cast<float>(x + 2 * y);
+    DOCTEST_CHECK(gradient_energy(ramp) == doctest::Approx(5e-4).epsilon(1e-4));
+    const Image sharp = noise(4);
+    Image blurred = sharp;  // the mean of each pixel and its neighbour to the right
+    for (int y = 0; y < 24; ++y)
+        for (int x = 0; x + 1 < 32; ++x)
+            for (int c = 0; c < 3; ++c)
+                blurred.at(x, y, c) = 0.5f * (sharp.at(x, y, c) + sharp.at(x + 1, y, c));
+    DOCTEST_CHECK(gradient_energy(blurred) < 0.6 * gradient_energy(sharp));
+    Image faint = sharp;
+    for (auto& value : faint.data) value *= 0.5f;
+    DOCTEST_CHECK(gradient_energy(faint) == doctest::Approx(0.25 * gradient_energy(sharp)));
+    // An edge along the rim of a region belongs to neither side.
+    const Mask left = [] {
+        Mask mask(32, 24);
+        for (int y = 0; y < 24; ++y)
+            for (int x = 0; x < 16; ++x) mask.at(x, y) = 1;
+        return mask;
+    }();
+    Image step(32, 24, 3);
+    for (std::size_t p = 0; p < left.data.size(); ++p)
+        for (std::size_t c = 0; c < 3; ++c) step.data[3 * p + c] = left.data[p] != 0 ? 1.0f : 0.0f;
+    DOCTEST_CHECK(gradient_energy(step) > 0);
+    DOCTEST_CHECK(gradient_energy(step, {&left, true}) == 0);
+    DOCTEST_CHECK(gradient_energy(step, {&left, false}) == 0);
+    const Mask nothing(32, 24);
+    DOCTEST_CHECK(gradient_energy(sharp, {&nothing, true}) == 0);
+}
+
 DOCTEST_TEST_CASE("a changed bit of a counted row is seen") {
     GaussianData data;
     data.resize(4);

@@ -276,6 +276,55 @@ DOCTEST_TEST_CASE("what draws new things goes along while the UNet beside it sta
     }
 }
 
+DOCTEST_TEST_CASE(
+    "the upscaler resumes to the same weights, and comes nearer to the truth than enlargement") {
+    const ToySource source;
+    const gse::test::ScratchFolder scratch;
+    const auto folder = [&](const char* name) { return scratch.path() / name; };
+    auto parameters = toy_parameters();
+    parameters.threads = 1;
+    parameters.clip_steps = parameters.vae_steps = parameters.unet_steps = 0;
+    parameters.clip_minutes = parameters.vae_minutes = parameters.unet_minutes = 0;
+    auto first = toy_parameters();
+    first.clip_minutes = first.clip_steps = 0;
+    train_starter(first, source, folder("work1"), folder("first"), {});
+    DOCTEST_CHECK_FALSE(read_json_file(folder("first") / "gseditpro.json").contains("upscaler"));
+
+    parameters.initial = folder("first").string();
+    parameters.upscaler_pictures = 8;
+    parameters.upscaler_batch = 4;
+    parameters.upscaler_steps = 100;
+    train_starter(parameters, source, folder("work2"), folder("straight"), {});
+    DOCTEST_CHECK(read_json_file(folder("straight") / "gseditpro.json").at("upscaler") == "upscaler");
+    const auto shown = column(folder("work2") / "upscaler.tsv", 5),
+               enlarged = column(folder("work2") / "upscaler.tsv", 6);
+    DOCTEST_REQUIRE(shown.size() == 2);
+    DOCTEST_CHECK(shown.back() > enlarged.back());
+
+    std::stop_source stop;
+    gse::JobControl job;
+    job.stop = stop.get_token();
+    job.progress = [&](std::string_view name, int step, int) {
+        if (name == "training upscaler" && step >= 500) stop.request_stop();
+    };
+    DOCTEST_CHECK_THROWS_AS(train_starter(parameters, source, folder("work3"), folder("resumed"), job),
+                            gse::Error);
+    train_starter(parameters, source, folder("work3"), folder("resumed"), {});
+    DOCTEST_CHECK(gse::read_file(folder("straight") / "upscaler/model.safetensors") ==
+                  gse::read_file(folder("resumed") / "upscaler/model.safetensors"));
+
+    // It goes along while the VAE stays, whose pictures it knows.
+    parameters.initial = folder("straight").string();
+    parameters.upscaler_steps = 0;
+    train_starter(parameters, source, folder("work4"), folder("kept"), {});
+    DOCTEST_CHECK(read_json_file(folder("kept") / "gseditpro.json").at("upscaler") == "upscaler");
+    DOCTEST_CHECK(gse::read_file(folder("straight") / "upscaler/model.safetensors") ==
+                  gse::read_file(folder("kept") / "upscaler/model.safetensors"));
+    parameters.vae_steps = 1;
+    train_starter(parameters, source, folder("work5"), folder("other"), {});
+    DOCTEST_CHECK_FALSE(read_json_file(folder("other") / "gseditpro.json").contains("upscaler"));
+}
+
 DOCTEST_TEST_CASE("mixed precision trains nearly as float does, and is not the same") {
     const ToySource source;
     const gse::test::ScratchFolder scratch;
