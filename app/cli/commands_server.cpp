@@ -80,7 +80,8 @@ void print_facts(const ViewServer& views) {
 void run_server_command(ServerOptions& options, const CommandContext& context) {
     const auto job = context.job();
     std::shared_ptr<remote::ImageServer> server = connect_server(options.settings, job);
-    const ViewServer views(server, options.settings, nullptr, job);
+    const ViewServer views(server, options.settings, nullptr, job, {},
+                           connect_further_servers(options.settings, job));
     std::string said;
     if (!options.draw.empty()) said = draw_test(options, *server, views, job);
     if (options.json) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "engine/base/error.h"
+#include "engine/base/log.h"
 #include "engine/base/printable.h"
 
 namespace gse::app {
@@ -38,19 +39,24 @@ void give_loras_to_server(const CLI::App& command, EditRecipe& recipe) {
 void settle_server(const CLI::App& command, remote::ServerSettings& settings) {
     const auto* option = command.get_option_no_throw("--server");
     const bool of_server = !settings.target_picture.empty() || !settings.key_view.empty() ||
-                           !settings.lora.empty() || !settings.option.empty();
+                           !settings.lora.empty() || !settings.option.empty() || !settings.also.empty();
     if (option != nullptr && !settings.used() && of_server)
         throw Error(ErrorCode::InvalidArgument,
-                    "options and LoRAs of a server, pictures of your own and a key view count where an image "
-                    "server draws the views",
+                    "options and LoRAs of a server, further servers, pictures of your own and a key view "
+                    "count where an image server draws the views",
                     "name a server (--server)");
     if (option == nullptr || settings.url == "none") settings = {};
-    if (!settings.used() || option->count() > 0) return;
-    throw Error(
-        ErrorCode::InvalidArgument,
-        fmt::format("the recipe has its views drawn by an image server ({}), which nobody has allowed here",
-                    printable(remote::without_secrets(settings.url))),
-        "give --server URL to have pictures of the scene sent there, or --server none to draw here");
+    if (!settings.used()) return;
+    if (option->count() == 0)
+        throw Error(
+            ErrorCode::InvalidArgument,
+            fmt::format(
+                "the recipe has its views drawn by an image server ({}), which nobody has allowed here",
+                printable(remote::without_secrets(settings.url))),
+            "give --server URL to have pictures of the scene sent there, or --server none to draw here");
+    if (settings.also.empty() || command.get_option("--server-also")->count() > 0) return;
+    settings.also.clear();
+    log::warning("the further servers of the recipe are not asked: --server-also URL names them");
 }
 
 }  // namespace gse::app

@@ -129,6 +129,51 @@ class Servers(ProgramTest):
                 print(f"{kind}: PSNR {psnr:.1f} dB inside the label")
                 self.assertGreaterEqual(psnr, 25)
 
+    def test_views_are_spread_over_several_servers(self):
+        servers = [self.server(), self.server()]
+        out = self.folder / "out"
+        hidden = f"http://artist:geheim@127.0.0.1:{servers[1].port}"
+        process = self.edit(out, "--server", servers[0].url, "--server-also", hidden,
+                            "--server-agreement", "none")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        report = json.loads((out / "report.json").read_text())
+        self.assertEqual(report["changed_outside_label"], 0)
+        drawn = [len(server.drawings()) for server in servers]
+        self.assertGreater(min(drawn), 0)
+        self.assertEqual(report["server"]["requests_by_server"], drawn)
+        self.assertEqual(report["server"]["requests"], sum(drawn))
+        recipe = (out / "recipe.json").read_text()
+        self.assertNotIn("geheim", recipe + process.stdout + process.stderr)
+        self.assertEqual(json.loads(recipe)["server"]["also"], [servers[1].url])
+        alone = self.folder / "alone"
+        process = run("-q", "edit", "--recipe", out / "recipe.json", "--out", alone,
+                      "--server", servers[0].url)
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertIn("--server-also", process.stderr)
+        self.assertEqual(len(servers[1].drawings()), drawn[1])
+        self.assertEqual((alone / "scene.ply").read_bytes(), (out / "scene.ply").read_bytes())
+
+    def test_further_servers_that_do_not_fit_are_refused_or_left_out(self):
+        first = self.server(model="sd-v1-5")
+        for further, words in ((self.server(model="flux-2-klein-4b"), "another model"),
+                               (self.server("comfy"), "another kind"), (first, "named twice")):
+            refused = self.edit(self.folder / "no", "--server", first.url, "--server-also", further.url)
+            self.assertNotEqual(refused.returncode, 0)
+            self.assert_one_sentence(refused, words, f"127.0.0.1:{further.port}")
+            asked = run("server", first.url, "--server-also", further.url)
+            self.assert_one_sentence(asked, words)
+        self.assertEqual(first.drawings(), [])
+        self.assert_one_sentence(self.edit(self.folder / "no", "--server-also", first.url), "name a server")
+        broken = self.server(model="sd-v1-5", fault="failed", at="poll")
+        out = self.folder / "out"
+        process = self.edit(out, "--server", first.url, "--server-also", broken.url,
+                            "--server-agreement", "none")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertEqual(process.stderr.count("is left out"), 1, process.stderr)
+        self.assertIn(f"127.0.0.1:{broken.port}", process.stderr)
+        shares = json.loads((out / "report.json").read_text())["server"]["requests_by_server"]
+        self.assertEqual(shares, [len(first.drawings()), 0])
+
     def test_options_and_loras_go_to_the_server_and_into_recipe_and_report(self):
         server = self.server("forge")
         out = self.folder / "out"

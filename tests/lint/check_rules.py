@@ -78,7 +78,8 @@ SUB_ROOMS = {
         "http": {"api", "picture"},
         "workflow": {"api"},
         "protocols": {"api", "http", "picture", "workflow"},
-        "views": {"api"},
+        "spread": {"api"},
+        "views": {"api", "spread"},
     },
     "laboratory": {
         "synth": {"synth/objects"},

@@ -175,6 +175,7 @@ void ServerController::settings_to_json(nlohmann::json& json) const {
     if (!settings_.used()) return;
     json["server"] = fields_to_json(settings_);
     json["server"].erase("target_picture");  // of this scene
+    json["server"].erase("also");            // of the command line alone
     json["server"]["url"] = remote::without_secrets(settings_.url);
     json["server_times"] = costs_.to_json();
 }
@@ -187,6 +188,7 @@ void ServerController::settings_from_json(const nlohmann::json& json) {
         fields_from_json(read, nlohmann::ordered_json(json["server"]));
         check_settings(read);
         read.url = remote::parse_server_url(read.url).url.at("");
+        read.also.clear();  // the consent names one server
         settings_ = std::move(read);
     } catch (const std::exception& error) {  // of another version, or edited by hand
         log::warning("the settings of the image server cannot be used ({})", error.what());

@@ -1,6 +1,7 @@
 // Families, orders and reports of a run's server.
 #include "engine/pipeline/models/view_server.h"
 
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -71,8 +72,9 @@ ViewServer::ViewServer(std::shared_ptr<remote::ImageServer> server, const remote
 
 ViewServer::ViewServer(std::shared_ptr<remote::ImageServer> server, const remote::ServerSettings& settings,
                        std::shared_ptr<AnswerCache> cache, const JobControl& job,
-                       const std::vector<remote::OwnPicture>& own)
-    : server_(std::move(server)), cache_(std::move(cache)),
+                       const std::vector<remote::OwnPicture>& own,
+                       std::vector<std::shared_ptr<remote::ImageServer>> further)
+    : server_(std::move(server)), further_(std::move(further)), cache_(std::move(cache)),
       source_(std::make_unique<remote::PictureSource>(*server_, server_->probe(job), identity_of(settings),
                                                       cache_.get())),
       drawing_(std::make_unique<remote::RemoteDrawing>()), loras_(settings.lora), options_(settings.option) {
@@ -87,6 +89,23 @@ ViewServer::ViewServer(std::shared_ptr<remote::ImageServer> server, const remote
               facts().model.empty() ? "model not told" : printable(facts().model), drawing_->family.name,
               remote::agreement_name(drawing_->agreement), drawing_->side, drawing_->side);
     if (!facts().repeats) log::warning("this server cannot repeat a picture: another run differs");
+    if (!further_.empty()) spread(settings, job);
+}
+
+void ViewServer::spread(const remote::ServerSettings& settings, const JobControl& job) {
+    std::vector<remote::FurtherServer> team;
+    for (std::size_t i = 0; i < further_.size(); ++i) {
+        const auto name = i < settings.also.size() ? remote::parse_server_url(settings.also[i]).url.nickname()
+                                                   : std::string("a further server");
+        remote::check_alike({drawing_->nickname, facts()}, {name, further_[i]->probe(job)});
+        team.push_back({further_[i].get(), name});
+    }
+    source_->spread_over(std::move(team));
+    const auto agreement = drawing_->agreement;
+    if (agreement == remote::Agreement::Warp)
+        log::warning(
+            "each view follows those before it (agreement warp), so that the first server draws them all: "
+            "--server-agreement none spreads them");
 }
 
 ViewServer::~ViewServer() = default;
@@ -158,6 +177,13 @@ nlohmann::ordered_json ViewServer::to_json() const {
     json["megapixels"] = use.megapixels;
     json["seconds"] = use.seconds;
     if (use.smaller_side > 0) json["smaller_side"] = use.smaller_side;
+    if (further_.empty()) return json;
+    std::vector<std::size_t> shares{use.requests};
+    for (const auto& one : source_->further()) {
+        shares.front() -= one.drawn;
+        shares.push_back(one.drawn);
+    }
+    json["requests_by_server"] = shares;
     return json;
 }
 
@@ -175,15 +201,37 @@ std::shared_ptr<remote::ImageServer> connect_server(const remote::ServerSettings
     return remote_api().connect(address, job);
 }
 
+std::vector<std::shared_ptr<remote::ImageServer>> connect_further_servers(
+    const remote::ServerSettings& settings, const JobControl& job) {
+    std::set<std::string> known{remote::parse_server_url(settings.url).url.at("")};
+    std::vector<std::shared_ptr<remote::ImageServer>> further;
+    for (const auto& text : settings.also) {
+        const auto url = remote::parse_server_url(text).url;
+        if (!known.insert(url.at("")).second)
+            throw Error(ErrorCode::InvalidArgument,
+                        fmt::format("the image server {} is named twice", url.nickname()),
+                        "name another one with --server-also, or leave it away");
+        auto one = settings;
+        one.url = text;
+        further.push_back(connect_server(one, job));
+    }
+    return further;
+}
+
 std::shared_ptr<ViewServer> open_view_server(const remote::ServerSettings& settings,
                                              std::shared_ptr<AnswerCache> cache, const JobControl& job) {
     if (!settings.used()) return nullptr;
-    const auto url = remote::parse_server_url(settings.url).url;
-    log::info("pictures of the scene, their masks and the sentence go to {}{}, which may keep them",
-              url.nickname(), url.encrypted() ? "" : " (not encrypted)");
+    auto addresses = settings.also;
+    addresses.insert(addresses.begin(), settings.url);
+    for (const auto& address : addresses) {
+        const auto url = remote::parse_server_url(address).url;
+        log::info("pictures of the scene, their masks and the sentence go to {}{}, which may keep them",
+                  url.nickname(), url.encrypted() ? "" : " (not encrypted)");
+    }
     const auto own = read_target_pictures(settings);
     auto server = connect_server(settings, job);
-    return std::make_shared<ViewServer>(std::move(server), settings, std::move(cache), job, own);
+    return std::make_shared<ViewServer>(std::move(server), settings, std::move(cache), job, own,
+                                        connect_further_servers(settings, job));
 }
 
 edit::EditPlan plan_at_side(edit::EditPlan plan, int side) {

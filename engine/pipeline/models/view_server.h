@@ -36,10 +36,12 @@ public:
     /// (InvalidArgument) for settings that are none or do not fit the server.
     ViewServer(std::shared_ptr<remote::ImageServer> server, const remote::ServerSettings& settings,
                std::shared_ptr<AnswerCache> cache, const JobControl& job);
-    /// `own`: pictures of the artist's own.
+    /// `own`: pictures of the artist's own. `further`: the servers of ServerSettings::also. One that speaks
+    /// another protocol or has another model than the first is refused (InvalidArgument).
     ViewServer(std::shared_ptr<remote::ImageServer> server, const remote::ServerSettings& settings,
                std::shared_ptr<AnswerCache> cache, const JobControl& job,
-               const std::vector<remote::OwnPicture>& own);
+               const std::vector<remote::OwnPicture>& own,
+               std::vector<std::shared_ptr<remote::ImageServer>> further = {});
     ~ViewServer();
 
     const remote::ServerFacts& facts() const;
@@ -69,11 +71,14 @@ public:
     nlohmann::ordered_json to_json() const;
 
 private:
+    /// Spreads the views over the further servers.
+    void spread(const remote::ServerSettings& settings, const JobControl& job);
     /// Settings of what is drawn, with the words of a request.
     remote::RemoteDrawing told(const edit::CheckedRequest& request, edit::EditMode mode,
                                const std::string& negative_prompt) const;
 
     std::shared_ptr<remote::ImageServer> server_;
+    std::vector<std::shared_ptr<remote::ImageServer>> further_;
     std::shared_ptr<AnswerCache> cache_;
     std::unique_ptr<remote::PictureSource> source_;
     std::unique_ptr<remote::RemoteDrawing> drawing_;  // without its text
@@ -85,6 +90,11 @@ private:
 /// file of credentials. Throws Error as remote::RemoteApi::connect().
 std::shared_ptr<remote::ImageServer> connect_server(const remote::ServerSettings& settings,
                                                     const JobControl& job);
+
+/// The servers of ServerSettings::also, as connect_server(). Throws Error (InvalidArgument) for an address
+/// that is named twice.
+std::vector<std::shared_ptr<remote::ImageServer>> connect_further_servers(
+    const remote::ServerSettings& settings, const JobControl& job);
 
 /// The server that the settings name, connected and asked what it is; null where they name none. Throws Error
 /// as remote::RemoteApi::connect() and ViewServer.

@@ -58,6 +58,7 @@ nlohmann::ordered_json recipe_to_json(const EditRecipe& recipe) {
     if (recipe.server.used()) {
         json["server"] = fields_to_json(recipe.server);
         json["server"]["url"] = remote::without_secrets(recipe.server.url);
+        for (auto& url : json["server"]["also"]) url = remote::without_secrets(url.get<std::string>());
         for (const char* file : {"workflow", "ca"})
             json["server"][file] = text_of_path(json["server"][file].get<std::string>());
         for (auto& target : json["server"]["target_picture"])

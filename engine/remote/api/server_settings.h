@@ -29,6 +29,7 @@ struct ServerSettings {
     std::string key_view;
     std::string ca;
     bool paid_nodes = false;
+    std::vector<std::string> also;
 
     template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         f("url", self.url,
@@ -71,6 +72,8 @@ struct ServerSettings {
         f("ca", self.ca, "File of certificates to trust beside the system's.");
         f("paid_nodes", self.paid_nodes,
           "Let a workflow use nodes that send the pictures on and cost money.");
+        f("also", self.also,
+          "Further server with the same model, over which the views are spread; may be given several times.");
     }
 
     bool used() const { return !url.empty(); }

@@ -59,7 +59,7 @@ ChangedPart DifferenceSource::painted(const Image& sent, std::uint64_t seed) {
     text.instruction = fmt::format("paint the {} completely in flat, unshaded {}, every part of it",
                                    edit_.thing, colour.words);
     const auto& family = edit_.drawing.family;
-    const Image drawn = ask(sent, prompt_for_view(family, text, "", false), seed, family.strength);
+    const Image drawn = ask(order(sent, prompt_for_view(family, text, "", false), seed, family.strength));
     return painted_part(sent, aligned(sent, drawn), colour);
 }
 
@@ -68,23 +68,20 @@ ChangedPart DifferenceSource::part_of(const edit::AttentionQuery& query) {
     const auto& family = edit_.drawing.family;
     const Image sent = at_side(query.image, edit_.drawing.side);
     if (edit_.paints) return painted(sent, query.seed);
+    const auto prompt = prompt_for_view(family, text, query.view_words, false);
     if (!family.instructed()) {
-        const Image as_it_is = ask(sent, edit_.before, query.seed, ComparedStrength);
-        const Image edited =
-            ask(sent, prompt_for_view(family, text, query.view_words, false), query.seed, ComparedStrength);
+        const auto [as_it_is, edited] = ask_both({order(sent, edit_.before, query.seed, ComparedStrength),
+                                                  order(sent, prompt, query.seed, ComparedStrength)});
         return changed_part(as_it_is, std::span(&edited, 1));
     }
-    const auto prompt = prompt_for_view(family, text, query.view_words, false);
     const std::uint64_t other = Random::stream(query.seed, SecondSeed).next();
-    const std::array edited{aligned(sent, ask(sent, prompt, query.seed, family.strength)),
-                            aligned(sent, ask(sent, prompt, other, family.strength))};
-    return changed_part(sent, edited);
+    const auto [first, second] = ask_both(
+        {order(sent, prompt, query.seed, family.strength), order(sent, prompt, other, family.strength)});
+    return changed_part(sent, std::array{aligned(sent, first), aligned(sent, second)});
 }
 
-/// Picture of the sent one's size; the sent one itself where what came has another shape.
-Image DifferenceSource::ask(const Image& picture, const std::string& prompt, std::uint64_t seed,
-                            double strength) {
-    if (job_.stop_requested()) throw Error(ErrorCode::Cancelled, "the search was stopped");
+RedrawOrder DifferenceSource::order(const Image& picture, const std::string& prompt, std::uint64_t seed,
+                                    double strength) const {
     auto order = order_of(edit_.drawing.family);
     order.picture = picture;
     order.prompt = prompt;
@@ -92,6 +89,19 @@ Image DifferenceSource::ask(const Image& picture, const std::string& prompt, std
     order.seed = server_seed(seed);
     order.strength = strength;
     suit_to_server(order, source_.facts(), edit_.drawing.family);
+    return order;
+}
+
+std::array<Image, 2> DifferenceSource::ask_both(const std::array<RedrawOrder, 2>& orders) {
+    source_.prefetch({orders.begin(), orders.end()}, {{}, job_.stop});
+    auto first = ask(orders[0]);
+    return {std::move(first), ask(orders[1])};
+}
+
+/// Picture of the sent one's size; the sent one itself where what came has another shape.
+Image DifferenceSource::ask(const RedrawOrder& order) {
+    if (job_.stop_requested()) throw Error(ErrorCode::Cancelled, "the search was stopped");
+    const auto& picture = order.picture;
     const Image drawn = source_.ask(order, {{}, job_.stop});
     if (has_side(drawn, picture.width)) return drawn;
     if (is_square(drawn)) return at_side(drawn, picture.width);

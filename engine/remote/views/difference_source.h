@@ -2,6 +2,7 @@
 // differences).
 #pragma once
 
+#include <array>
 #include <string>
 
 #include "engine/edit/interfaces/interfaces.h"
@@ -38,7 +39,11 @@ public:
 private:
     ChangedPart painted(const Image& sent, std::uint64_t seed);
     ChangedPart part_of(const edit::AttentionQuery& query);
-    Image ask(const Image& picture, const std::string& prompt, std::uint64_t seed, double strength);
+    RedrawOrder order(const Image& picture, const std::string& prompt, std::uint64_t seed,
+                      double strength) const;
+    /// Pictures of two orders, which several servers draw at once.
+    std::array<Image, 2> ask_both(const std::array<RedrawOrder, 2>& orders);
+    Image ask(const RedrawOrder& order);
 
     PictureSource& source_;
     const DifferenceEdit edit_;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
+#include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -112,15 +114,22 @@ Image PictureSource::ask(const RedrawOrder& order, const JobControl& job) {
     return ask_smaller(order, job);
 }
 
-Image PictureSource::ask_smaller(const RedrawOrder& order, const JobControl& job) {
+/// The order at the side at which the server is asked.
+RedrawOrder PictureSource::as_asked(const RedrawOrder& order) const {
     const int side = use_.smaller_side;
     RedrawOrder smaller = order;
+    if (side == 0 || side >= order.picture.width) return smaller;
     smaller.picture = at_side(order.picture, side);
     if (!order.mask.data.empty()) smaller.mask = at_side(order.mask, side);
     for (auto& reference : smaller.references)
         if (is_square(reference) && reference.width > side) reference = at_side(reference, side);
+    return smaller;
+}
+
+Image PictureSource::ask_smaller(const RedrawOrder& order, const JobControl& job) {
+    const int side = use_.smaller_side;
     try {
-        auto picture = ask_as_ordered(smaller, job);
+        auto picture = ask_as_ordered(as_asked(order), job);
         const bool usable = is_square(picture);
         return usable ? with_eight_bits(at_side(picture, order.picture.width)) : picture;
     } catch (const Error& error) {
@@ -130,13 +139,17 @@ Image PictureSource::ask_smaller(const RedrawOrder& order, const JobControl& job
     }
 }
 
+void PictureSource::count(const RedrawnPicture& redrawn) {
+    ++use_.requests;
+    use_.megapixels += static_cast<double>(redrawn.picture.pixel_count()) / 1e6;
+}
+
 /// Counts it. The watch is told of the end, whatever it is.
 RedrawnPicture PictureSource::drawn(const RedrawOrder& order, const JobControl& job) {
     const double begin = wall_seconds();
     auto redrawn = watch_ ? shown_while_drawn(order, job) : server_.redraw(order, job);
-    ++use_.requests;
     use_.seconds += wall_seconds() - begin;
-    use_.megapixels += static_cast<double>(redrawn.picture.pixel_count()) / 1e6;
+    count(redrawn);
     if (watch_) watch_({{}, {}, use_});
     return redrawn;
 }
@@ -156,6 +169,8 @@ RedrawnPicture PictureSource::shown_while_drawn(RedrawOrder order, const JobCont
 
 Image PictureSource::ask_as_ordered(const RedrawOrder& order, const JobControl& job) {
     const auto question = question_of(order);
+    if (const auto ahead = ahead_.extract(question))
+        if (auto drawn_before = picture_in(ahead.mapped())) return std::move(drawn_before->picture);
     if (cache_ != nullptr)
         if (const auto answer = cache_->find(question))
             if (auto kept = picture_in(*answer)) {
@@ -167,6 +182,105 @@ Image PictureSource::ask_as_ordered(const RedrawOrder& order, const JobControl& 
     note_model(redrawn.model);
     keep(order, redrawn);
     return std::move(redrawn.picture);
+}
+
+// Further servers
+
+bool PictureSource::is_spread() const {
+    return std::any_of(further_.begin(), further_.end(), [](const auto& one) { return !one.left_out; });
+}
+
+/// Those that are neither kept nor there twice, as a server is asked for them.
+std::vector<RedrawOrder> PictureSource::not_drawn(const std::vector<RedrawOrder>& orders) const {
+    std::vector<RedrawOrder> missing;
+    std::set<std::string> known;
+    for (const auto& order : orders) {
+        auto asked = as_asked(order);
+        const auto question = question_of(asked);
+        const bool kept = cache_ != nullptr && cache_->find(question);
+        if (!kept && known.insert(question).second) missing.push_back(std::move(asked));
+    }
+    return missing;
+}
+
+void PictureSource::prefetch(const std::vector<RedrawOrder>& orders, const JobControl& job) {
+    ahead_.clear();
+    if (!is_spread()) return;
+    const auto missing = not_drawn(orders);
+    if (missing.size() < 2) return;
+    std::vector<ImageServer*> servers{&server_};
+    std::vector<FurtherServer*> team;
+    for (auto& one : further_)
+        if (!one.left_out) servers.push_back(one.server), team.push_back(&one);
+    const int total = static_cast<int>(missing.size());
+    job.report("", 0, total);
+    SpreadNews news{[&](std::size_t done) { job.report("", static_cast<int>(done), total); }};
+    if (watch_)
+        news.preview = [&](const RedrawOrder& order, const Image& preview) {
+            watch_(
+                {std::make_shared<const Image>(order.picture), std::make_shared<const Image>(preview), use_});
+        };
+    const double begin = wall_seconds();
+    auto spread = draw_spread(servers, missing, news, job.stop);
+    use_.seconds += wall_seconds() - begin;
+    const auto failures = spread.failures;
+    take_spread(missing, std::move(spread), team);
+    if (watch_) watch_({{}, {}, use_});
+    take_failures(failures, team);
+}
+
+/// Pictures of the first server come first: they tell the model that the others have to have.
+void PictureSource::take_spread(const std::vector<RedrawOrder>& orders, SpreadDrawing spread,
+                                const std::vector<FurtherServer*>& team) {
+    const auto take = [&](std::size_t i) {
+        auto& redrawn = spread.drawn[i]->redrawn;
+        count(redrawn);
+        redrawn.picture = with_eight_bits(std::move(redrawn.picture));
+        keep(orders[i], redrawn);
+    };
+    for (std::size_t i = 0; i < orders.size(); ++i)
+        if (spread.drawn[i] && spread.drawn[i]->server == 0) {
+            note_model(spread.drawn[i]->redrawn.model);
+            take(i);
+        }
+    for (std::size_t i = 0; i < orders.size(); ++i) {
+        if (!spread.drawn[i] || spread.drawn[i]->server == 0) continue;
+        auto& one = *team[spread.drawn[i]->server - 1];
+        const auto& model = spread.drawn[i]->redrawn.model;
+        if (!model.empty() && !model_.empty() && model != model_) {
+            if (!std::exchange(one.left_out, true))
+                log::warning("{} draws with \"{}\", not with \"{}\", and is left out", one.name,
+                             printable(model), printable(model_));
+            spread.drawn[i].reset();
+            continue;
+        }
+        ++one.drawn;
+        take(i);
+    }
+    for (std::size_t i = 0; i < orders.size(); ++i)
+        if (const auto& drawn = spread.drawn[i])
+            ahead_[question_of(orders[i])] = bytes_of(drawn->redrawn.picture, drawn->redrawn.model);
+}
+
+/// A picture that is too large for the first server is left to ask(), which asks for a smaller one.
+void PictureSource::take_failures(const std::vector<std::exception_ptr>& failures,
+                                  const std::vector<FurtherServer*>& team) {
+    for (std::size_t i = 1; i < failures.size(); ++i) {
+        if (!failures[i]) continue;
+        try {
+            std::rethrow_exception(failures[i]);
+        } catch (const Error& error) {
+            if (error.code() == ErrorCode::Cancelled) continue;
+            if (std::exchange(team[i - 1]->left_out, true)) continue;
+            log::warning("{} is left out: {}", team[i - 1]->name, printable(error.message()));
+        }
+    }
+    if (!failures.front()) return;
+    try {
+        std::rethrow_exception(failures.front());
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::Cancelled && error.hint() != TooLargeHint) throw;
+    }
 }
 
 }  // namespace gse::remote

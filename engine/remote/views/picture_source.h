@@ -3,11 +3,15 @@
 
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "engine/base/answer_cache.h"
 #include "engine/remote/api/image_server.h"
+#include "engine/remote/spread/further_server.h"
+#include "engine/remote/spread/spread_drawing.h"
 
 namespace gse::remote {
 
@@ -34,7 +38,8 @@ using DrawingWatch = std::function<void(const DrawingNews&)>;
 /// Asks a server for pictures and keeps each as it comes, so that an edit that was cancelled asks only for
 /// what is missing. An answer is kept under kind, model, all values and pictures of its order; no address.
 /// A picture that is too large for the server is asked for once at 3/4 of its side. All later ones are asked
-/// for at that side, and what comes is brought back to the size of the order.
+/// for at that side, and what comes is brought back to the size of the order. Further servers draw at once
+/// with it what prefetch() is given; all else is asked of the first.
 class PictureSource {
 public:
     /// `facts`: as the server told them. `identity`: what the pictures follow from beside the order, such as
@@ -44,11 +49,20 @@ public:
     /// Picture [H,W,3] of 8 bits per channel. Throws as ImageServer::redraw(); for a picture that is too
     /// large at 3/4 of its side, too, the error says so.
     Image ask(const RedrawOrder& order, const JobControl& job);
+    /// Servers of the same kind with the same model, which stay alive.
+    void spread_over(std::vector<FurtherServer> further) { further_ = std::move(further); }
+    /// True where a further server is there that has not failed.
+    bool is_spread() const;
+    /// Has all servers draw these orders at once, so that ask() finds them drawn; nothing without further
+    /// servers. Each picture that comes is reported. A further server that fails is left out from then on,
+    /// with a warning. Throws as ImageServer::redraw() of the first; a stop request only ends it.
+    void prefetch(const std::vector<RedrawOrder>& orders, const JobControl& job);
     /// Who is told of what is drawn; empty = nobody, and the server is asked for no previews.
     void watch(DrawingWatch watch) { watch_ = std::move(watch); }
 
     const ServerFacts& facts() const { return facts_; }
     const ServerUse& use() const { return use_; }
+    const std::vector<FurtherServer>& further() const { return further_; }
     /// Model that drew last, as the server told it; empty = not told.
     const std::string& model() const { return model_; }
     /// How often another model has answered than before.
@@ -59,6 +73,13 @@ private:
     Image ask_smaller(const RedrawOrder& order, const JobControl& job);
     RedrawnPicture drawn(const RedrawOrder& order, const JobControl& job);
     RedrawnPicture shown_while_drawn(RedrawOrder order, const JobControl& job);
+    RedrawOrder as_asked(const RedrawOrder& order) const;
+    std::vector<RedrawOrder> not_drawn(const std::vector<RedrawOrder>& orders) const;
+    void take_spread(const std::vector<RedrawOrder>& orders, SpreadDrawing spread,
+                     const std::vector<FurtherServer*>& team);
+    void take_failures(const std::vector<std::exception_ptr>& failures,
+                       const std::vector<FurtherServer*>& team);
+    void count(const RedrawnPicture& redrawn);
     void keep(const RedrawOrder& order, const RedrawnPicture& redrawn);
     std::string question_of(const RedrawOrder& order) const;
     void note_model(const std::string& model);
@@ -71,6 +92,9 @@ private:
     DrawingWatch watch_ = {};
     std::string model_;
     std::size_t model_changes_ = 0;
+    std::vector<FurtherServer> further_;
+    std::map<std::string, std::string>
+        ahead_;  // bytes of pictures by their questions, until they are asked for
 };
 
 }  // namespace gse::remote

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <numeric>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -42,6 +43,11 @@ Mask difference(const Mask& mask, const Mask& without) {
     for (std::size_t i = 0; i < result.data.size(); ++i)
         if (without.data[i] != 0) result.data[i] = 0;
     return result;
+}
+
+void put_frame(RedrawOrder& order, const ViewFrame& frame) {
+    order.picture = frame.picture;
+    order.mask = as_image(frame.sent_mask);
 }
 
 }  // namespace
@@ -111,7 +117,10 @@ DrawnRound RoundDrawing::draw(KeyPicture& key) {
 }
 
 void RoundDrawing::draw_each() {
-    for (std::size_t v = 0; v < views_.size(); ++v)
+    std::vector<std::size_t> all(views_.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    draw_ahead(all);
+    for (const auto v : all)
         if (!is_there(v)) draw_alone(v);
 }
 
@@ -124,33 +133,47 @@ void RoundDrawing::draw_sheets() {
     auto rest = outwards_from(key);
     rest.erase(rest.begin());
     std::erase_if(rest, [&](auto v) { return is_there(v); });
-    std::vector<std::size_t> cells{key};
-    bool first = !is_there(key);
+    std::vector<std::vector<std::size_t>> sheets;
     for (std::size_t next = 0; next < rest.size();) {
-        while (cells.size() < SheetCells && next < rest.size()) cells.push_back(rest[next++]);
-        draw_sheet(cells, first ? nullptr : &squares_[key]);
+        sheets.push_back({key});
+        while (sheets.back().size() < SheetCells && next < rest.size()) sheets.back().push_back(rest[next++]);
+    }
+    bool first = !is_there(key), ahead = false;
+    for (std::size_t i = 0; i < sheets.size(); ++i) {
+        if (source_.is_spread() && !first && !std::exchange(ahead, true)) {
+            std::vector<RedrawOrder> orders;
+            for (std::size_t j = i; j < sheets.size(); ++j)
+                orders.push_back(sheet(sheets[j], &squares_[key]).order);
+            ask_ahead(std::move(orders), SheetCells - 1);
+        }
+        draw_sheet(sheets[i], first ? nullptr : &squares_[key]);
         first = first && squares_[key].data.empty();
-        cells = {key};
     }
 }
 
-void RoundDrawing::draw_sheet(const std::vector<std::size_t>& cells, const Image* key) {
+RoundDrawing::Sheet RoundDrawing::sheet(const std::vector<std::size_t>& cells, const Image* key) const {
     const int cell = cell_side(drawing_.side);
-    std::vector<ViewFrame> frames;
+    Sheet sheet;
     std::vector<Image> pictures;
     std::vector<Mask> masks;
     for (const auto v : cells) {
-        frames.push_back(frame_of(views_[v], frames_[v].section, cell, drawing_.family.latent_cell));
-        pictures.push_back(frames.back().picture);
-        masks.push_back(frames.back().sent_mask);
+        sheet.frames.push_back(frame_of(views_[v], frames_[v].section, cell, drawing_.family.latent_cell));
+        pictures.push_back(sheet.frames.back().picture);
+        masks.push_back(sheet.frames.back().sent_mask);
     }
-    const std::size_t first = key != nullptr && !key->data.empty() ? 1 : 0;
-    if (first == 1) pictures.front() = at_side(*key, cell), masks.front() = Mask(cell, cell);
+    sheet.first = key != nullptr && !key->data.empty() ? 1 : 0;
+    if (sheet.first == 1) pictures.front() = at_side(*key, cell), masks.front() = Mask(cell, cell);
+    sheet.order = order(prompt_for_sheet(drawing_.family, drawing_.text));
+    sheet.order.picture = sheet_of(pictures, drawing_.side);
+    sheet.order.mask = as_image(sheet_mask(masks, drawing_.side));
+    return sheet;
+}
+
+void RoundDrawing::draw_sheet(const std::vector<std::size_t>& cells, const Image* key) {
+    const auto [frames, sheet_order, first] = sheet(cells, key);
     std::vector<CheckedPicture> best(cells.size());
     for (int attempt = 0; attempt < Attempts; ++attempt) {
-        auto asked = order(prompt_for_sheet(drawing_.family, drawing_.text));
-        asked.picture = sheet_of(pictures, drawing_.side);
-        asked.mask = as_image(sheet_mask(masks, drawing_.side));
+        auto asked = sheet_order;
         if (attempt > 0) asked.seed = server_seed(Random::stream(request_.seed, SeedStream).next());
         const Image came = ask_server(std::move(asked));
         const Image answer = at_side(came, drawing_.side);
@@ -182,15 +205,13 @@ void RoundDrawing::draw_with_reference(KeyPicture& key) {
         rest.erase(rest.begin());
     }
     std::erase_if(rest, [&](auto v) { return is_there(v); });
+    draw_ahead(rest, key.picture.data.empty() ? nullptr : &key.picture);
     for (const auto v : rest) key.picture.data.empty() ? draw_alone(v) : draw_like(v, key.picture);
 }
 
 /// Some models copy the reference in place of following it: such a view is drawn by itself.
 void RoundDrawing::draw_like(std::size_t view, const Image& key) {
-    auto asked = order_for(view);
-    asked.prompt = prompt_with_reference(drawing_.family, drawing_.text, views_[view].view_words);
-    asked.references.push_back(key);
-    auto checked = ask(frames_[view], std::move(asked));
+    auto checked = ask(frames_[view], order_like(view, key));
     const bool copied =
         checked.picture.width == key.width && !checked.picture.data.empty() &&
         edge_correlation(checked.picture, key) > edge_correlation(checked.picture, frames_[view].picture);
@@ -258,12 +279,44 @@ RedrawOrder RoundDrawing::order_for(std::size_t view) const {
         prompt_for_view(drawing_.family, drawing_.text, views_[view].view_words, request_.round > 0));
 }
 
+RedrawOrder RoundDrawing::order_like(std::size_t view, const Image& key) const {
+    auto order = order_for(view);
+    order.prompt = prompt_with_reference(drawing_.family, drawing_.text, views_[view].view_words);
+    order.references.push_back(key);
+    return order;
+}
+
+void RoundDrawing::draw_ahead(const std::vector<std::size_t>& views, const Image* key) {
+    if (!source_.is_spread()) return;
+    std::vector<RedrawOrder> orders;
+    for (const auto v : views) {
+        if (is_there(v) || frames_[v].mask.count() == 0) continue;
+        orders.push_back(key == nullptr ? order_for(v) : order_like(v, *key));
+        put_frame(orders.back(), frames_[v]);
+    }
+    ask_ahead(std::move(orders));
+}
+
+void RoundDrawing::ask_ahead(std::vector<RedrawOrder> orders, std::size_t views_each) {
+    for (auto& order : orders) suit_to_server(order, source_.facts(), drawing_.family);
+    auto hosts = drawing_.nickname;
+    for (const auto& one : source_.further())
+        if (!one.left_out) hosts += ", " + one.name;
+    const int total = static_cast<int>(views_.size()), begin = static_cast<int>(done_);
+    const int each = static_cast<int>(views_each);
+    source_.prefetch(orders, {[&](std::string_view, int drawn, int) {
+                                  shown_ = std::min(begin + drawn * each, total - 1);
+                                  job_.report(fmt::format("view {} of {} at {}", shown_ + 1, total, hosts),
+                                              shown_, total);
+                              },
+                              job_.stop});
+}
+
 CheckedPicture RoundDrawing::ask(const ViewFrame& frame, RedrawOrder order, bool may_stay) {
     CheckedPicture checked;
     checked.picture = frame.picture;
     if (frame.mask.count() == 0) return checked;  // nothing may change
-    order.picture = frame.picture;
-    order.mask = as_image(frame.sent_mask);
+    put_frame(order, frame);
     for (int attempt = 0; attempt < Attempts; ++attempt) {
         if (attempt > 0) {
             order.seed = server_seed(Random::stream(request_.seed, SeedStream).next());
@@ -282,8 +335,9 @@ CheckedPicture RoundDrawing::ask(const ViewFrame& frame, RedrawOrder order, bool
 Image RoundDrawing::ask_server(RedrawOrder order) {
     if (job_.stop_requested()) throw Error(ErrorCode::Cancelled, "redrawing the views was stopped");
     suit_to_server(order, source_.facts(), drawing_.family);
-    const int total = static_cast<int>(views_.size()),
-              now = static_cast<int>(std::min(done_, views_.size() - 1));
+    const int total = static_cast<int>(views_.size());
+    shown_ = std::max(shown_, std::min(static_cast<int>(done_), total - 1));
+    const int now = shown_;
     const auto stage = fmt::format("view {} of {} at {}", now + 1, total, drawing_.nickname);
     job_.report(stage, now, total);
     // Steps inside a view are not shown: few servers tell them.

@@ -65,6 +65,13 @@ public:
     DrawnRound draw(KeyPicture& key);
 
 private:
+    /// Several views in one picture.
+    struct Sheet {
+        std::vector<ViewFrame> frames;  // of its cells
+        RedrawOrder order;
+        std::size_t first = 0;  // cell that is to change; the ones before show the key
+    };
+
     void take_own_pictures();
     void draw_each();
     void draw_sheets();
@@ -73,11 +80,19 @@ private:
 
     void draw_alone(std::size_t view);
     void draw_like(std::size_t view, const Image& key);
+    Sheet sheet(const std::vector<std::size_t>& cells, const Image* key) const;
     void draw_sheet(const std::vector<std::size_t>& cells, const Image* key);
     void draw_warped(std::size_t view, const std::vector<std::size_t>& drawn);
 
+    /// Has several servers draw these views at once, as draw_alone() asks for them, or draw_like() with a
+    /// key.
+    void draw_ahead(const std::vector<std::size_t>& views, const Image* key = nullptr);
+    /// Has several servers draw orders of so many views each at once.
+    void ask_ahead(std::vector<RedrawOrder> orders, std::size_t views_each = 1);
+
     RedrawOrder order(std::string prompt) const;
     RedrawOrder order_for(std::size_t view) const;
+    RedrawOrder order_like(std::size_t view, const Image& key) const;
     bool is_there(std::size_t view) const { return !squares_[view].data.empty(); }
     /// Asks for one frame, and once more with another seed where the answer is of no use. `may_stay`: what is
     /// drawn may look as the scene did.
@@ -96,6 +111,7 @@ private:
     std::vector<Image> squares_;  // per view: as it was drawn, [S,S,3]; empty where nothing of use came
     DrawnRound round_;
     std::size_t done_ = 0;  // views, for the progress
+    int shown_ = 0;         // largest number of a view that was reported, from 0
 };
 
 }  // namespace gse::remote

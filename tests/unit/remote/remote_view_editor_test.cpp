@@ -12,6 +12,7 @@
 #include "engine/remote/views/view_sheet.h"
 #include "tests/unit/remote/fake_server.h"
 #include "tests/unit/remote/test_pictures.h"
+#include "tests/unit/remote/wall_views.h"
 
 namespace remote_view_editor_test {
 namespace {
@@ -20,52 +21,8 @@ using namespace gse;
 using namespace gse::remote;
 
 using namespace remote_pictures;
+using namespace remote_walls;
 using gse::test::FakeServer;
-
-constexpr int Side = 128;
-constexpr double Distance = 4;  // of the plane that the views show
-
-/// A wall that faces the cameras, which stand beside each other.
-std::vector<edit::EditView> views_of_wall(std::size_t count) {
-    std::vector<edit::EditView> views;
-    for (std::size_t v = 0; v < count; ++v) {
-        edit::EditView view;
-        auto& camera = view.view.camera;
-        camera.width = camera.height = Side;
-        camera.fx = camera.fy = Side;
-        camera.cx = camera.cy = Side / 2.0;
-        camera.translation = {-0.125 * static_cast<double>(v), 0, 0};  // 4 px of the picture
-        view.view.name = "view " + std::to_string(v);
-        view.rendered = view.original = waves(Side, -4.0 * static_cast<double>(v));
-        view.depth = Image(Side, Side, 1, static_cast<float>(Distance));
-        view.mask = disc(Side, 30, Side / 2.0 - 4.0 * static_cast<double>(v), Side / 2.0);
-        views.push_back(std::move(view));
-    }
-    return views;
-}
-
-RemoteDrawing drawing_of(Agreement agreement, std::string_view family = "sd15") {
-    return {{"a golden wall", "make the wall golden", ""}, family_named(family), agreement, Side};
-}
-
-edit::EditViewsRequest request_of(int round = 0) {
-    edit::EditViewsRequest request;
-    request.round = round, request.rounds = round + 1, request.seed = 17;
-    return request;
-}
-
-/// Answers in memory.
-class MemoryAnswers final : public AnswerCache {
-public:
-    std::optional<std::string> find(std::string_view question) override {
-        const auto found = answers.find(std::string(question));
-        return found == answers.end() ? std::nullopt : std::optional(found->second);
-    }
-    void keep(std::string_view question, std::string_view answer) override {
-        answers[std::string(question)] = answer;
-    }
-    std::map<std::string, std::string> answers;
-};
 
 struct Setup {
     FakeServer server;
