@@ -36,8 +36,10 @@ DOCTEST_TEST_CASE("an element of each rank is that of the sorted order") {
 
 DOCTEST_TEST_CASE("quantiles reach from the smallest to the largest, and rise with the share") {
     auto values = samples(101, 7);
-    DOCTEST_CHECK(nearest_quantile(values, 0) == *std::min_element(values.begin(), values.end()));
-    DOCTEST_CHECK(nearest_quantile(values, 1) == *std::max_element(values.begin(), values.end()));
+    const auto [least, most] = std::minmax_element(values.begin(), values.end());
+    const double smallest = *least, largest = *most;
+    DOCTEST_CHECK(nearest_quantile(values, 0) == smallest);
+    DOCTEST_CHECK(nearest_quantile(values, 1) == largest);
     double before = -1;
     for (int percent = 0; percent <= 100; ++percent) {
         const double now = nearest_quantile(values, percent / 100.0);
