@@ -60,6 +60,19 @@ class Searches(ProgramTest):
         process = self.edit("--source", "road", "--prompt", "a bear on a golden road")
         self.assert_one_sentence(process, '"road"', "label it by hand instead")
 
+    def test_a_ground_that_words_and_shape_tell_alike_is_that_of_the_words(self):
+        scene = self.folder / "chair.ply"
+        process = run_laboratory("synth", scene, "--object", "chair", "--material", "black", "--accessory",
+                                 "crown", "--accessory-colour", "white", "--seed", 8771603698888874792)
+        self.assertEqual(process.returncode, 0, process.stderr)
+        process = run("edit", scene, "--source", "grass", "--prompt",
+                      "a black chair wearing a white crown on the tiles", "--quality", "draft",
+                      "--turntable-frames", 0, "--out", self.folder / "out")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertNotIn("look at the label", process.stderr)
+        report = json.loads((self.folder / "out/report.json").read_text())
+        self.assertFalse(report.get("label_doubt"))
+
     def test_a_box_says_what_may_change(self):
         box = ["--cut-out", "0.42,0.35,0.575,0.645,0,15,1"]
         process = self.edit("--source", "thingummy", "--prompt", "a golden thingummy on the grass", *box)
