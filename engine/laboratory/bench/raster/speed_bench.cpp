@@ -59,8 +59,8 @@ std::string raster_lines(const SpeedBenchOptions& options, const Scene& scene, s
     const auto bench = raster::bench_raster(scene.gaussians.spans(), cameras, settings);
     kernels = fmt::format("{} kernels, {} threads", bench.kernels, bench.threads);
     const auto picture = size_text(settings.width, settings.height);
-    floors +=
-        fmt::format("{} splats, {}: {}.\n", grouped(bench.splats), picture, floor_text(floor_report(bench)));
+    floors += fmt::format("- {} splats, {}:\n  {}.\n", grouped(bench.splats), picture,
+                          floor_text(floor_report(bench)));
     return line({"rasterizer, forward", picture, bench.splats, bench.forward.cpu_median_ms,
                  fmt::format("{:.0f} dB, largest {:.1e}", bench.psnr_db, bench.max_abs_error)}) +
            line({"rasterizer, backward", picture, bench.splats, bench.backward.cpu_median_ms,
@@ -97,8 +97,8 @@ std::string speed_table(const SpeedBenchOptions& options) {
 #endif
     }
     return fmt::format(
-        "Scenes of seed {}, SH degree 3, {} cameras on a circle, {}; median processor time of a picture, all "
-        "threads together.\n\n"
+        "Scenes of seed {}, SH degree 3, {} cameras on a circle, {}.\n"
+        "Median processor time of a picture, all threads together.\n\n"
         "| what | splats | picture | processor time | error against double precision "
         "|\n|---|---|---|---|---|\n{}\n{}",
         options.seed, options.views, kernels, rows, floors);
