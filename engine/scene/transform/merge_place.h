@@ -16,7 +16,7 @@ struct MergeWishes {
     std::optional<Vec3> at;       // place of its foot, in the coordinates of the scene that takes it
     double turn = 0;              // degrees about up, counter-clockwise as seen from above
     std::optional<double> scale;  // factor above 0
-    // What is looked at, in the coordinates of the scene that takes it: the other one is put in front of it.
+    // Surface that is looked at, in the coordinates of the scene that takes the other one in front of it.
     std::optional<SeenSurface> seen = std::nullopt;
 };
 
