@@ -1,8 +1,6 @@
 // Upscaler: layers, configuration, file.
 #include "engine/neural/diffusion/upscaler.h"
 
-#include <fmt/format.h>
-
 #include "engine/base/error.h"
 #include "engine/base/json.h"
 #include "engine/neural/weights/safetensors.h"
@@ -32,10 +30,10 @@ UpscalerConfig UpscalerConfig::from_json(const Json& json, const std::filesystem
         config.latent_channels = json.value("latent_channels", config.latent_channels);
         config.width = json.value("width", config.width);
         config.blocks = json.value("blocks", config.blocks);
-    } catch (const Json::exception& error) {
+    } catch (const Json::exception&) {
         throw Error(ErrorCode::Malformed,
-                    fmt::format("the configuration of the upscaler cannot be read: {}", error.what()), {},
-                    path);
+                    "the configuration of the upscaler holds something that is no number",
+                    "take the model from where it came once more", path);
     }
     require_upscaler(config.latent_channels >= 1 && config.latent_channels <= MostLatentChannels,
                      "latent_channels", path);
