@@ -12,6 +12,7 @@
 #include "engine/language/sentence.h"
 #include "engine/language/vocabulary.h"
 #include "engine/language/words.h"
+#include "engine/pipeline/scene/label_names.h"
 #include "engine/scene/label_ops.h"
 
 namespace gse::app {
@@ -143,23 +144,11 @@ bool is_addition(const NamedLabel& label, const std::vector<RowId>& row_ids) {
     return any;
 }
 
-namespace {
-
-/// Words that a sentence may call the label's thing by.
-std::vector<std::string> names_of(const NamedLabel& label) {
-    std::vector<std::string> names{language::normalised_prompt(label.name)};
-    if (auto thing = language::plan::thing_of_file_name(label.name); !thing.empty() && thing != names[0])
-        names.push_back(std::move(thing));
-    return names;
-}
-
-}  // namespace
-
 std::vector<std::string> things_added(const DocumentState& state) {
     auto things = things_made(state.stack);
     for (const NamedLabel& label : state.labels) {
         if (!state.row_ids || !is_addition(label, *state.row_ids)) continue;
-        for (auto& name : names_of(label))
+        for (auto& name : pipeline::words_for_label(label.name))
             if (!language::contains(things, name)) things.push_back(std::move(name));
     }
     return things;
@@ -169,7 +158,7 @@ std::vector<std::string> things_labelled(const DocumentState& state) {
     std::vector<std::string> things;
     for (const NamedLabel& label : state.labels)
         if (made_by_hand(label))
-            for (auto& name : names_of(label)) things.push_back(std::move(name));
+            for (auto& name : pipeline::words_for_label(label.name)) things.push_back(std::move(name));
     return things;
 }
 

@@ -31,13 +31,18 @@ const Label* label_for(const LabelSet& labels, std::string_view word, const std:
     return language::vocabulary_contains(known, word) ? nullptr : label_named(labels, word);
 }
 
+std::vector<std::string> words_for_label(std::string_view name) {
+    std::vector<std::string> words{language::normalised_prompt(name)};
+    if (auto thing = language::plan::thing_of_file_name(name); !thing.empty() && thing != words.front())
+        words.push_back(std::move(thing));
+    return words;
+}
+
 std::vector<std::string> label_names(const LabelSet& labels) {
     std::vector<std::string> names;
     for (const Label& label : labels.labels) {
         if (!marks_splats(label)) continue;
-        names.push_back(language::normalised_prompt(label.name));
-        auto thing = language::plan::thing_of_file_name(label.name);
-        if (!thing.empty() && thing != names.back()) names.push_back(std::move(thing));
+        for (auto& word : words_for_label(label.name)) names.push_back(std::move(word));
     }
     return names;
 }

@@ -19,6 +19,10 @@ const Label* label_named(const LabelSet& labels, std::string_view name);
 /// words of the model; empty = it takes any.
 const Label* label_for(const LabelSet& labels, std::string_view word, const std::vector<std::string>& known);
 
+/// Words that a sentence may call the thing of a label by: the name in lower case, and the thing of a file's
+/// name.
+std::vector<std::string> words_for_label(std::string_view name);
+
 /// Names of the labels that mark splats, in lower case, and the things of those that are names of files.
 std::vector<std::string> label_names(const LabelSet& labels);
 
