@@ -190,6 +190,10 @@ private:
 
     edit::ImageTextEncoder& score() {
         if (!score_) score_ = model_->real().image_text_encoder();
+        if (!score_)  // it was there when the facts were kept
+            throw Error(ErrorCode::NotFound,
+                        fmt::format("the picture encoder of the model \"{}\" is gone", model_->name()),
+                        "put its folder \"clip\" back, or choose the model once more");
         return *score_;
     }
 

@@ -37,6 +37,7 @@ struct Asked {
     int loads = 0, maps = 0, pictures = 0, sentences = 0, viewpoints = 0, drawn = 0;
     bool broken = false;    // its maps hold values that are not finite
     bool outlines = false;  // its views tell outlines, not changes
+    bool encoder_gone = false;
 };
 
 class FakeAttention final : public edit::AttentionSource {
@@ -120,7 +121,7 @@ public:
     Image sample(const neural::SampleRequest&) const override { return {}; }
     Image img2img(const Image& image, const neural::SampleRequest&) const override { return image; }
     std::unique_ptr<edit::ImageTextEncoder> image_text_encoder() const override {
-        return std::make_unique<FakeScore>(asked_);
+        return asked_.encoder_gone ? nullptr : std::make_unique<FakeScore>(asked_);
     }
     neural::TunedModel tune(const neural::DreamBoothParameters&, std::span<const Image>, const std::string&,
                             const std::string&, const JobControl&, AnswerCache*) const override {
@@ -190,6 +191,19 @@ DOCTEST_TEST_CASE(
     clear_cache_folder(folder.path());
     ask();
     DOCTEST_CHECK((asked.loads == 2 && asked.maps == 2 && asked.pictures == 2 && asked.sentences == 2));
+}
+
+DOCTEST_TEST_CASE("cached model: an encoder that went since its facts were kept is an error that says so") {
+    const test::ScratchFolder folder;
+    Asked asked;
+    DOCTEST_REQUIRE(fake(folder.path(), asked)->image_text_encoder());
+    asked.encoder_gone = true;
+    const auto score = fake(folder.path(), asked)->image_text_encoder();
+    DOCTEST_REQUIRE(score);
+    DOCTEST_CHECK_THROWS_WITH_AS(score->text("a bear"),
+                                 doctest::Contains("picture encoder of the model \"fake\""), Error);
+    DOCTEST_CHECK_THROWS_AS(score->image(Image(8, 6, 3, 0.5f)), Error);
+    DOCTEST_CHECK_THROWS_AS(score->viewpoint(Image(8, 6, 3, 0.5f)), Error);
 }
 
 DOCTEST_TEST_CASE("cached model: everything that an attention map follows from is part of the question") {
