@@ -141,6 +141,18 @@ class RealSuites(ProgramTest):
         self.assertGreater(run["opacity"]["recall"], 0.9)
         self.assertIn("by click, unknown nouns: 1 runs", process.stdout)
 
+    def test_a_word_finds_all_of_a_scan_where_it_finds_most(self):
+        suite = SHARED / "data/real/suite.json"
+        if not suite.exists():
+            self.skipTest(f"[skip] {suite} is not there")
+        process = run_laboratory("-q", "eval", "--real", suite, "--real-modes", "word", "--real-only",
+                                 "horse_statue.white", "--quality", "draft", "--out", self.folder / "out")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        task, = json.loads((self.folder / "out/eval.json").read_text())["tasks"]
+        found = task["runs"]["word"]["opacity"]
+        self.assertGreater(found["recall"], 0.97)
+        self.assertGreater(found["precision"], 0.97)
+
     def test_ctrl_c_keeps_the_tasks_that_are_done(self):
         arguments = [LABORATORY, "eval", "--real", self.suite, "--real-root", self.root, "--out",
                      self.folder / "out", *QUICK, "--real-modes", "word"]

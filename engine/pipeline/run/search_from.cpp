@@ -9,7 +9,11 @@
 #include "engine/base/log.h"
 #include "engine/edit/placement/body_part.h"
 #include "engine/edit/request/decide_mode.h"
+#include "engine/edit/search/decide_label.h"
+#include "engine/language/grammar.h"
 #include "engine/language/vocabulary.h"
+#include "engine/math/quantile.h"
+#include "engine/pipeline/select/whole_thing.h"
 #include "engine/remote/api/server_settings.h"
 
 namespace gse::pipeline {
@@ -132,6 +136,36 @@ Located locate_part(RunContext& context, Located located, const JobControl& cont
     log::info("\"{}\" is told by the shape of \"{}\": {} splats", part, request.part_of(),
               std::count(rows.begin(), rows.end(), std::uint8_t{1}));
     return located;
+}
+
+edit::LocateResult completed_by_shape(RunContext& context, const Located& located) {
+    auto result = located.result;
+    const auto tools = context.second_look();
+    if (tools.recognition == nullptr || !located.within.empty() || language::names_ground(result.word) ||
+        language::has_usual_place(result.word) || result.found.rule.nature == ThingNature::Vessel ||
+        edit::encoder_knows(finding_of(context, located), *tools.recognition))
+        return result;
+    const auto whole = whole_thing(context.drawn(), *result.label.bits, located.views.orbit);
+    auto& probability = result.found.field.probability;
+    if (whole.empty()) return result;
+    std::vector<float> sure;
+    for (std::size_t row = 0; row < whole.size(); ++row)
+        if ((*result.label.bits)[row] != 0) sure.push_back(probability[row]);
+    const float usual = upper_median(sure);
+    for (std::size_t row = 0; row < whole.size(); ++row)
+        if (whole[row] != 0 && (*result.label.bits)[row] == 0 &&
+            (result.beside.empty() || result.beside[row] == 0))
+            probability[row] = std::max(probability[row], usual);
+    auto decided = edit::decide_label(result.label.name, context.drawn(), result.found,
+                                      located.recipe.request.label_threshold, tools.threads);
+    const auto labelled = [](const Label& label) {
+        return std::count(label.bits->begin(), label.bits->end(), std::uint8_t{1});
+    };
+    log::info("{} splats were labelled as \"{}\", and with its shape {}", labelled(result.label), result.word,
+              labelled(decided.label));
+    result.label = std::move(decided.label);
+    add_to(result.beside, decided.beside);
+    return result;
 }
 
 Located located_everywhere(RunContext& context, const CheckedRecipe& recipe, const Views& views,

@@ -37,4 +37,8 @@ Located locate_part(RunContext& context, Located located, const JobControl& cont
 Located located_everywhere(RunContext& context, const CheckedRecipe& recipe, const Views& views,
                            const JobControl& control);
 
+/// The finding with what the views left out of its thing, by the thing's shape (whole_thing.h): scans alone,
+/// whose pictures are strange to the networks.
+edit::LocateResult completed_by_shape(RunContext& context, const Located& located);
+
 }  // namespace gse::pipeline

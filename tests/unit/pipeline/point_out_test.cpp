@@ -8,6 +8,7 @@
 #include "engine/base/error.h"
 #include "engine/base/random.h"
 #include "engine/pipeline/select/point_out.h"
+#include "engine/pipeline/select/whole_thing.h"
 
 namespace point_out_test {
 
@@ -82,6 +83,31 @@ DOCTEST_TEST_CASE("a click takes the thing under it on all sides, without the ta
     const auto [on_ball, on_table] = shares(thing_at(scene.gaussians, ground).rows);
     DOCTEST_CHECK(on_ball < 0.12);  // where it touches the table
     DOCTEST_CHECK(on_table > 0.95);
+}
+
+DOCTEST_TEST_CASE(
+    "a label that is most of a thing has its whole; half of one, or what reaches beyond it, has none") {
+    const auto scene = ball_on_table();
+    const auto& position = scene.gaussians.position();
+    const OrbitParameters orbit;
+    /// Rows of the ball up to a height above the table, and of the table up to a place along x.
+    const auto labelled = [&](double height, double along) {
+        std::vector<std::uint8_t> label(scene.gaussians.size(), 0);
+        for (std::size_t row = 0; row < label.size(); ++row)
+            label[row] = row < BallRows ? -position[row * 3 + 1] < height : position[row * 3] < along;
+        return label;
+    };
+    constexpr double all = 1, none = -2;
+    for (const double height : {0.5, 0.55, 0.6}) {  // of 0.6: a sphere has equal rows at all heights
+        const auto whole = whole_thing(scene.gaussians, labelled(height, none), orbit);
+        DOCTEST_REQUIRE(!whole.empty());
+        const auto [ball, table] = shares(whole);
+        DOCTEST_CHECK(ball > 0.95);
+        DOCTEST_CHECK(table < 0.02);
+    }
+    DOCTEST_CHECK(whole_thing(scene.gaussians, labelled(0.3, none), orbit).empty());
+    DOCTEST_CHECK(whole_thing(scene.gaussians, labelled(all, -0.5), orbit).empty());
+    DOCTEST_CHECK(whole_thing(scene.gaussians, labelled(-all, none), orbit).empty());
 }
 
 DOCTEST_TEST_CASE("a click beside everything takes nothing; the largest thing needs none") {
