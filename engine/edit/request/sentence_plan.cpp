@@ -255,6 +255,10 @@ bool is_about_part(const EditRequest& request) {
            is_borne(language::Sentence(request.prompt), language::normalised_prompt(request.source));
 }
 
+bool is_about_part(const CheckedRequest& request) {
+    return !request.part_of().empty() || is_borne(request.sentence().sentence(), request.source());
+}
+
 bool is_caption(const EditRequest& request) { return is_description(language::Sentence(request.prompt)); }
 
 bool says_itself(const EditRequest& request, const plan::StepSentence& words, const News& news) {

@@ -65,6 +65,7 @@ bool is_told_as_typed(const EditRequest& request, const language::plan::Plan& pl
 bool is_borne(const language::Sentence& sentence, const std::string& source);
 /// True for a request about a part, or about something borne by another thing.
 bool is_about_part(const EditRequest& request);
+bool is_about_part(const CheckedRequest& request);
 
 /// True for a sentence in the form of a caption ("a blue bear on the grass"), and no order or telegram.
 bool is_caption(const EditRequest& request);

@@ -64,6 +64,7 @@ CutOutThing labelled_by_box(const Scene& scene, const CheckedRecipe& recipe, edi
     auto request = cut_out_request(job.cut_out, scene, job.up);
     request.ground = language::names_ground(recipe.request.source());
     request.nature = edit::nature_of(recipe.request.source());
+    request.part = edit::is_about_part(recipe.request);
     auto thing = cut_out(drawable(scene.gaussians), request, segmenter, control);
     if (const auto text = cut_text(thing); !text.empty())
         log::warning("\"{}\": {}", recipe.request.source(), text);
@@ -87,8 +88,7 @@ std::pair<std::vector<std::uint8_t>, std::string> labelled_by_pointing(const Sce
         auto request = click_request(job.at, scene, job.up);
         request.ground = language::names_ground(recipe.request.source());
         request.nature = edit::nature_of(recipe.request.source());
-        request.part = !recipe.request.part_of().empty() ||
-                       edit::is_borne(recipe.request.sentence().sentence(), recipe.request.source());
+        request.part = edit::is_about_part(recipe.request);
         thing = thing_at(set, request, control);
         doubt = part_doubt(thing, request);
     }

@@ -20,6 +20,8 @@
 #include "engine/pipeline/select/box_support.h"
 #include "engine/pipeline/select/cut_out_sides.h"
 #include "engine/pipeline/select/named_picture.h"
+#include "engine/pipeline/select/point_out.h"
+#include "engine/pipeline/select/scene_ground.h"
 
 namespace gse::pipeline {
 namespace {
@@ -211,6 +213,13 @@ std::vector<std::uint8_t> seen_rows(const GaussianSet& set, const Camera& camera
     return rows;
 }
 
+/// Click on the middle of the box.
+ClickRequest middle_of(const CutOutRequest& request) {
+    const auto box = box_of(request.area);
+    return {request.camera, (box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2, request.settings,
+            request.up,     request.ground,        request.nature,        request.part};
+}
+
 constexpr const char* BoxHint =
     "give LEFT,TOP,RIGHT,BOTTOM as shares of the picture, as in 0.3,0.2,0.7,0.9, and ,AZIMUTH,ELEVATION,ZOOM "
     "behind it where needed";
@@ -284,17 +293,19 @@ CutOutThing cut_out(const GaussianSet& set, const CutOutRequest& request, edit::
     options.mask = &wide;
     seen.cone = rows_in_area(set, section->camera, section->area, options);
     auto bits = follow_around(set, seen, settings, *segmenter, painter, control);
-    if (request.ground) return {edit::lowest_layer(set, bits, request.up), {}};
+    if (request.ground)
+        return {whole_ground(set, edit::lowest_layer(set, bits, request.up), request.up, control), {}};
     const double extent = request.camera.height / request.camera.fy;
     bits = without_support(set, std::move(bits), {seen.camera, seen.mask, extent, request.up, picture_depth},
                            settings, painter);
     auto parted = edit::without_parts_beside(set, bits, request.nature, request.up);
     if (parted != bits) sides.clear();  // its shape told it from what goes on beyond the box
-    return {std::move(parted), std::move(sides)};
+    auto part = boxed_part(set, middle_of(request), box_of(request.area), std::move(parted), control);
+    return {std::move(part.rows), std::move(sides), std::move(part.doubt)};
 }
 
 std::string cut_text(const CutOutThing& thing) {
-    if (thing.cut_sides.empty()) return {};
+    if (thing.cut_sides.empty()) return thing.part_doubt;
     return "the thing goes on beyond the box (" + thing.cut_sides +
            "), and the label may hold a part of something else; draw the box around the whole thing, or "
            "correct the label";

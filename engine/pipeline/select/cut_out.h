@@ -23,7 +23,7 @@ struct CutOutRequest {
     Vec3 up{0, -1, 0};                        // of the world: the other sides are looked at around it
     bool ground = false;                      // not what stands on it
     ThingNature nature = ThingNature::Other;  // of the thing that is meant
-    bool part = false;                        // a click means a part of what is linked there
+    bool part = false;                        // a part of what is linked there is meant
 };
 
 /// Box of --cut-out: "LEFT,TOP,RIGHT,BOTTOM", shares of the picture that `render` makes of the scene by
@@ -38,6 +38,7 @@ double azimuth_of_box(const std::string& text);
 struct CutOutThing {
     std::vector<std::uint8_t> rows;  // [N] 1 for the object, from all sides
     std::string cut_sides;           // sides of the box that cut through it ("above"); box_cut.h
+    std::string part_doubt = {};     // reason to look at the label of a part (point_out.h)
 };
 
 /// Cuts an object out of `set`. `segmenter` cuts it out of a picture of the view, prompted by the box around
@@ -46,7 +47,7 @@ struct CutOutThing {
 CutOutThing cut_out(const GaussianSet& set, const CutOutRequest& request, edit::Segmenter* segmenter,
                     const JobControl& control = {});
 
-/// Sentence about a box that cuts through the thing; empty where none does.
+/// Reason to look at the label: a box that cuts through the thing, or a part in doubt. Empty = none.
 std::string cut_text(const CutOutThing& thing);
 
 }  // namespace gse::pipeline

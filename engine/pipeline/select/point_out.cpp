@@ -14,6 +14,8 @@
 #include "engine/base/error.h"
 #include "engine/base/printable.h"
 #include "engine/edit/placement/ground_rows.h"
+#include "engine/evaluate/metrics.h"
+#include "engine/math/quantile.h"
 #include "engine/math/unproject.h"
 #include "engine/pipeline/select/named_picture.h"
 #include "engine/scene/framing.h"
@@ -23,6 +25,8 @@ namespace {
 
 constexpr float Shown = 0.5f;       // alpha of a pixel that shows something
 constexpr double Framed = 1.6;      // radii of a scene: height of the picture that shows it
+constexpr double SamePart = 0.5;    // IoU of a boxed part and of what grows from its middle
+constexpr double WholeBoxed = 0.9;  // IoU from which a box holds the whole thing
 constexpr double NearClick = 0.02;  // of the picture's height: a click that near to something is on it
 
 NamedPicture picture_of_click(const std::string& text) {
@@ -64,6 +68,32 @@ localize::GrownThing without_ground(const GaussianSet& set, localize::GrownThing
 bool means_part(const ClickRequest& request) {
     return request.part && !request.ground && request.nature != ThingNature::Vessel &&
            request.nature != ThingNature::Plant;
+}
+
+/// IoU of a box and of the bounds of a label's solid rows in the picture.
+double filled(const GaussianSet& set, const std::vector<std::uint8_t>& label, const Camera& camera,
+              const edit::BoxPrompt& box) {
+    constexpr float solid = 0;              // logit
+    constexpr double beside_bounds = 0.02;  // share of the rows at each side
+    std::vector<double> x, y;
+    for (std::size_t row = 0; row < set.size(); ++row) {
+        if (label[row] == 0 || !(set.opacity_logit()[row] > solid)) continue;
+        const auto* place = &set.position()[row * 3];
+        const Vec3 at = camera.to_camera({place[0], place[1], place[2]});
+        if (!(at[2] > 0)) continue;
+        x.push_back(camera.fx * at[0] / at[2] + camera.cx);
+        y.push_back(camera.fy * at[1] / at[2] + camera.cy);
+    }
+    if (x.empty()) return 0;
+    const edit::BoxPrompt bounds{nearest_quantile(x, beside_bounds), nearest_quantile(y, beside_bounds),
+                                 nearest_quantile(x, 1 - beside_bounds),
+                                 nearest_quantile(y, 1 - beside_bounds)};
+    const auto area = [](const edit::BoxPrompt& of) {
+        return std::max(0.0, of.x1 - of.x0) * std::max(0.0, of.y1 - of.y0);
+    };
+    const double both = area({std::max(box.x0, bounds.x0), std::max(box.y0, bounds.y0),
+                              std::min(box.x1, bounds.x1), std::min(box.y1, bounds.y1)});
+    return both / std::max(area(box) + area(bounds) - both, 1e-9);
 }
 
 void require_going(const JobControl& control) {
@@ -133,6 +163,23 @@ std::string part_doubt(const localize::GrownThing& thing, const ClickRequest& re
     if (thing.from_above || thing.from_thread) return {};
     return "the whole thing is labelled, for nothing parts what was clicked from the rest; put a box around "
            "the part, or correct the label";
+}
+
+BoxedPart boxed_part(const GaussianSet& set, const ClickRequest& middle, const edit::BoxPrompt& box,
+                     std::vector<std::uint8_t> cut, const JobControl& control) {
+    if (!means_part(middle)) return {std::move(cut), {}};
+    auto grown = thing_at(set, middle, control);
+    const double alike = evaluate::row_overlap(grown.rows, cut).iou;
+    if (alike < SamePart) {
+        const bool fits = filled(set, grown.rows, middle.camera, box) > filled(set, cut, middle.camera, box);
+        return {fits ? std::move(grown.rows) : std::move(cut),
+                "another part grows from the middle of the box than is cut out of it; look at the label, and "
+                "correct it where it is wrong"};
+    }
+    if (grown.from_whole || grown.from_above || grown.from_thread || alike < WholeBoxed)
+        return {std::move(cut), {}};
+    return {std::move(cut),
+            "the box holds all of what the part belongs to, and nothing parts the two; correct the label"};
 }
 
 std::string parted_text(const localize::GrownThing& thing) {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "engine/base/progress.h"
+#include "engine/edit/interfaces/interfaces.h"
 #include "engine/localize/grow_thing.h"
 #include "engine/pipeline/scene/scene_tools.h"
 #include "engine/scene/label_field.h"
@@ -39,6 +40,17 @@ localize::GrownThing largest_thing(const GaussianSet& set, const Vec3& up, const
 /// Reason to look at the label of a click that means a part: it may end elsewhere, or nothing parts it from
 /// the rest. Empty for a thing of its own.
 std::string part_doubt(const localize::GrownThing& thing, const ClickRequest& request);
+
+/// Rows [N] of a boxed part, and the reason to look at them; empty = none.
+struct BoxedPart {
+    std::vector<std::uint8_t> rows;
+    std::string doubt;
+};
+
+/// Part in a box, `cut` [N] out of it. Where another part grows from the middle of the box, that which fills
+/// the box better is taken. `middle`: a click there. Throws Error (Cancelled).
+BoxedPart boxed_part(const GaussianSet& set, const ClickRequest& middle, const edit::BoxPrompt& box,
+                     std::vector<std::uint8_t> cut, const JobControl& control = {});
 
 /// "the thing was parted from what it stands on", and so on; empty where nothing was cut.
 std::string parted_text(const localize::GrownThing& thing);

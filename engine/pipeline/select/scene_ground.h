@@ -14,4 +14,8 @@ namespace gse::pipeline {
 /// No row where there is none. Throws Error (Cancelled).
 std::vector<std::uint8_t> scene_ground(const GaussianSet& set, const Vec3& up, const JobControl& control);
 
+/// The flat of the scene where `label` [N] is most of it, else the label. Throws Error (Cancelled).
+std::vector<std::uint8_t> whole_ground(const GaussianSet& set, std::vector<std::uint8_t> label,
+                                       const Vec3& up, const JobControl& control);
+
 }  // namespace gse::pipeline

@@ -8,6 +8,7 @@
 #include "engine/base/error.h"
 #include "engine/base/random.h"
 #include "engine/pipeline/select/point_out.h"
+#include "engine/pipeline/select/scene_ground.h"
 #include "engine/pipeline/select/whole_thing.h"
 
 namespace point_out_test {
@@ -98,7 +99,7 @@ DOCTEST_TEST_CASE(
         return label;
     };
     constexpr double all = 1, none = -2;
-    for (const double height : {0.5, 0.55, 0.6}) {  // of 0.6: a sphere has equal rows at all heights
+    for (const double height : {0.5, 0.6}) {  // of 0.6: a sphere has equal rows at all heights
         const auto whole = whole_thing(scene.gaussians, labelled(height, none), orbit);
         DOCTEST_REQUIRE(!whole.empty());
         const auto [ball, table] = shares(whole);
@@ -108,6 +109,44 @@ DOCTEST_TEST_CASE(
     DOCTEST_CHECK(whole_thing(scene.gaussians, labelled(0.3, none), orbit).empty());
     DOCTEST_CHECK(whole_thing(scene.gaussians, labelled(all, -0.5), orbit).empty());
     DOCTEST_CHECK(whole_thing(scene.gaussians, labelled(-all, none), orbit).empty());
+}
+
+DOCTEST_TEST_CASE("a box around a part takes what fills it, and a box that holds the whole thing says so") {
+    const auto scene = ball_on_table();
+    const auto& position = scene.gaussians.position();
+    std::vector<std::uint8_t> ball(scene.gaussians.size(), 0), cap(ball);
+    for (std::size_t row = 0; row < BallRows; ++row) ball[row] = 1, cap[row] = position[row * 3 + 1] < -0.5f;
+    auto middle = on({0.4, -0.35, -0.25});
+    const auto bounds = [&](const Vec3& low, const Vec3& high) {
+        const auto first = on(low), last = on(high);
+        return edit::BoxPrompt{first.x, first.y, last.x, last.y};
+    };
+    const auto around_ball = bounds({0.1, -0.6, 0}, {0.7, 0, 0}),
+               around_cap = bounds({0.2, -0.6, 0}, {0.6, -0.5, 0});
+    DOCTEST_CHECK(boxed_part(scene.gaussians, middle, around_ball, cap).rows == cap);  // no part is meant
+    middle.part = true;
+    const auto [grown, another] = boxed_part(scene.gaussians, middle, around_ball, cap);
+    DOCTEST_CHECK(shares(grown).first > 0.95);
+    DOCTEST_CHECK(another.find("another part") != std::string::npos);
+    DOCTEST_CHECK(boxed_part(scene.gaussians, middle, around_cap, cap).rows == cap);
+    const auto [whole, all] = boxed_part(scene.gaussians, middle, around_ball, ball);
+    DOCTEST_CHECK(whole == ball);
+    DOCTEST_CHECK(all.find("holds all") != std::string::npos);
+}
+
+DOCTEST_TEST_CASE("a label that is most of the ground has the whole of it") {
+    const auto scene = ball_on_table();
+    const auto labelled = [&](float along) {
+        std::vector<std::uint8_t> label(scene.gaussians.size(), 0);
+        for (auto row = BallRows; row < label.size(); ++row)
+            label[row] = scene.gaussians.position()[row * 3] < along;
+        return label;
+    };
+    const Vec3 up{0, -1, 0};
+    const auto [ball, table] = shares(whole_ground(scene.gaussians, labelled(0.5f), up, {}));
+    DOCTEST_CHECK(ball < 0.12);
+    DOCTEST_CHECK(table > 0.95);
+    DOCTEST_CHECK(whole_ground(scene.gaussians, labelled(-0.5f), up, {}) == labelled(-0.5f));
 }
 
 DOCTEST_TEST_CASE("a click beside everything takes nothing; the largest thing needs none") {
