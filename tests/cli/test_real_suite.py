@@ -141,17 +141,26 @@ class RealSuites(ProgramTest):
         self.assertGreater(run["opacity"]["recall"], 0.9)
         self.assertIn("by click, unknown nouns: 1 runs", process.stdout)
 
-    def test_a_word_finds_all_of_a_scan_where_it_finds_most(self):
+    def found_by_word(self, task):
+        """The run of a task of the suite of scans."""
         suite = SHARED / "data/real/suite.json"
         if not suite.exists():
             self.skipTest(f"[skip] {suite} is not there")
-        process = run_laboratory("-q", "eval", "--real", suite, "--real-modes", "word", "--real-only",
-                                 "horse_statue.white", "--quality", "draft", "--out", self.folder / "out")
+        process = run_laboratory("-q", "eval", "--real", suite, "--real-modes", "word", "--real-only", task,
+                                 "--quality", "draft", "--out", self.folder / "out")
         self.assertEqual(process.returncode, 0, process.stderr)
         task, = json.loads((self.folder / "out/eval.json").read_text())["tasks"]
-        found = task["runs"]["word"]["opacity"]
+        return task["runs"]["word"]
+
+    def test_a_word_finds_all_of_a_scan_where_it_finds_most(self):
+        found = self.found_by_word("horse_statue.white")["opacity"]
         self.assertGreater(found["recall"], 0.97)
         self.assertGreater(found["precision"], 0.97)
+
+    def test_what_is_worn_is_found_whole_and_asks_for_a_look(self):
+        run = self.found_by_word("luigi.red_hat")
+        self.assertGreater(run["opacity"]["iou"], 0.7)
+        self.assertEqual(run["level"], "amber")
 
     def test_ctrl_c_keeps_the_tasks_that_are_done(self):
         arguments = [LABORATORY, "eval", "--real", self.suite, "--real-root", self.root, "--out",

@@ -137,7 +137,9 @@ public:
     /// True where the source was known beforehand (EditJobInput::found).
     bool knew_source() const { return !hints_.found.empty(); }
     /// Reason to check the label that a box gave (cut_text()); empty = none is known.
-    const std::string& label_doubt() const { return hints_.label_doubt; }
+    const std::string& label_doubt() const {
+        return hints_.label_doubt.empty() && located_ ? located_->label_doubt : hints_.label_doubt;
+    }
     /// True where the server may be asked where a thing is.
     bool server_searches() const { return server_searches_; }
     /// True when the server's changes told where the thing is.

@@ -119,8 +119,8 @@ bool shows_finding(const Located& located) {
 
 /// Note that an uncertain finding is seen in its views only.
 Located finished(RunContext& context, Located located) {
+    if (shows_finding(located)) located = completed_by_shape(context, std::move(located));
     auto& result = located.result;
-    if (shows_finding(located)) result = completed_by_shape(context, located);
     if (shows_finding(located))
         edit::take_second_look(result, edit::second_look(finding_of(context, located), context.second_look()),
                                located.recipe.request.least_confidence);

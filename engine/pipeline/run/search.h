@@ -40,6 +40,7 @@ struct Located {
     std::string key;                        // of all that it follows from, beside the scene and the model
     std::vector<std::uint8_t> within = {};  // [N] the thing, where a part of it was looked for
     bool by_differences = false;            // the server's changes told where it is
+    std::string label_doubt = {};           // reason to check the label that was found; empty = none
 
     bool found() const { return result.problem == edit::SearchProblem::None; }
     bool by_label() const { return !label.empty(); }

@@ -138,34 +138,40 @@ Located locate_part(RunContext& context, Located located, const JobControl& cont
     return located;
 }
 
-edit::LocateResult completed_by_shape(RunContext& context, const Located& located) {
-    auto result = located.result;
+Located completed_by_shape(RunContext& context, Located located) {
+    auto& result = located.result;
     const auto tools = context.second_look();
     if (tools.recognition == nullptr || !located.within.empty() || language::names_ground(result.word) ||
-        language::has_usual_place(result.word) || result.found.rule.nature == ThingNature::Vessel ||
+        result.found.rule.nature == ThingNature::Vessel ||
         edit::encoder_knows(finding_of(context, located), *tools.recognition))
-        return result;
-    const auto whole = whole_thing(context.drawn(), *result.label.bits, located.views.orbit);
+        return located;
+    const bool worn = language::has_usual_place(result.word);
+    const auto before = result.label;
+    const auto whole = whole_thing(context.drawn(), *before.bits, located.views.orbit, worn);
+    if (whole.empty()) return located;
     auto& probability = result.found.field.probability;
-    if (whole.empty()) return result;
     std::vector<float> sure;
     for (std::size_t row = 0; row < whole.size(); ++row)
-        if ((*result.label.bits)[row] != 0) sure.push_back(probability[row]);
+        if ((*before.bits)[row] != 0) sure.push_back(probability[row]);
     const float usual = upper_median(sure);
     for (std::size_t row = 0; row < whole.size(); ++row)
-        if (whole[row] != 0 && (*result.label.bits)[row] == 0 &&
-            (result.beside.empty() || result.beside[row] == 0))
+        if (whole[row] != 0 && (*before.bits)[row] == 0 && (result.beside.empty() || result.beside[row] == 0))
             probability[row] = std::max(probability[row], usual);
-    auto decided = edit::decide_label(result.label.name, context.drawn(), result.found,
+    auto decided = edit::decide_label(before.name, context.drawn(), result.found,
                                       located.recipe.request.label_threshold, tools.threads);
     const auto labelled = [](const Label& label) {
         return std::count(label.bits->begin(), label.bits->end(), std::uint8_t{1});
     };
-    log::info("{} splats were labelled as \"{}\", and with its shape {}", labelled(result.label), result.word,
+    log::info("{} splats were labelled as \"{}\", and with its shape {}", labelled(before), result.word,
               labelled(decided.label));
     result.label = std::move(decided.label);
     add_to(result.beside, decided.beside);
-    return result;
+    if (!worn) return located;
+    located.label_doubt =
+        "the words found a part of it, and its shape the rest; look at the label, and correct it where it is "
+        "wrong";
+    log::warning("\"{}\": {}", result.word, located.label_doubt);
+    return located;
 }
 
 Located located_everywhere(RunContext& context, const CheckedRecipe& recipe, const Views& views,

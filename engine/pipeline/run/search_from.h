@@ -38,7 +38,7 @@ Located located_everywhere(RunContext& context, const CheckedRecipe& recipe, con
                            const JobControl& control);
 
 /// The finding with what the views left out of its thing, by the thing's shape (whole_thing.h): scans alone,
-/// whose pictures are strange to the networks.
-edit::LocateResult completed_by_shape(RunContext& context, const Located& located);
+/// whose pictures are strange to the networks. Something worn is in doubt then.
+Located completed_by_shape(RunContext& context, Located located);
 
 }  // namespace gse::pipeline

@@ -17,6 +17,8 @@ constexpr double Steep = 0.5;           // cosine between up and an axis that it
 constexpr double Solid = 0.5;           // opacity of a row to begin from
 constexpr double LabelWithin = 0.9;     // of the label's opacity, that lies in the grown thing
 constexpr double ThingLabelled = 0.75;  // of the grown thing's opacity, that the label holds
+constexpr double PartLabelled = 0.4;    // of a grown part's
+constexpr double WearerSize = 3;        // of what it wears: a hat is a third of a figure
 
 /// [N] 0 for rows that are not usable.
 std::vector<double> opacities(const GaussianSet& set) {
@@ -62,18 +64,19 @@ std::vector<Vec3> seeds_of(const std::vector<Vec3>& places, const Vec3& up) {
 }  // namespace
 
 std::vector<std::uint8_t> whole_thing(const GaussianSet& set, const std::vector<std::uint8_t>& label,
-                                      const OrbitParameters& orbit) {
+                                      const OrbitParameters& orbit, bool part) {
     const auto rows = set.spans();
     const auto opacity = opacities(set);
     const auto framed = localize::focus_orbit(set, label, orbit);
     localize::GrowRequest grow;
-    grow.up = orbit.up;
-    grow.extent = 2 * framed.radius * std::tan(framed.fov_x / 2);
+    grow.up = orbit.up, grow.part = part;
+    grow.extent = (part ? WearerSize : 1) * 2 * framed.radius * std::tan(framed.fov_x / 2);
     for (const Vec3& seed : seeds_of(places_of(rows, opacity, label), orbit.up)) {
         grow.seed = seed;
         auto thing = localize::grow_thing(rows, grow).rows;
         const auto overlap = evaluate::row_overlap(label, thing, opacity);
-        if (overlap.precision >= LabelWithin && overlap.recall >= ThingLabelled) return thing;
+        if (overlap.precision >= LabelWithin && overlap.recall >= (part ? PartLabelled : ThingLabelled))
+            return thing;
     }
     return {};
 }
