@@ -67,9 +67,11 @@ DOCTEST_TEST_CASE("Cancel of a drawing with enough views asks first, and ends th
     if (!can_draw()) return;
     for (const bool fits : {true, false}) {
         DOCTEST_CAPTURE(fits);
-        Ended edit({{"draw_s", "0.3"}});
-        DOCTEST_REQUIRE(edit.session.until(
-            [&] { return edit.model.job.stage.find("view 6 of 8") != std::string::npos; }));
+        Ended edit(remote::Knobs{{"draw_s", "0.6"}});
+        DOCTEST_REQUIRE(edit.session.until([&] {
+            return edit.model.job.stage.find("view 6 of 8") != std::string::npos &&
+                   edit.asked.server.asked("/img_gen").size() == 6;
+        }));
         edit.session.app.run(command::Cancel{});
         DOCTEST_REQUIRE(edit.is_asked());
         DOCTEST_REQUIRE(edit.session.until([&] { return !edit.asked.server.asked("/cancel").empty(); }));
@@ -84,7 +86,7 @@ DOCTEST_TEST_CASE("Cancel of a drawing with enough views asks first, and ends th
 
 DOCTEST_TEST_CASE("a view that takes much longer than those before it is told, in Progress and in the log") {
     if (!can_draw()) return;
-    Ended edit({{"draw_s", "0.2"}});
+    Ended edit(remote::Knobs{{"draw_s", "0.2"}});
     DOCTEST_REQUIRE(
         edit.session.until([&] { return edit.model.job.stage.find("view 4 of 8") != std::string::npos; }));
     edit.asked.server.set({{"draw_s", "600"}});

@@ -210,13 +210,13 @@ DOCTEST_TEST_CASE("slow: nothing is said of the first pictures, of short waits, 
     times.begin();
     now += 1000;
     DOCTEST_CHECK_FALSE(times.usual_of_slow());
-    drawn_in(0.1);
-    drawn_in(0.1);
+    drawn_in(0.125);
+    drawn_in(0.125);
     times.begin();
-    now += 1;  // ten times as long, and not worth a word
+    now += 1;  // eight times as long, and not worth a word
     DOCTEST_CHECK_FALSE(times.usual_of_slow());
     now += 1.5;
-    DOCTEST_CHECK(times.usual_of_slow() == 0.1);
+    DOCTEST_CHECK(times.usual_of_slow() == 0.125);
 }
 
 /// Draws golden, but for the views of two calls, which come in blue unless a golden key is shown.
