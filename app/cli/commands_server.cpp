@@ -2,6 +2,8 @@
 #include <cmath>
 #include <memory>
 
+#include <fmt/ranges.h>
+
 #include "app/cli/cli.h"
 #include "app/cli/server_options.h"
 #include "app/engine_names.h"
@@ -9,6 +11,7 @@
 #include "engine/base/print.h"
 #include "engine/base/printable.h"
 #include "engine/io/image/image_file.h"
+#include "engine/pipeline/models/remote_loader.h"
 #include "engine/pipeline/models/view_server.h"
 #include "engine/remote/api/server_kind.h"
 #include "engine/remote/views/remote_view_editor.h"
@@ -21,6 +24,7 @@ struct ServerOptions {
     std::filesystem::path draw;
     std::string prompt = "a red ball";
     bool json = false;
+    bool find = false;
 };
 
 /// Order for a grey ball on a plain ground, with the ball's mask.
@@ -46,7 +50,7 @@ std::string draw_test(const ServerOptions& options, remote::ImageServer& server,
     order.prompt = options.prompt;
     Mask mask(views.side(), views.side());
     for (std::size_t i = 0; i < mask.data.size(); ++i) mask.data[i] = order.mask.data[i] > 0 ? 1 : 0;
-    if (!views.facts().takes_mask) order.mask = {};
+    remote::suit_to_server(order, views.facts(), views.family());
     auto drawn = server.redraw(order, job).picture;
     write_png(options.draw, drawn);
     remote::ViewFrame frame;
@@ -77,7 +81,31 @@ void print_facts(const ViewServer& views) {
     for (const auto& note : facts.notes) print("note        {}\n", printable(note));
 }
 
+void print_servers_here(const ServerOptions& options, const JobControl& job) {
+    const auto servers = remote_api().find_here(remote::UsualPorts, job);
+    if (options.json) {
+        auto list = nlohmann::ordered_json::array();
+        for (const auto& one : servers)
+            list.push_back(
+                {{"url", one.url}, {"product", one.product}, {"model", one.model}, {"problem", one.problem}});
+        return print_json(list);
+    }
+    if (servers.empty())
+        print("No program listens on the usual ports of image servers here ({}).\n",
+              fmt::join(remote::UsualPorts, ", "));
+    for (const auto& one : servers)
+        print("{}  {}\n", one.url,
+              one.problem.empty() ? fmt::format("{}, model {}", one.product, known(one.model)) : one.problem);
+}
+
 void run_server_command(ServerOptions& options, const CommandContext& context) {
+    if (options.find == !options.settings.url.empty())
+        throw Error(
+            ErrorCode::InvalidArgument,
+            options.find ? "--find looks on this machine, and takes no address" : "no server is named",
+            options.find ? "leave one of them away"
+                         : "give its address, or --find to look for servers on this machine");
+    if (options.find) return print_servers_here(options, context.job());
     const auto job = context.job();
     std::shared_ptr<remote::ImageServer> server = connect_server(options.settings, job);
     const ViewServer views(server, options.settings, nullptr, job, {},
@@ -108,7 +136,9 @@ void add_server_command(CLI::App& app, CommandContext& context) {
     add_server_options(*command, options->settings);
     auto* address = command->get_option("--server");
     command->remove_option(address);
-    command->add_option("url", options->settings.url, "Address of the server")->required();
+    command->add_option("url", options->settings.url, "Address of the server");
+    command->add_flag("--find", options->find,
+                      "List the image servers on this machine, by their usual ports; no picture is sent");
     command->add_option("--draw", options->draw,
                         "Have a test picture drawn, a ball on the ground, and write it to this PNG");
     command->add_option("--prompt", options->prompt, "Sentence for the test picture")->capture_default_str();

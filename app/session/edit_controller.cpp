@@ -266,6 +266,22 @@ template <> void EditController::take(edit_news::State&& news) {
 
 template <> void EditController::take(edit_news::Step&& news) { live_.losses.push_back(news.point); }
 
+template <> void EditController::take(edit_news::Partial&& news) {
+    const auto& round = news.round;
+    const bool ended = round.reason.empty();  // by the artist
+    const auto roads = live_.roads;
+    const auto go_on = [roads] { roads->fits.push(true); };
+    const auto stop = [this, roads, ended] {
+        if (ended && runs() && live_.roads == roads) workspace_.jobs->work.cancel();
+        roads->fits.push(false);
+    };
+    workspace_.notices.ask(
+        "Fit the scene to a part of the views?",
+        fmt::format("{}{}. Views that are missing are left out; Redo in Targets has one drawn.",
+                    ended ? "" : round.reason + ". ", remote::partial_text(round)),
+        {{{fmt::format("Fit with {} of {} views", round.drawn, round.wanted)}, go_on}, {{"Stop"}, stop}});
+}
+
 template <> void EditController::take(edit_news::Use&& news) { workspace_.cost = cost_of(news.use); }
 
 void EditController::refresh() {
@@ -552,7 +568,11 @@ std::function<DocumentState()> EditController::kept_state() const {
 
 template <> void EditController::on(const command::Pause& one) { workspace_.jobs->work.pause(one.paused); }
 
-template <> void EditController::on(const command::Cancel&) { workspace_.jobs->work.cancel(); }
+/// A drawing that has enough views is ended by itself: the edit asks whether it goes on with those.
+template <> void EditController::on(const command::Cancel&) {
+    if (runs() && live_.roads->drawing->request()) return;
+    workspace_.jobs->work.cancel();
+}
 
 template <> void EditController::on(const command::OrderTarget& one) {
     if (!runs())

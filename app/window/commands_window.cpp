@@ -52,6 +52,18 @@ nlohmann::ordered_json job_state(const JobStatus& job) {
             {"step", job.step},       {"outcome", job.outcome}, {"error", job.error}};
 }
 
+nlohmann::ordered_json server_state(const ui::ServerView& server) {
+    auto here = nlohmann::ordered_json::array();
+    for (const auto& one : server.here) here.push_back({{"url", one.url}, {"usable", one.usable}});
+    return {{"on", server.on},
+            {"facts", server.facts.size()},
+            {"problem", server.problem},
+            {"lora", server.choice.lora},
+            {"url", server.choice.url},
+            {"looked", server.looked},
+            {"here", here}};
+}
+
 nlohmann::ordered_json targets_state(const ui::ViewModel& model) {
     nlohmann::ordered_json state = {{"rounds", model.target_rounds.size()},
                                     {"waits", model.targets_wait},
@@ -220,10 +232,7 @@ private:
         state["lost_scene"] = model.lost.scene;
         state["export_scene"] = model.exports.scene_path;
         state["question"] = model.question.title;
-        state["server"] = {{"on", model.server.on},
-                           {"facts", model.server.facts.size()},
-                           {"problem", model.server.problem},
-                           {"lora", model.server.choice.lora}};
+        state["server"] = server_state(model.server);
         state["labelled"] = model.labelled;
         state["labels"] = labels_state(model);
         state["splats"] = app_.document().empty() ? 0 : app_.document().state().current.size();

@@ -10,6 +10,9 @@ public:
     std::unique_ptr<ImageServer> connect(const ServerAddress& address, const JobControl& job) override {
         return remote::connect(address, job);
     }
+    std::vector<FoundServer> find_here(std::span<const int> ports, const JobControl& job) override {
+        return remote::find_here(ports, job);
+    }
     std::string keep_credentials(const std::string& url) override { return remote::keep_credentials(url); }
     void forget_credentials(const std::string& url) override { remote::forget_credentials(url); }
 };

@@ -28,10 +28,14 @@ WHITE = .5 / .28209479177387814   # coefficient of degree 0
 class Server:
     """The stand-in in a process of its own."""
 
-    def __init__(self, flavour):
-        program = [sys.executable, SUPPORT / "stand_in_server.py", "--flavour", flavour]
-        self.process = subprocess.Popen(program, stdout=subprocess.PIPE, text=True)
-        self.port = int("".join(letter for letter in self.process.stdout.readline() if letter.isdigit()))
+    def __init__(self, flavour, port=0):
+        program = [sys.executable, SUPPORT / "stand_in_server.py", "--flavour", flavour, "--port", str(port)]
+        self.process = subprocess.Popen(program, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        line = self.process.stdout.readline()
+        if not line.startswith("port "):   # somebody else has the port
+            self.close()
+            raise OSError(f"port {port} is taken")
+        self.port = int(line.split()[1])
         self.url = f"http://127.0.0.1:{self.port}"
 
     def ask(self, place, **values):
@@ -43,6 +47,16 @@ class Server:
         places = ("/img_gen", "/img2img", "/edits", "/prompt")
         return [entry for entry in self.ask("log")
                 if entry["method"] == "POST" and entry["path"].endswith(places)]
+
+    @classmethod
+    def at_usual_port(cls, flavour):
+        """On the first usual port of image servers that is free; None where none is."""
+        for port in (7860, 8188, 1234, 5001, 8000):
+            try:
+                return cls(flavour, port)
+            except OSError:
+                pass
+        return None
 
     def close(self):
         self.process.kill()
@@ -113,7 +127,7 @@ class Servers(ProgramTest):
     def test_the_scene_becomes_what_the_server_draws_over_every_protocol(self):
         for kind, flavour, family, knobs in (("sdcpp", "sdserver", "sd15", {"model": "sd-v1-5"}),
                                              ("webui", "a1111", "sd15", {}),
-                                             ("openai", "vllm", "editor", {}),
+                                             ("openai", "vllm", "editor", {"edits": "red"}),
                                              ("comfy", "comfy", "sd15", {})):
             with self.subTest(kind):
                 server = self.server(flavour, **knobs)
@@ -359,6 +373,63 @@ class Servers(ProgramTest):
         self.assertEqual(second.returncode, 0, second.stderr)
         report = json.loads((self.folder / "second/report.json").read_text())
         self.assertGreater(report["server"]["cached_requests"], 0)
+
+    def test_a_scene_is_fitted_to_the_views_that_came_before_a_server_failed_where_that_is_wanted(self):
+        server = self.server(fault="html_500", at="draw", after=5)
+        self.set("GSE_CACHE_DIR", self.folder / "cache")
+        views = ("--edited-views", 16)   # half of them in draft quality
+        out = self.folder / "out"
+        first = self.edit(out, "--server", server.url, *views)
+        self.assertNotEqual(first.returncode, 0)
+        self.assert_one_sentence(first, "5 of 8 views are drawn", "--server-fit-partial")
+        self.assertFalse((out / "scene.ply").exists())
+        second = self.edit(out, "--server", server.url, *views, "--server-fit-partial")
+        self.assertEqual(second.returncode, 0, second.stderr)
+        self.assertIn("5 of 8 views are drawn; missing: ", second.stderr)
+        report = json.loads((out / "report.json").read_text())
+        self.assertEqual(len(report["missing_views"]), 3)
+        rows = report["targets"][0]["views"]
+        self.assertEqual([row["view"] for row in rows if row.get("missing")], report["missing_views"])
+        self.assertEqual(sum(row["dropped"] for row in rows), 3)
+        self.assertEqual(report["changed_outside_label"], 0)
+        self.assertEqual(report["server"]["cached_requests"], 5)
+        self.assertTrue(json.loads((out / "recipe.json").read_text())["server"]["fit_partial"])
+        server.ask("set", fault="none")
+        whole = self.edit(self.folder / "whole", "--server", server.url, *views)
+        self.assertEqual(whole.returncode, 0, whole.stderr)
+        report = json.loads((self.folder / "whole/report.json").read_text())
+        self.assertNotIn("missing_views", report)
+        self.assertEqual(report["server"]["requests"], 3)
+
+    def test_too_few_views_are_fitted_to_by_nobody(self):
+        server = self.server(fault="html_500", at="draw", after=4)
+        process = self.edit(self.folder / "out", "--server", server.url, "--edited-views", 16,
+                            "--server-fit-partial")
+        self.assertNotEqual(process.returncode, 0)
+        self.assertNotIn("views are drawn", process.stderr)
+
+    def test_servers_on_this_machine_are_found_by_looking_alone(self):
+        server = Server.at_usual_port("comfy")
+        if server is None:
+            self.skipTest("no usual port of image servers is free")
+        self.addCleanup(server.close)
+        self.set("GSEDITPRO_SERVER_TOKEN", "geheim")
+        found = run("-q", "server", "--find", "--json")
+        self.assertEqual(found.returncode, 0, found.stderr)
+        ours = [one for one in json.loads(found.stdout) if one["url"] == server.url]
+        self.assertEqual(len(ours), 1, found.stdout)
+        self.assertEqual(ours[0]["product"], "ComfyUI")
+        self.assertEqual(ours[0]["problem"], "")
+        for entry in server.ask("log"):
+            self.assertEqual(entry["method"], "GET")
+            self.assertEqual(entry["secret"], "")
+        said = run("-q", "server", "--find")
+        self.assertIn(f"{server.url}  ComfyUI", said.stdout)
+        server.ask("reset", password="basic mira:geheim")
+        locked = json.loads(run("-q", "server", "--find", "--json").stdout)
+        self.assertIn("password", next(one["problem"] for one in locked if one["url"] == server.url))
+        self.assert_one_sentence(run("server", "--find", server.url), "takes no address")
+        self.assert_one_sentence(run("server"), "no server is named", "--find")
 
     def test_a_server_that_draws_something_else_is_found_out(self):
         server = self.server("a1111", fault="unrelated")

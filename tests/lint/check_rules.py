@@ -78,8 +78,9 @@ SUB_ROOMS = {
         "http": {"api", "picture"},
         "workflow": {"api"},
         "protocols": {"api", "http", "picture", "workflow"},
+        "drawing": {"api"},
         "spread": {"api"},
-        "views": {"api", "spread"},
+        "views": {"api", "drawing", "spread"},
     },
     "laboratory": {
         "synth": {"synth/objects"},

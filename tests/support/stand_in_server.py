@@ -50,6 +50,7 @@ class World:
         self.most_side = 0   # px that its memory does for; 0 = any
         self.edits = ""   # "red": what is red is edited where no mask says what
         self.no_loras = 0    # 1: a WebUI has no list of LoRAs
+        self.old_features = 0   # 1: sd-server tells its features as older builds do, and takes no references
         self.password, self.model, self.prefix = "", "stand-in", ""
         self.queue_limit, self.new_comfy = 64, 0
         self.jobs, self.log, self.uploads, self.tasks = {}, [], {}, {}
@@ -406,13 +407,15 @@ class Handler(BaseHTTPRequestHandler):
     def sdcpp(self, method, path, value):
         world = self.world
         if path == "/sdcpp/v1/capabilities":
+            features = {"ref_images": not world.old_features, "mask_image": True, "cancel_queued": True,
+                        "cancel_generating": False}
+            told = {"features": features} if world.old_features else \
+                {"features_by_mode": {"img_gen": features}}
             return self.send_json({
                 "model": {"name": world.model, "stem": world.model, "path": "/models/x"},
                 "samplers": ["euler", "euler_a"], "schedulers": ["discrete", "karras"],
                 "loras": [{"name": "bronze", "path": "bronze.safetensors"}],
-                "limits": {"max_queue_size": world.queue_limit},
-                "features_by_mode": {"img_gen": {"ref_images": True, "mask_image": True,
-                                                 "cancel_queued": True, "cancel_generating": False}}})
+                "limits": {"max_queue_size": world.queue_limit}, **told})
         if method == "POST" and path == "/sdcpp/v1/img_gen":
             return self.submit(value)
         parts = path.split("/")

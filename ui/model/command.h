@@ -325,6 +325,8 @@ struct KeepServerPassword {
 };
 /// Asks it what it is. No picture is sent.
 struct TestServer {};
+/// Looks for image servers on this machine.
+struct FindServers {};
 /// Has it draw the views of edits, or no longer.
 struct UseServer {
     bool on = true;
@@ -406,7 +408,7 @@ using ModelCommand = std::variant<command::SetModelSettings, command::OpenModel,
                                   command::AddLora, command::SetLoraStrength, command::RemoveLora,
                                   command::ChooseSegmenter, command::SetCacheMb, command::ClearCache>;
 using ServerCommand = std::variant<command::SetServer, command::KeepServerPassword, command::TestServer,
-                                   command::UseServer, command::ForgetServer>;
+                                   command::FindServers, command::UseServer, command::ForgetServer>;
 using ExportCommand = std::variant<command::SetExports, command::ExportPicture, command::ExportTurntable,
                                    command::ExportScene, command::ExportViewpoints, command::AddCameraKey,
                                    command::DeleteCameraKey, command::ExportCameraPath>;

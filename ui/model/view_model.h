@@ -265,6 +265,7 @@ struct TargetView {
     int attempt = 0;       // how often it was redrawn anew
     bool dropped = false;  // the fit does not use it
     bool ordered = false;  // something was said about it that is not done yet
+    bool missing = false;  // it was never drawn
 };
 
 /// The redrawn views of a round.
@@ -475,6 +476,15 @@ struct ServerView {
     remote::LoraNames lora_names = remote::LoraNames::Listed;
     std::vector<std::string> families{"auto"};  // to choose from
     std::string problem;  // why it cannot be used, with the remedy; empty = none is known
+    int side_step = 64;   // px: sides of the family's pictures are multiples
+    /// Program on a port of this machine.
+    struct Here {
+        std::string url, text;
+        bool usable = false;
+    };
+    bool looking = false;    // for servers on this machine
+    bool looked = false;     // the list is of a look that ended
+    std::vector<Here> here;  // to choose from
 };
 
 /// Picture that the server draws now, as far as it is.

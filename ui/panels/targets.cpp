@@ -88,7 +88,8 @@ std::string state_text(const Context& context, const TargetView& target) {
     std::string text = target.name;
     if (!own_picture_of(context.model.server.choice, target.name).empty()) text += ", yours next";
     if (target.attempt > 0) text += ", redrawn";
-    if (target.dropped) text += ", dropped";
+    if (target.missing) text += ", missing";
+    else if (target.dropped) text += ", dropped";
     return text;
 }
 
@@ -106,7 +107,9 @@ void draw_choices(Context& context, const TargetRound& round, const TargetView& 
     if (target.dropped) {
         if (button(context, {.name = name + ".accept",
                              .text = "Accept",
-                             .why_off = why_not_now,
+                             .why_off = target.missing && why_not_now.empty()
+                                            ? std::string_view("Nothing was drawn of it: Redo has it drawn")
+                                            : why_not_now,
                              .tooltip = "The fit uses it again"}))
             order(TargetChoice::Accept);
     } else if (button(context, {.name = name + ".drop",
@@ -231,7 +234,10 @@ std::string summary(const TargetRound& round) {
                                        [](const TargetView& target) { return target.dropped; });
     std::string text =
         fmt::format("Round {} of {}: {} views redrawn", round.round + 1, round.rounds, round.targets.size());
-    if (dropped > 0) text += fmt::format(", {} dropped", dropped);
+    const auto missing = std::count_if(round.targets.begin(), round.targets.end(),
+                                       [](const TargetView& target) { return target.missing; });
+    if (dropped > missing) text += fmt::format(", {} dropped", dropped - missing);
+    if (missing > 0) text += fmt::format(", {} missing", missing);
     text += ". Left the scene, right what it is fitted to.";
     if (!round.sentence.empty())
         text += fmt::format(" Your sentence names no colour: drawn as \"{}\".", round.sentence);

@@ -13,6 +13,7 @@
 #include "engine/base/log.h"
 #include "engine/edit/request/unchecked_request.h"
 #include "engine/pipeline/models/neural_loader.h"
+#include "engine/pipeline/models/view_server.h"
 #include "engine/pipeline/recipe/recipe.h"
 #include "engine/pipeline/run/preview_check.h"
 #include "engine/pipeline/steps/step_judgement.h"
@@ -64,9 +65,10 @@ public:
         ui::TargetRound round{sheet.round, sheet.rounds, {}, sheet.sentence, sheet.warnings};
         for (const auto& target : sheet.views) {
             const View& view = job_.views()[target.view];
-            round.targets.push_back(
-                {target.view, view.name.empty() ? fmt::format("view {}", target.view) : view.name,
-                 target.before, target.after, view.camera, target.attempt, target.dropped});
+            round.targets.push_back({target.view,
+                                     view.name.empty() ? fmt::format("view {}", target.view) : view.name,
+                                     target.before, target.after, view.camera, target.attempt, target.dropped,
+                                     false, target.missing});
         }
         tell(edit_news::Targets{std::move(round), waits_});
     }
@@ -89,6 +91,14 @@ public:
         return orders;
     }
 
+    /// Asks the artist whether the scene is fitted to a part of the views; waits for the answer.
+    bool fits(const remote::PartialRound& round) {
+        roads_.fits.take();  // of a question that nobody waits for any more
+        tell(edit_news::Partial{round});
+        job_.control().report("waiting for your answer about the missing views", 0, 0);
+        return roads_.fits.wait(job_.control().stop).value_or(false);
+    }
+
 private:
     const EditJob& job_;
     neural::NetworkUse before_;
@@ -96,6 +106,24 @@ private:
     bool reviews_ = false;  // every round
     bool waits_ = false;    // this round
     int round_ = -1;
+};
+
+/// Has the artist asked about rounds of a server that end early, as long as this lives.
+class PartialAsking {
+public:
+    PartialAsking(ViewServer* server, Teller& teller, EditRoads& roads) : server_(server) {
+        if (server_ != nullptr)
+            server_->use_partial_rounds(
+                {[&teller](const remote::PartialRound& round) { return teller.fits(round); }, roads.drawing});
+    }
+    ~PartialAsking() {
+        if (server_ != nullptr) server_->use_partial_rounds({});
+    }
+    PartialAsking(const PartialAsking&) = delete;
+    PartialAsking& operator=(const PartialAsking&) = delete;
+
+private:
+    ViewServer* server_;
 };
 
 /// Shows the model's drawing of a few views before the loop.
@@ -137,6 +165,7 @@ void run_located(MeasuredRun& run, const EditStart& start, Teller& teller, EditR
     if (!run.attention.empty()) teller.tell(edit_news::Found{run.job, run.attention, label.empty()});
     edit::require_found(job.located());
     if (start.shows_preview) show_preview(job, teller);
+    const PartialAsking asking(job.shared_server().get(), teller, roads);
     job.run(observer_of(start, teller, roads, adds));
     if (!edit::is_drawn(job.located().mode))
         teller.tell(edit_news::Preview{{{}, "Nothing was drawn: look at the place from all sides.", false}});

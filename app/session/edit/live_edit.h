@@ -16,6 +16,7 @@
 #include "engine/base/shared_queue.h"
 #include "engine/neural/api/network_use.h"
 #include "engine/pipeline/run/edit_job.h"
+#include "engine/remote/drawing/partial_round.h"
 #include "ui/model/view_model.h"
 
 namespace gse::app {
@@ -53,6 +54,10 @@ struct State {
 struct Step {
     ui::LossPoint point;
 };
+/// The drawing ended early, and the edit waits for an answer.
+struct Partial {
+    remote::PartialRound round;
+};
 /// Passes of the networks since the edit began.
 struct Use {
     neural::NetworkUse use;
@@ -61,7 +66,8 @@ struct Use {
 }  // namespace edit_news
 
 using EditNews = std::variant<edit_news::Located, edit_news::Found, edit_news::Preview, edit_news::Targets,
-                              edit_news::OrdersTaken, edit_news::State, edit_news::Step, edit_news::Use>;
+                              edit_news::OrdersTaken, edit_news::State, edit_news::Step, edit_news::Partial,
+                              edit_news::Use>;
 
 /// Roads between the edit's thread and the window.
 struct EditRoads {
@@ -71,6 +77,8 @@ struct EditRoads {
     SharedQueue<EditNews> news;                // to the window
     SharedQueue<Word> words;                   // to the edit
     Mailbox<std::vector<std::uint8_t>> label;  // corrected by the artist, to the edit
+    SharedQueue<bool> fits;                    // answers to edit_news::Partial
+    std::shared_ptr<remote::DrawingStop> drawing = std::make_shared<remote::DrawingStop>();
 };
 
 /// Inputs of an edit beside its job.

@@ -105,7 +105,8 @@ std::string ServerController::consent_key() const {
 
 std::string ServerController::told(const edit::EditRequest& request) const {
     const auto url = remote::parse_server_url(settings_.url).url;
-    const int side = view_.usual.side > 0 ? remote::sent_side(settings_.side, view_.usual.side) : 0;
+    const int side =
+        view_.usual.side > 0 ? remote::sent_side(settings_.side, view_.usual.side, view_.side_step) : 0;
     const auto size = side > 0 ? fmt::format(", {0} x {0} pixels", side) : std::string();
     return fmt::format(
         "{} pictures of your scene in each round{}, their masks{} and the sentence \"{}\" go to "
@@ -198,7 +199,7 @@ void ServerController::settings_from_json(const nlohmann::json& json) {
 void ServerController::show(ui::ServerPart& model) const {
     model.server = view_;
     model.server.choice = settings_;
-    if (!view_.facts.empty()) model.server.facts.push_back(values_fact(settings_, view_.usual));
+    if (!view_.facts.empty()) model.server.facts.push_back(values_fact(settings_, view_));
     model.server.families = server_families();
     model.server.on = on_;
     model.drawing = drawing_;
@@ -207,7 +208,10 @@ void ServerController::show(ui::ServerPart& model) const {
 // Commands
 
 void ServerController::forget_facts() {
-    view_ = {};
+    auto known = std::exchange(view_, {});
+    view_.here = std::move(known.here);  // they are no facts about the one that is chosen
+    view_.looked = known.looked;
+    view_.looking = known.looking;
     kind_.clear();
 }
 
@@ -260,6 +264,9 @@ void ServerController::ask() {
         return workspace_.notices.toast("The image server can be asked when the job is done.");
     auto known = std::exchange(view_, {});
     view_.usual = known.usual;  // so that what was chosen wrongly can be taken off
+    view_.side_step = known.side_step;
+    view_.here = std::move(known.here);
+    view_.looked = known.looked;
     view_.models = std::move(known.models);
     view_.loras = std::move(known.loras);
     view_.lora_names = known.lora_names;
@@ -268,7 +275,7 @@ void ServerController::ask() {
     view_.testing = true;
     auto answer = std::make_shared<ServerAnswer>();
     auto work = [settings = settings_, answer](const JobControl& control) {
-        control.report("asking the image server what it is", 0, 0);
+        control.report(asking_text(settings), 0, 0);
         const ViewServer views(connect_server(settings, control), settings, nullptr, control);
         *answer = answer_of(views, settings);
     };
@@ -286,11 +293,32 @@ void ServerController::ask() {
         view_.lora_names = answer->lora_names;
         view_.is_comfy = answer->is_comfy;
         view_.usual = answer->usual;
+        view_.side_step = answer->side_step;
         kind_ = answer->kind;
         model_ = answer->model;
         model_of_ = url;
     };
     workspace_.jobs->start_work(JobKind::Other, {"Test the image server", work, done});
+}
+
+/// Asks the usual ports of this machine, on the work thread.
+template <> void ServerController::on(const command::FindServers&) {
+    if (workspace_.jobs->works())
+        return workspace_.notices.toast("Servers can be looked for when the job is done.");
+    view_.here.clear();
+    view_.looked = false;
+    view_.looking = true;
+    auto answer = std::make_shared<std::vector<remote::FoundServer>>();
+    auto work = [answer](const JobControl& control) {
+        *answer = remote_api().find_here(remote::UsualPorts, control);
+    };
+    auto done = [this, answer](const Error* error) {
+        view_.looking = false;
+        view_.looked = error == nullptr;
+        if (error != nullptr) return workspace_.report_end(*error);
+        for (const auto& one : *answer) view_.here.push_back(here_of(one));
+    };
+    workspace_.jobs->start_work(JobKind::Other, {"Look for image servers", work, done});
 }
 
 template <> void ServerController::on(const command::UseServer& one) { on_ = one.on && settings_.used(); }

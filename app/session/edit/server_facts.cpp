@@ -7,6 +7,7 @@
 #include "engine/base/printable.h"
 #include "engine/remote/api/server_kind.h"
 #include "engine/remote/api/server_lora.h"
+#include "engine/remote/api/server_url.h"
 #include "engine/remote/views/remote_view_editor.h"
 #include "engine/remote/views/view_frame.h"
 
@@ -45,7 +46,7 @@ bool is_lora_name(const std::string& name) {
 remote::ServerSettings usual_of(const remote::ModelFamily& used) {
     const auto& family = remote::family_named(used.name);
     remote::ServerSettings usual;
-    usual.side = remote::sent_side(0, family.side);
+    usual.side = remote::sent_side(0, family.side, family.side_step);
     usual.steps = family.steps;
     usual.guidance = family.guidance_scale;
     usual.strength = family.strength;
@@ -63,6 +64,7 @@ ServerAnswer answer_of(const pipeline::ViewServer& server, const remote::ServerS
     answer.is_comfy = facts.kind == remote::ServerKind::Comfy;
     answer.lora_names = facts.lora_names;
     answer.usual = usual_of(server.family());
+    answer.side_step = server.family().side_step;
     answer.facts = {
         {"Server", fmt::format("{}{}{} ({})", answer.kind, facts.version.empty() ? "" : " ",
                                printable(facts.version), remote::server_kind_name(facts.kind))},
@@ -83,9 +85,9 @@ ServerAnswer answer_of(const pipeline::ViewServer& server, const remote::ServerS
     return answer;
 }
 
-ui::ServerView::Fact values_fact(const remote::ServerSettings& settings,
-                                 const remote::ServerSettings& usual) {
-    const int side = settings.side > 0 ? remote::sent_side(settings.side, usual.side) : usual.side;
+ui::ServerView::Fact values_fact(const remote::ServerSettings& settings, const ui::ServerView& view) {
+    const auto& usual = view.usual;
+    const int side = remote::sent_side(settings.side, usual.side, view.side_step);
     const bool chosen =
         settings.side > 0 || settings.steps > 0 || settings.guidance > 0 || settings.strength > 0;
     return {"Values",
@@ -94,6 +96,14 @@ ui::ServerView::Fact values_fact(const remote::ServerSettings& settings,
                         settings.guidance > 0 ? settings.guidance : usual.guidance,
                         settings.strength > 0 ? settings.strength : usual.strength, side, side),
             chosen ? "some chosen by you" : "of the family"};
+}
+
+ui::ServerView::Here here_of(const remote::FoundServer& found) {
+    if (!found.problem.empty()) return {found.url, found.problem, false};
+    return {found.url,
+            fmt::format("{} at {}{}{}", found.product, remote::parse_server_url(found.url).url.nickname(),
+                        found.model.empty() ? "" : ", ", found.model),
+            true};
 }
 
 std::vector<std::string> server_families() {

@@ -45,7 +45,7 @@ void load_model(MeasuredRun& run, const JobParameters& job, const std::shared_pt
 void connect_to_server(MeasuredRun& run, const EditRecipe& recipe, const std::shared_ptr<DiskCache>& cache,
                        const JobControl& control) {
     if (!recipe.server.used()) return;
-    control.report("asking the image server what it is", 0, 0);
+    control.report(asking_text(recipe.server), 0, 0);
     run.server = open_view_server(recipe.server, cache, control);
     ServerNews news{recipe.server, run.server->agreement(), run.server->facts().model, {}};
     run.server->watch([road = run.road, news](const remote::DrawingNews& drawing) {

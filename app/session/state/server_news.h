@@ -5,6 +5,7 @@
 
 #include "engine/base/shared_queue.h"
 #include "engine/remote/api/server_settings.h"
+#include "engine/remote/api/server_url.h"
 #include "engine/remote/views/agreement.h"
 #include "engine/remote/views/picture_source.h"
 
@@ -17,6 +18,11 @@ struct ServerNews {
     std::string model;  // that it has loaded; empty = not told
     remote::DrawingNews drawing;
 };
+
+/// Stage of a job that asks a server what it is.
+inline std::string asking_text(const remote::ServerSettings& settings) {
+    return "asking " + remote::parse_server_url(settings.url).url.nickname() + " what it is";
+}
 
 using ServerRoad = SharedQueue<ServerNews>;
 

@@ -93,6 +93,8 @@ struct EditedViews {
     bool unfinished = false;  // what they lack is laid over the edited scene: pictures like the scene do not
                               // mean that nothing came
     std::vector<std::string> warnings = {};  // about the pictures, each a sentence with what would help
+    /// Per view: 1 = it is rejected, because the drawing ended before it. Empty = every view was drawn.
+    std::vector<std::uint8_t> missing = {};
 };
 
 /// Edits all views of a round in the picture. The scene is fitted to its results.

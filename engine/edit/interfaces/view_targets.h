@@ -20,6 +20,7 @@ struct ViewTarget {
         after;             // [H,W,3] in [0,1]: what was redrawn, and what the scene is fitted to
     int attempt = 0;       // how often it was redrawn anew
     bool dropped = false;  // the fit does not use it
+    bool missing = false;  // it was never drawn: there is nothing to use before it is redrawn
 };
 
 /// The redrawn views of a round; another value whenever something about them changes.
@@ -52,6 +53,7 @@ struct RoundState {
     std::string sentence = {};                           // that the model was told; empty = the edit's
     std::vector<std::string> warnings = {};              // of the round as it was redrawn
     double raised = 0;                                   // strength of redrawing beyond what was asked
+    std::vector<bool> missing = {};                      // per view: it was not drawn; empty = all were
 };
 
 }  // namespace gse::edit

@@ -33,6 +33,10 @@ std::shared_ptr<const Image> shown_copy(const Image& image) {
         localize::resize_image(image, side(image.width), side(image.height)));
 }
 
+bool is_missing(const RoundState& state, std::size_t index) {
+    return index < state.missing.size() && state.missing[index];
+}
+
 std::ptrdiff_t index_of(const std::vector<std::size_t>& views, std::size_t view) {
     const auto found = std::find(views.begin(), views.end(), view);
     return found == views.end() ? -1 : found - views.begin();
@@ -148,6 +152,7 @@ std::map<std::string, double> DatasetUpdate::redraw(int iteration, const Gaussia
         for (const auto i : rounds_.found().usable) state->dropped[i] = false;
     for (std::size_t i = 0; i < rounds_.rejected().size(); ++i)
         if (rounds_.rejected()[i] != 0) state->dropped[i] = true;
+    state->missing.assign(rounds_.missing().begin(), rounds_.missing().end());
     state_ = std::move(state);
     redrawn_ += state_->views.size();
     weigh();
@@ -177,6 +182,10 @@ bool DatasetUpdate::follow(const TargetOrder& order, RoundState& next) {
     if (found < 0) return false;  // of a round that is over
     const auto index = static_cast<std::size_t>(found);
     const bool drops = order.choice == TargetChoice::Drop;
+    if (order.choice == TargetChoice::Accept && is_missing(next, index)) {
+        log::warning("{} was not drawn: Redo has it drawn", plan_.views[order.view].name);
+        return false;
+    }
     if (drops && std::count(next.dropped.begin(), next.dropped.end(), false) <= 1) {
         log::warning("the last redrawn view cannot be dropped: the scene is fitted to it");
         return false;
@@ -184,6 +193,7 @@ bool DatasetUpdate::follow(const TargetOrder& order, RoundState& next) {
     const bool was_dropped = next.dropped[index];
     next.dropped[index] = drops;
     if (order.choice == TargetChoice::Redo) redo(index, next);
+    if (is_missing(next, index)) next.dropped[index] = true;  // the server still draws nothing
     sheet_.views[index].dropped = next.dropped[index];
     return order.choice == TargetChoice::Redo || was_dropped != drops;
 }
@@ -203,7 +213,9 @@ void DatasetUpdate::redo(std::size_t index, RoundState& next) {
     }
     ++redrawn_;
     next.edited[index] = std::make_shared<const Image>(rounds_.edited(view));
+    if (!next.missing.empty()) next.missing[index] = false;
     sheet_.views[index].attempt = next.attempts[index];
+    sheet_.views[index].missing = false;
     refresh_sheet(index);
 }
 
@@ -259,7 +271,8 @@ void DatasetUpdate::begin_sheet() {
                                 shown_copy((*state_->begun)[i].rendered),
                                 {},
                                 state_->attempts[i],
-                                state_->dropped[i]});
+                                state_->dropped[i],
+                                is_missing(*state_, i)});
         refresh_sheet(i);
     }
     new_sheet_ = true;

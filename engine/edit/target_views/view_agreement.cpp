@@ -82,18 +82,27 @@ private:
     std::array<std::vector<float>, 3> values_;
 };
 
-double disagreement_of(const std::vector<EditView>& views, const std::vector<Image>& pictures) {
-    PointColours colours(views, pictures);
+/// Sum of distances from medians, and their number.
+struct Distances {
     double sum = 0;
     std::size_t points = 0;
-    for (std::size_t v = 0; v < views.size(); ++v)
-        for (int y = 0; y < views[v].depth.height; ++y)
-            for (int x = 0; x < views[v].depth.width; ++x) {
-                if (!colours.look(v, x, y)) continue;
-                sum += colours.distance(v, x, y);
-                ++points;
-            }
-    return points > 0 ? sum / static_cast<double>(points) : 0;
+    double mean() const { return points > 0 ? sum / static_cast<double>(points) : 0; }
+};
+
+void add_distances(const EditView& view, std::size_t v, PointColours& colours, Distances& distances) {
+    for (int y = 0; y < view.depth.height; ++y)
+        for (int x = 0; x < view.depth.width; ++x) {
+            if (!colours.look(v, x, y)) continue;
+            distances.sum += colours.distance(v, x, y);
+            ++distances.points;
+        }
+}
+
+double disagreement_of(const std::vector<EditView>& views, const std::vector<Image>& pictures) {
+    PointColours colours(views, pictures);
+    Distances distances;
+    for (std::size_t v = 0; v < views.size(); ++v) add_distances(views[v], v, colours, distances);
+    return distances.mean();
 }
 
 /// Change of a pixel inside the mask; mean over the channels.
@@ -152,6 +161,19 @@ ViewAgreement view_agreement(const std::vector<EditView>& views, const std::vect
     agreement.rim_share = pixels > 0 ? static_cast<double>(rim_pixels) / static_cast<double>(pixels) : 0;
     agreement.disagreement = disagreement_of(views, pictures);
     return agreement;
+}
+
+std::vector<double> view_disagreements(const std::vector<EditView>& views,
+                                       const std::vector<Image>& pictures) {
+    GSE_CHECK_EQ(views.size(), pictures.size());
+    PointColours colours(views, pictures);
+    std::vector<double> means;
+    for (std::size_t v = 0; v < views.size(); ++v) {
+        Distances distances;
+        add_distances(views[v], v, colours, distances);
+        means.push_back(distances.mean());
+    }
+    return means;
 }
 
 std::vector<Image> trust_weights(const std::vector<EditView>& views, const std::vector<Image>& pictures) {

@@ -26,6 +26,11 @@ struct ViewAgreement {
 /// pixels show one point.
 ViewAgreement view_agreement(const std::vector<EditView>& views, const std::vector<Image>& pictures);
 
+/// Disagreement of each view alone: its pixels' mean distance from the medians. 0 where too few views show
+/// its points.
+std::vector<double> view_disagreements(const std::vector<EditView>& views,
+                                       const std::vector<Image>& pictures);
+
 /// Weight of each pixel in the fit, per view [H,W,1]: max(0.1, exp(-d / 0.15)). d is the distance of its
 /// colour from the median over the views that show its point. 1 if fewer than three do, and outside the masks
 /// (METHOD.md, Agreement of views).

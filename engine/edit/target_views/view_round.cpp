@@ -224,6 +224,7 @@ std::map<std::string, double> ViewRounds::redraw(int iteration, const std::vecto
     if (round_ == 0) name_colour(views, job);
     auto drawn = draw(views, job);
     rejected_ = drawn.rejected;
+    missing_ = drawn.missing;
     if (shapes_ != nullptr) {
         found_ = shapes_->cut_out(views, drawn, round_, job);
         drawn.scalars.merge(found_.scalars);

@@ -69,6 +69,8 @@ public:
     const std::vector<std::string>& warnings() const { return warnings_; }
     /// Per view of views(): 1 = the last round drew nothing of use there. Empty = all can be used.
     const std::vector<std::uint8_t>& rejected() const { return rejected_; }
+    /// Per view of views(): 1 = the drawing of the last round ended before it. Empty = every view was drawn.
+    const std::vector<std::uint8_t>& missing() const { return missing_; }
     /// Findings of the last round about the new shape.
     const CutOut& found() const { return found_; }
     /// Another mask: what was redrawn counts inside it.
@@ -93,7 +95,7 @@ private:
     std::string sentence_;
     CutOut found_;
     std::vector<std::string> warnings_;
-    std::vector<std::uint8_t> rejected_;
+    std::vector<std::uint8_t> rejected_, missing_;
     std::vector<std::size_t> views_;
     std::vector<Image> targets_, edited_;  // of the plan's views; empty for those that are not redrawn
     double raised_ = 0;

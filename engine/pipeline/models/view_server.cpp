@@ -83,7 +83,12 @@ ViewServer::ViewServer(std::shared_ptr<remote::ImageServer> server, const remote
     drawing_->key_view = settings.key_view;
     drawing_->agreement = remote::suited_agreement(remote::agreement_of(settings.agreement), drawing_->family,
                                                    facts(), !drawing_->own.empty());
-    drawing_->side = remote::sent_side(settings.side, drawing_->family.side);
+    drawing_->side = remote::sent_side(settings.side, drawing_->family.side, drawing_->family.side_step);
+    if (settings.fit_partial)
+        drawing_->partial.fits = [](const remote::PartialRound& round) {
+            if (!round.reason.empty()) log::warning("{}", round.reason);
+            return true;
+        };
     if (settings.used()) drawing_->nickname = remote::parse_server_url(settings.url).url.nickname();
     log::info("the views are drawn by {} ({}): family {}, agreement {}, {} x {} pixels", facts().product,
               facts().model.empty() ? "model not told" : printable(facts().model), drawing_->family.name,
@@ -114,10 +119,12 @@ const remote::ServerFacts& ViewServer::facts() const { return source_->facts(); 
 const remote::ModelFamily& ViewServer::family() const { return drawing_->family; }
 remote::Agreement ViewServer::agreement() const { return drawing_->agreement; }
 int ViewServer::side() const { return drawing_->side; }
+const std::string& ViewServer::nickname() const { return drawing_->nickname; }
 const remote::ServerUse& ViewServer::use() const { return source_->use(); }
 void ViewServer::watch(std::function<void(const remote::DrawingNews&)> watch) {
     source_->watch(std::move(watch));
 }
+void ViewServer::use_partial_rounds(remote::PartialRounds partial) { drawing_->partial = std::move(partial); }
 
 std::unique_ptr<edit::MultiViewEditor> ViewServer::editor(const edit::CheckedRequest& request,
                                                           edit::EditMode mode,

@@ -21,6 +21,7 @@ struct DrawingNews;
 enum class Agreement;
 struct ModelFamily;
 struct OwnPicture;
+struct PartialRounds;
 struct RemoteDrawing;
 struct ServerUse;
 
@@ -50,8 +51,12 @@ public:
     /// Side of the pictures that are sent, px.
     int side() const;
     const remote::ServerUse& use() const;
+    /// Address without scheme and secrets, for people.
+    const std::string& nickname() const;
     /// Who is told of the pictures in the making (remote::DrawingWatch); empty = nobody.
     void watch(std::function<void(const remote::DrawingNews&)> watch);
+    /// From the next editor on: use of rounds that end before all of their views are drawn.
+    void use_partial_rounds(remote::PartialRounds partial);
 
     /// Draws the views of a request in that mode. The server stays alive.
     std::unique_ptr<edit::MultiViewEditor> editor(const edit::CheckedRequest& request, edit::EditMode mode,

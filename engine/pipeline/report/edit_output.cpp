@@ -265,6 +265,8 @@ nlohmann::ordered_json make_report(EditJob& job) {
     report["model"] = job.model().name();
     report["model_kind"] = neural::kind_name(job.model().kind());
     if (const auto* server = job.server()) report["server"] = server->to_json();
+    if (const auto missing = missing_views(job.targets(), job.views()); !missing.empty())
+        report["missing_views"] = missing;
     report["settings_from"] = settings_from(job.recipe().plain());
     report["seconds"] = job.times().to_json();
     report["networks"] = job.times().networks_json();

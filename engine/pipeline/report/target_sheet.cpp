@@ -27,7 +27,8 @@ std::string name_of(const std::vector<View>& views, std::size_t view) {
 std::string caption(const edit::ViewTarget& target, const std::vector<View>& views) {
     std::string text = name_of(views, target.view);
     if (target.attempt > 0) text += fmt::format(", redrawn {} more", target.attempt);
-    if (target.dropped) text += ", dropped";
+    if (target.missing) text += ", missing";
+    else if (target.dropped) text += ", dropped";
     return text;
 }
 
@@ -71,6 +72,15 @@ void write_targets(const std::filesystem::path& folder, ThreadPool& threads,
     });
 }
 
+std::vector<std::string> missing_views(const std::vector<edit::ViewTargets>& rounds,
+                                       const std::vector<View>& views) {
+    std::vector<std::string> names;
+    for (const auto& round : rounds)
+        for (const auto& target : round.views)
+            if (target.missing) names.push_back(name_of(views, target.view));
+    return names;
+}
+
 nlohmann::ordered_json targets_to_json(const std::vector<edit::ViewTargets>& rounds,
                                        const std::vector<View>& views) {
     auto list = nlohmann::ordered_json::array();
@@ -79,10 +89,12 @@ nlohmann::ordered_json targets_to_json(const std::vector<edit::ViewTargets>& rou
         if (!round.sentence.empty()) entry["sentence"] = round.sentence;  // it says more than the artist's
         if (!round.warnings.empty()) entry["warnings"] = round.warnings;
         entry["views"] = nlohmann::ordered_json::array();
-        for (const auto& target : round.views)
+        for (const auto& target : round.views) {
             entry["views"].push_back({{"view", name_of(views, target.view)},
                                       {"redrawn", target.attempt},
                                       {"dropped", target.dropped}});
+            if (target.missing) entry["views"].back()["missing"] = true;
+        }
         list.push_back(std::move(entry));
     }
     return list;

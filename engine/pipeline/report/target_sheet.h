@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <vector>
 
 #include "engine/base/thread_pool.h"
@@ -18,7 +19,11 @@ Image target_sheet(const edit::ViewTargets& round, const std::vector<View>& view
 /// targets_0.png, ...: one per round.
 void write_targets(const std::filesystem::path& folder, ThreadPool& threads,
                    const std::vector<edit::ViewTargets>& rounds, const std::vector<View>& views);
-/// [{"round", "file", "views": [{"view", "redrawn", "dropped"}]}].
+/// Names of views that no server has drawn, since its drawing ended early.
+std::vector<std::string> missing_views(const std::vector<edit::ViewTargets>& rounds,
+                                       const std::vector<View>& views);
+/// [{"round", "file", "views": [{"view", "redrawn", "dropped"}]}], and "missing" for views that were not
+/// drawn.
 nlohmann::ordered_json targets_to_json(const std::vector<edit::ViewTargets>& rounds,
                                        const std::vector<View>& views);
 

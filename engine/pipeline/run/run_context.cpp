@@ -153,12 +153,17 @@ std::optional<edit::StudioBackground> RunContext::ground(const std::string& sent
 
 edit::LocateTools RunContext::tools(const Views& views, const std::optional<edit::StudioBackground>& ground,
                                     const JobControl& control) {
+    auto job = control;
+    if (differences_ && control.progress)
+        job.progress = [control, host = server_->nickname()](std::string_view stage, int step, int total) {
+            control.report(fmt::format("{} at {}", stage, host), step, total);
+        };
     const std::string key = ground ? fmt::format("{} on {}", views.key, ground->ground) : views.key;
     if (renders_key_ != key) renders_ = {};
     renders_key_ = key;
     edit::AttentionSource& attention = differences_ ? *differences_ : *attention_;
     edit::LocateTools tools{painter_.rasterizer(), attention, segmenters_.clicks.get(),
-                            segmenters_.words.get(), control};
+                            segmenters_.words.get(), job};
     tools.cache = &renders_;
     tools.threads = &threads_;
     tools.recognition = differences_ ? nullptr : recognition_.get();  // it may not know the word

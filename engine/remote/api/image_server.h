@@ -33,7 +33,7 @@ struct ServerFacts {
     LoraNames lora_names = LoraNames::Listed;
 };
 
-/// One picture to redraw. Pictures are [H,W,3] in [0,1], sides multiples of 64, all of one size.
+/// One picture to redraw. Pictures are [H,W,3] in [0,1], sides multiples of `side_step`, all of one size.
 struct RedrawOrder {
     Image picture;
     Image mask = {};                     // [H,W,1], 1 = change; empty = the whole picture
@@ -48,6 +48,7 @@ struct RedrawOrder {
     /// Is shown the picture in the making, [h,w,3] in [0,1] and at most 4 times the pixels of `picture`,
     /// where the server has one; on the thread that waits. Empty = the server is not asked for it.
     std::function<void(const Image&)> preview = {};
+    int side_step = 64;  // px, a multiple of 16
 };
 
 /// Stage of a job that is neither sent nor waits: its picture is being drawn.

@@ -1,10 +1,12 @@
 // Entry to the plug-in that speaks to image servers, in plain types: the program loads it on first use.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -46,6 +48,18 @@ struct ServerAddress {
     ServerTimes times = {};
 };
 
+/// Ports on which programs for pictures listen unless they are told otherwise: WebUI, ComfyUI, sd-server,
+/// koboldcpp, vLLM-Omni.
+inline constexpr std::array<int, 5> UsualPorts{7860, 8188, 1234, 5001, 8000};
+
+/// Program that answers on a port of this machine.
+struct FoundServer {
+    std::string url;
+    std::string product = {};  // "sd-server"; for people. Empty where `problem` is not
+    std::string model = {};    // empty = not told
+    std::string problem = {};  // why it cannot be used, with a remedy; empty = it can
+};
+
 /// Image servers over HTTP.
 class RemoteApi {
 public:
@@ -53,6 +67,9 @@ public:
     /// Finds out which protocol the server speaks, unless it is stated, and whether it is there. Sends no
     /// picture. Throws Error as ImageServer::probe(), and (InvalidArgument) for an address that is refused.
     virtual std::unique_ptr<ImageServer> connect(const ServerAddress& address, const JobControl& job) = 0;
+    /// Asks these ports of the loopback what listens there, by GET alone and without passwords. Ports where
+    /// nothing listens are left out. Throws Error (Cancelled).
+    virtual std::vector<FoundServer> find_here(std::span<const int> ports, const JobControl& job) = 0;
     /// Keeps user name and password of an address in the user's file of credentials, and gives the address
     /// without them. Throws Error (InvalidArgument, Unwritable).
     virtual std::string keep_credentials(const std::string& url) = 0;

@@ -30,6 +30,7 @@ struct ServerSettings {
     std::string ca;
     bool paid_nodes = false;
     std::vector<std::string> also;
+    bool fit_partial = false;
 
     template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         f("url", self.url,
@@ -74,6 +75,9 @@ struct ServerSettings {
           "Let a workflow use nodes that send the pictures on and cost money.");
         f("also", self.also,
           "Further server with the same model, over which the views are spread; may be given several times.");
+        f("fit_partial", self.fit_partial,
+          "Fit the scene to the views that are there where the server fails after 60 % of them, and after 4. "
+          "Views that are missing are left out.");
     }
 
     bool used() const { return !url.empty(); }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "engine/remote/api/remote_api.h"
 
@@ -9,6 +11,9 @@ namespace gse::remote {
 
 /// See RemoteApi::connect().
 std::unique_ptr<ImageServer> connect(const ServerAddress& address, const JobControl& job);
+
+/// See RemoteApi::find_here().
+std::vector<FoundServer> find_here(std::span<const int> ports, const JobControl& job);
 
 /// See RemoteApi::keep_credentials().
 std::string keep_credentials(const std::string& url);

@@ -88,7 +88,8 @@ RedrawnPicture OpenAiServer::redraw(const RedrawOrder& order, const JobControl& 
     how.repeat = Repeat::UnlessStarted;
     how.draws = true;
     how.most_bytes = picture_answer_bytes(order, 0);
-    job.report(DrawingStage, 0, 0);
+    how.meanwhile = [&] { job.report(DrawingStage, 0, 0); };
+    how.meanwhile();
     const auto request = link_->requests().post_parts(
         "/v1/images/edits", openai_parts(order, product_, facts_.model, {loras_, options_}));
     const auto json = link_->ask_json(request, how, job);

@@ -10,7 +10,7 @@
 namespace gse::remote {
 namespace {
 
-constexpr int SideStep = 64, LongestSide = 4096;
+constexpr int LatentStep = 16, LongestSide = 4096;
 constexpr std::uint32_t SeedEnd = std::uint32_t{1} << 31;
 constexpr std::size_t MostAnswerBytes = std::size_t{64} << 20;
 constexpr std::size_t BytesPerPixel = 4, MostTimesLarger = 4;
@@ -21,10 +21,13 @@ Error bad_order(const std::string& why, const std::string& hint) {
 
 void check_sizes(const RedrawOrder& order) {
     const auto& picture = order.picture;
-    const auto fits = [](int side) { return side > 0 && side <= LongestSide && side % SideStep == 0; };
+    const int step = order.side_step;
+    if (step < LatentStep || step % LatentStep != 0)
+        throw bad_order(fmt::format("sides in steps of {} cannot be drawn", step), "take a multiple of 16");
+    const auto fits = [&](int side) { return side > 0 && side <= LongestSide && side % step == 0; };
     if (picture.channels != 3 || !fits(picture.width) || !fits(picture.height))
         throw bad_order(fmt::format("a picture of {} x {} cannot be redrawn", picture.width, picture.height),
-                        "take sides that are multiples of 64, up to 4096");
+                        fmt::format("take sides that are multiples of {}, up to 4096", step));
     const auto& mask = order.mask;
     if (!mask.data.empty() &&
         (mask.channels != 1 || mask.width != picture.width || mask.height != picture.height))

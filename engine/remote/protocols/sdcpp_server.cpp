@@ -78,7 +78,8 @@ ServerFacts SdCppServer::probe(const JobControl& job) {
                                      std::pair{"sample_params.scheduler", "schedulers"}})
         check_offered_value(options_, name, texts_of(value_of(json, list), nullptr), link_->url());
     const auto& model = value_of(json, "model");
-    const auto& features = value_of(value_of(json, "features_by_mode"), "img_gen");
+    const auto& by_mode = value_of(value_of(json, "features_by_mode"), "img_gen");
+    const auto& features = by_mode.is_object() ? by_mode : value_of(json, "features");  // older builds
     ServerFacts facts;
     facts.kind = ServerKind::SdCpp;
     facts.product = "sd-server";

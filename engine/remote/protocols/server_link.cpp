@@ -70,6 +70,12 @@ HttpResult ServerLink::ask_once(const HttpRequest& request, const Ask& how, cons
     return exchange.take();
 }
 
+bool ServerLink::is_listening(const JobControl& job) {
+    Ask how;
+    how.looks = true;
+    return ask_once(get("/"), how, job).connected;
+}
+
 HttpAnswer ServerLink::ask_any_status(HttpRequest request, const Ask& how, const JobControl& job) {
     const auto begin = std::chrono::steady_clock::now();
     RetryState state;

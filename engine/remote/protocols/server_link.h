@@ -56,6 +56,8 @@ public:
     const ServerTimes& times() const { return requests_.times(); }
     HttpRequest get(const std::string& place) const { return requests_.get(place); }
 
+    /// True where somebody takes a connection. Throws Error (Cancelled) only.
+    bool is_listening(const JobControl& job);
     /// Asks, again where wait_before_retry() says so. Throws Error.
     HttpAnswer ask(HttpRequest request, const Ask& how, const JobControl& job);
     nlohmann::json ask_json(HttpRequest request, const Ask& how, const JobControl& job);

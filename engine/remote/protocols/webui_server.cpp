@@ -125,7 +125,10 @@ RedrawnPicture WebuiServer::redraw(const RedrawOrder& order, const JobControl& j
     how.draws = true;
     how.most_bytes = picture_answer_bytes(order, EchoedPictures);
     WebuiProgress progress(*link_, product_, task, order);
-    if (facts_.reports_progress) how.meanwhile = [&] { progress.look(job); };
+    how.meanwhile = [&] {
+        if (facts_.reports_progress) progress.look(job);
+        else job.report(DrawingStage, 0, 0);
+    };
     job.report(DrawingStage, 0, 0);
     try {
         auto body = webui_body(order, product_, task);

@@ -17,7 +17,7 @@ namespace {
 constexpr auto Describes = PromptForm::Description, Instructs = PromptForm::Instruction;
 
 // Settings: METHOD.md, Families of models.
-constexpr std::array<ModelFamily, 17> Families{{
+constexpr std::array<ModelFamily, 18> Families{{
     {.name = "sd15", .strength = 0.85, .sampler = "Euler"},
     {.name = "sd15-inpainting", .inpaints = true, .strength = 1, .sampler = "Euler"},
     {.name = "ip2p", .form = Instructs, .distilled_guidance = 1.5, .strength = 1, .again_strength = 1},
@@ -61,7 +61,8 @@ constexpr std::array<ModelFamily, 17> Families{{
      .again_strength = 1,
      .side = 1024,
      .latent_cell = 16,
-     .negative = false},
+     .negative = false,
+     .whole_picture = true},
     {.name = "flux2",
      .form = Instructs,
      .guidance_scale = 1,
@@ -72,7 +73,8 @@ constexpr std::array<ModelFamily, 17> Families{{
      .latent_cell = 16,
      .negative = false,
      .references = 3,
-     .picture_word = "image"},
+     .picture_word = "image",
+     .whole_picture = true},
     {.name = "flux2-klein",
      .form = Instructs,
      .steps = 4,
@@ -83,7 +85,8 @@ constexpr std::array<ModelFamily, 17> Families{{
      .latent_cell = 16,
      .negative = false,
      .references = 3,
-     .picture_word = "image"},
+     .picture_word = "image",
+     .whole_picture = true},
     {.name = "flux2-klein-base",
      .form = Instructs,
      .guidance_scale = 4.5,
@@ -92,23 +95,34 @@ constexpr std::array<ModelFamily, 17> Families{{
      .side = 1024,
      .latent_cell = 16,
      .references = 3,
-     .picture_word = "image"},
+     .picture_word = "image",
+     .whole_picture = true},
     {.name = "qwen-edit",
      .form = Instructs,
      .guidance_scale = 2.5,
      .strength = 1,
      .again_strength = 1,
-     .side = 1024,
-     .latent_cell = 16},
+     .side = 1008,
+     .latent_cell = 16,
+     .side_step = 112,
+     .whole_picture = true},
     {.name = "qwen-edit-plus",
      .form = Instructs,
      .guidance_scale = 2.5,
      .strength = 1,
      .again_strength = 1,
-     .side = 1024,
+     .side = 1008,
      .latent_cell = 16,
      .references = 2,
-     .picture_word = "Picture"},
+     .picture_word = "Picture",
+     .side_step = 112,
+     .whole_picture = true},
+    {.name = "qwen-image",
+     .guidance_scale = 2.5,
+     .strength = 0.8,
+     .side = 1008,
+     .latent_cell = 16,
+     .side_step = 112},
     {.name = "z-image",
      .steps = 9,
      .guidance_scale = 1,
@@ -126,7 +140,8 @@ constexpr std::array<ModelFamily, 17> Families{{
      .latent_cell = 16,
      .negative = false,
      .references = 3,
-     .picture_word = "image"},
+     .picture_word = "image",
+     .whole_picture = true},
 }};
 
 /// A name that holds these parts in this order, "*" between them, is of the family.
@@ -135,7 +150,7 @@ struct NamePattern {
 };
 
 // The first that fits counts.
-constexpr std::array<NamePattern, 34> Patterns{{{"kontext", "kontext"},
+constexpr std::array<NamePattern, 35> Patterns{{{"kontext", "kontext"},
                                                 {"klein*base", "flux2-klein-base"},
                                                 {"klein", "flux2-klein"},
                                                 {"flux.2", "flux2"},
@@ -147,6 +162,7 @@ constexpr std::array<NamePattern, 34> Patterns{{{"kontext", "kontext"},
                                                 {"qwen*edit*2511", "qwen-edit-plus"},
                                                 {"qwen*edit*plus", "qwen-edit-plus"},
                                                 {"qwen*edit", "qwen-edit"},
+                                                {"qwen*image", "qwen-image"},
                                                 {"z-image*base", "z-image-base"},
                                                 {"z_image*base", "z-image-base"},
                                                 {"zimage*base", "z-image-base"},
@@ -170,10 +186,9 @@ constexpr std::array<NamePattern, 34> Patterns{{{"kontext", "kontext"},
                                                 {"inpaint", "sd15-inpainting"},
                                                 {"gpt*image", "editor"}}};
 
-/// Servers that edit by pictures beside the one to redraw have to be sent that one, too.
-bool picture_is_reference(const ServerFacts& facts, const ModelFamily& family) {
-    const bool by_references = facts.kind == ServerKind::SdCpp || facts.kind == ServerKind::Webui;
-    return family.instructed() && by_references && facts.references > 0;
+/// True where the server itself holds what lies outside of a mask while a model redraws a whole picture.
+bool keeps_outside(const ServerFacts& facts) {
+    return facts.kind == ServerKind::SdCpp || facts.kind == ServerKind::Comfy || facts.product == "sd-server";
 }
 
 bool fits(std::string_view name, std::string_view pattern) {
@@ -189,6 +204,11 @@ bool fits(std::string_view name, std::string_view pattern) {
 }
 
 }  // namespace
+
+bool picture_is_reference(const ServerFacts& facts, const ModelFamily& family) {
+    const bool by_references = facts.kind == ServerKind::SdCpp || facts.kind == ServerKind::Webui;
+    return family.instructed() && by_references && facts.references > 0;
+}
 
 std::span<const ModelFamily> model_families() { return Families; }
 
@@ -209,11 +229,12 @@ RedrawOrder order_of(const ModelFamily& family) {
     order.distilled_guidance = family.distilled_guidance;
     order.strength = family.strength;
     order.sampler = family.sampler;
+    order.side_step = family.side_step;
     return order;
 }
 
 void suit_to_server(RedrawOrder& order, const ServerFacts& facts, const ModelFamily& family) {
-    if (!facts.takes_mask) order.mask = {};
+    if (!facts.takes_mask || (family.whole_picture && !keeps_outside(facts))) order.mask = {};
     if (picture_is_reference(facts, family)) order.references.insert(order.references.begin(), order.picture);
     if (order.references.size() > facts.references) order.references.resize(facts.references);
 }

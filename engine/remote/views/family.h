@@ -30,6 +30,9 @@ struct ModelFamily {
     std::size_t references = 0;          // pictures beside the one to redraw
     std::string_view picture_word = {};  // by which pictures are named in an instruction: "image 1"
     std::string_view sampler = {};       // empty = the server's choice
+    int side_step = 64;                  // px: sides of its pictures are multiples
+    // It was trained to redraw whole pictures. A mask counts only where the server keeps the rest.
+    bool whole_picture = false;
     bool instructed() const { return form == PromptForm::Instruction; }
     /// True where a second round is drawn at a lower strength.
     bool has_strength() const { return again_strength < strength; }
@@ -46,6 +49,9 @@ std::uint32_t server_seed(std::uint64_t seed);
 
 /// Order with the settings of a family for a first round; it lacks pictures and prompts.
 RedrawOrder order_of(const ModelFamily& family);
+
+/// True where a server edits by pictures beside the one to redraw, and has to be sent that one, too.
+bool picture_is_reference(const ServerFacts& facts, const ModelFamily& family);
 
 /// Suits an order to what a server takes. Masks and references that it does not take are dropped. The picture
 /// itself is among the references where its models edit by those.

@@ -33,7 +33,7 @@ Image with_eight_bits(Image picture) {
 /// 3/4 of a square order's side, as a side that servers take; 0 where there is none.
 int smaller_side(const RedrawOrder& order) {
     const auto& picture = order.picture;
-    return picture.width == picture.height ? picture.width * 3 / 4 / SideStep * SideStep : 0;
+    return picture.width == picture.height ? picture.width * 3 / 4 / order.side_step * order.side_step : 0;
 }
 
 /// Width, height, model's length, model, bytes of the pixels.
@@ -64,8 +64,10 @@ std::optional<RedrawnPicture> picture_in(const std::string& bytes) {
 
 }  // namespace
 
-PictureSource::PictureSource(ImageServer& server, ServerFacts facts, std::string identity, AnswerCache* cache)
-    : server_(server), facts_(std::move(facts)), identity_(std::move(identity)), cache_(cache) {}
+PictureSource::PictureSource(ImageServer& server, ServerFacts facts, std::string identity, AnswerCache* cache,
+                             PictureTimes times)
+    : server_(server), facts_(std::move(facts)), identity_(std::move(identity)), cache_(cache),
+      times_(std::move(times)) {}
 
 std::string PictureSource::question_of(const RedrawOrder& order) const {
     ContentHash hash;
@@ -98,6 +100,11 @@ void PictureSource::keep(const RedrawOrder& order, const RedrawnPicture& redrawn
     if (cache_->find(question)) return;
     if (use_.not_kept++ == 0)
         log::warning("pictures of the server cannot be kept on the disk: another run asks for them again");
+}
+
+bool PictureSource::is_kept(const RedrawOrder& order) const {
+    const auto question = question_of(as_asked(order));
+    return ahead_.contains(question) || (cache_ != nullptr && cache_->find(question));
 }
 
 Image PictureSource::ask(const RedrawOrder& order, const JobControl& job) {
@@ -145,9 +152,18 @@ void PictureSource::count(const RedrawnPicture& redrawn) {
 }
 
 /// Counts it. The watch is told of the end, whatever it is.
-RedrawnPicture PictureSource::drawn(const RedrawOrder& order, const JobControl& job) {
+RedrawnPicture PictureSource::drawn(const RedrawOrder& order, const JobControl& asked) {
     const double begin = wall_seconds();
+    JobControl job{{}, asked.stop};
+    if (asked.progress)  // a server is asked for its progress where somebody listens
+        job.progress = [&](std::string_view stage, int step, int total) {
+            const auto usual = times_.usual_of_slow();
+            if (!usual || stage != DrawingStage) return asked.report(stage, step, total);
+            asked.report(SlowStage, std::max(1, static_cast<int>(std::lround(*usual))), 0);
+        };
+    times_.begin();
     auto redrawn = watch_ ? shown_while_drawn(order, job) : server_.redraw(order, job);
+    times_.end();
     use_.seconds += wall_seconds() - begin;
     count(redrawn);
     if (watch_) watch_({{}, {}, use_});

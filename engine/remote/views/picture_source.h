@@ -10,6 +10,7 @@
 
 #include "engine/base/answer_cache.h"
 #include "engine/remote/api/image_server.h"
+#include "engine/remote/drawing/picture_times.h"
 #include "engine/remote/spread/further_server.h"
 #include "engine/remote/spread/spread_drawing.h"
 
@@ -24,6 +25,9 @@ struct ServerUse {
     std::size_t not_kept = 0;  // pictures that the disk did not take
     int smaller_side = 0;      // px at which it is asked since its memory did not do; 0 = as ordered
 };
+
+/// Stage of a job whose picture takes much longer than those before it.
+constexpr const char* SlowStage = "it takes longer than the views before";
 
 /// Picture that is drawn now, as far as it is, or the end of one.
 struct DrawingNews {
@@ -44,11 +48,15 @@ class PictureSource {
 public:
     /// `facts`: as the server told them. `identity`: what the pictures follow from beside the order, such as
     /// a workflow. `cache` may be null. All stay alive.
-    PictureSource(ImageServer& server, ServerFacts facts, std::string identity, AnswerCache* cache);
+    PictureSource(ImageServer& server, ServerFacts facts, std::string identity, AnswerCache* cache,
+                  PictureTimes times = PictureTimes());
 
-    /// Picture [H,W,3] of 8 bits per channel. Throws as ImageServer::redraw(); for a picture that is too
-    /// large at 3/4 of its side, too, the error says so.
+    /// Picture [H,W,3] of 8 bits per channel. While a picture takes much longer than those before it, the
+    /// progress is SlowStage, with the usual time in seconds as its step. Throws as ImageServer::redraw();
+    /// for a picture that is too large at 3/4 of its side, too, the error says so.
     Image ask(const RedrawOrder& order, const JobControl& job);
+    /// True where ask() needs no server for it.
+    bool is_kept(const RedrawOrder& order) const;
     /// Servers of the same kind with the same model, which stay alive.
     void spread_over(std::vector<FurtherServer> further) { further_ = std::move(further); }
     /// True where a further server is there that has not failed.
@@ -90,6 +98,7 @@ private:
     AnswerCache* cache_;
     ServerUse use_;
     DrawingWatch watch_ = {};
+    PictureTimes times_;
     std::string model_;
     std::size_t model_changes_ = 0;
     std::vector<FurtherServer> further_;

@@ -42,7 +42,8 @@ DrawnRound RemoteViewEditor::draw(const std::vector<edit::EditView>& views,
     if (!request.sentence.empty()) drawing.text.description = request.sentence;
     const auto changes = source_.model_changes();
     auto drawn = RoundDrawing(source_, drawing, views, request, job).draw(key_);
-    if (source_.model_changes() == changes || views.size() < 2) return drawn;
+    const bool partial = std::find(drawn.missing.begin(), drawn.missing.end(), 1) != drawn.missing.end();
+    if (source_.model_changes() == changes || views.size() < 2 || partial) return drawn;
     log::warning("its views are of two models and are all drawn once more");
     return RoundDrawing(source_, drawing, views, request, job).draw(key_);
 }
@@ -58,8 +59,9 @@ edit::EditedViews RemoteViewEditor::edit(const std::vector<edit::EditView>& view
                     fmt::format("none of the {} pictures from the server can be used: {}", views.size(),
                                 drawn.notes.empty() ? "" : drawn.notes.front()),
                     "look at the server's model and settings; gseditpro server URL --draw shows one picture");
-    if (rejected > 0)
-        log::warning("{} of {} pictures from the server are left out: {}", rejected, views.size(),
+    const auto missing = static_cast<std::size_t>(std::count(drawn.missing.begin(), drawn.missing.end(), 1));
+    if (rejected > missing)
+        log::warning("{} of {} pictures from the server are left out: {}", rejected - missing, views.size(),
                      drawn.notes.empty() ? "" : drawn.notes.front());
     edit::EditedViews edited;
     const auto& use = source_.use();
@@ -69,9 +71,18 @@ edit::EditedViews RemoteViewEditor::edit(const std::vector<edit::EditView>& view
                       {"server_seconds", use.seconds - before.seconds},
                       {"rejected", static_cast<double>(rejected)},
                       {"drift", drawn.drift}};
+    if (drawn.redrawn > 0) edited.scalars["redrawn_outliers"] = drawn.redrawn;
     if (request.anew) add_outlines(views, drawn, edited);
     edited.rejected = std::move(drawn.rejected);
     edited.warnings = std::move(drawn.warnings);
+    if (missing > 0) {
+        edited.missing = std::move(drawn.missing);
+        edited.unfinished = true;  // what was not drawn looks as it did
+        edited.warnings.push_back(
+            fmt::format("{} of {} views were not drawn, and the scene is fitted without them: Redo has one "
+                        "drawn, and so does another run",
+                        missing, views.size()));
+    }
     edited.images = std::move(drawn.pictures);
     return edited;
 }

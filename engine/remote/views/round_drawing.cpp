@@ -14,7 +14,9 @@
 #include "engine/base/printable.h"
 #include "engine/base/random.h"
 #include "engine/edit/request/scales.h"
+#include "engine/edit/target_views/view_agreement.h"
 #include "engine/localize/clusters.h"
+#include "engine/math/quantile.h"
 #include "engine/remote/api/server_settings.h"
 #include "engine/remote/views/change_map.h"
 #include "engine/remote/views/colour_match.h"
@@ -37,6 +39,27 @@ constexpr double OwnBlurPx = 2, OwnRimPx = 6;  // of a picture of ReferenceSide
 constexpr float OwnChange = 0.1f;              // of a channel: less is the trace of a compressed file
 constexpr double LeastOutside = 0.002;         // of the picture
 constexpr double ToldShare = 0.05;             // of what is changed: from here on it is said
+
+// Views that are drawn once more, since they disagree with the others (METHOD.md, Views that agree).
+constexpr std::uint64_t OutlierStream = 73000;  // of a round's seed
+constexpr std::size_t LeastOfOutliers = 4;      // views of a round
+constexpr double OutlierShare = 0.15;           // of them
+constexpr double OutlierDistance = 0.1;         // of the colour range
+constexpr double OutlierTimes = 2;              // the usual disagreement
+
+/// The views that disagree most, worst first. The one at `key` is what others are drawn like.
+std::vector<std::size_t> outliers_of(const std::vector<double>& disagreements, std::size_t key) {
+    auto sorted = disagreements;
+    const double least = std::max(OutlierDistance, OutlierTimes * upper_median(sorted));
+    std::vector<std::size_t> outliers;
+    for (std::size_t v = 0; v < disagreements.size(); ++v)
+        if (v != key && disagreements[v] > least) outliers.push_back(v);
+    std::stable_sort(outliers.begin(), outliers.end(),
+                     [&](auto a, auto b) { return disagreements[a] > disagreements[b]; });
+    const auto most = std::ceil(OutlierShare * static_cast<double>(disagreements.size()));
+    outliers.resize(std::min(outliers.size(), static_cast<std::size_t>(most)));
+    return outliers;
+}
 
 Mask difference(const Mask& mask, const Mask& without) {
     Mask result = mask;
@@ -73,8 +96,9 @@ double share_outside(const edit::EditView& view, const Image& own) {
 RoundDrawing::RoundDrawing(PictureSource& source, const RemoteDrawing& drawing,
                            const std::vector<edit::EditView>& views, const edit::EditViewsRequest& request,
                            const JobControl& job)
-    : source_(source), drawing_(drawing), views_(views), request_(request), job_(job),
-      squares_(views.size()) {
+    : source_(source), drawing_(drawing), views_(views), request_(request),
+      job_(job), drawing_job_{job.progress, ended_.get_token()}, squares_(views.size()),
+      tried_(views.size(), false) {
     const int crop = crop_side(views);
     for (const auto& view : views)
         frames_.push_back(
@@ -98,7 +122,7 @@ void RoundDrawing::take_own_pictures() {
         }
 }
 
-DrawnRound RoundDrawing::draw(KeyPicture& key) {
+void RoundDrawing::draw_views(KeyPicture& key) {
     switch (drawing_.agreement) {
         case Agreement::Sheet: views_.size() > 1 ? draw_sheets() : draw_each(); break;
         case Agreement::Reference: draw_with_reference(key); break;
@@ -107,13 +131,53 @@ DrawnRound RoundDrawing::draw(KeyPicture& key) {
         case Agreement::Auto:
         case Agreement::None: draw_each(); break;
     }
+    redraw_outliers(key);
+}
+
+DrawnRound RoundDrawing::draw(KeyPicture& key) {
+    const std::stop_callback with_job(job_.stop, [this] { ended_.request_stop(); });
+    std::optional<Error> failure;
+    try {
+        draw_views(key);
+    } catch (const Error& error) { failure = error; }
+    const bool ended = offered_ && !drawing_.partial.stop->withdraw();
+    if (ended && !failure) failure = Error(ErrorCode::Cancelled, "redrawing the views was stopped");
+    if (failure) go_on_without_rest(*failure);
     for (std::size_t v = 0; v < views_.size(); ++v) {
-        const bool drawn = !squares_[v].data.empty();
+        const bool drawn = is_there(v);
         round_.pictures.push_back(drawn ? pasted(views_[v], frames_[v], squares_[v]) : views_[v].rendered);
         round_.rejected.push_back(drawn || views_[v].mask.count() == 0 ? 0 : 1);
+        round_.missing.push_back(round_.rejected.back() != 0 && !tried_[v] ? 1 : 0);
     }
     if (!views_.empty()) round_.drift /= static_cast<double>(views_.size());
     return std::move(round_);
+}
+
+PartialRound RoundDrawing::partial_round(const std::string& reason) const {
+    PartialRound round;
+    round.reason = reason;
+    for (std::size_t v = 0; v < views_.size(); ++v) {
+        if (views_[v].mask.count() == 0) continue;  // nothing changes there
+        ++round.wanted;
+        if (is_there(v)) ++round.drawn;
+        else if (!tried_[v]) round.missing.push_back(views_[v].view.name);
+    }
+    return round;
+}
+
+void RoundDrawing::go_on_without_rest(const Error& error) const {
+    const bool ended = error.code() == ErrorCode::Cancelled;
+    const auto round = partial_round(ended ? std::string() : error.what());
+    if (job_.stop_requested() || !is_enough(round.drawn, round.wanted)) throw Error(error);
+    if (round.missing.empty() && !ended)
+        return log::warning("views that disagree stay as they are: {}", error.what());
+    if (!drawing_.partial.fits)
+        throw Error(error.code(), error.message(),
+                    fmt::format("{}{}{}: --server-fit-partial fits the scene to those, and another run asks "
+                                "only for the rest",
+                                error.hint(), error.hint().empty() ? "" : "; ", partial_text(round)));
+    if (!drawing_.partial.fits(round)) throw Error(error);
+    log::warning("{}: the scene is fitted without the rest", partial_text(round));
 }
 
 void RoundDrawing::draw_each() {
@@ -144,7 +208,8 @@ void RoundDrawing::draw_sheets() {
             std::vector<RedrawOrder> orders;
             for (std::size_t j = i; j < sheets.size(); ++j)
                 orders.push_back(sheet(sheets[j], &squares_[key]).order);
-            ask_ahead(std::move(orders), SheetCells - 1);
+            for (auto& order : orders) suit_to_server(order, source_.facts(), drawing_.family);
+            ask_ahead(orders, SheetCells - 1);
         }
         draw_sheet(sheets[i], first ? nullptr : &squares_[key]);
         first = first && squares_[key].data.empty();
@@ -209,13 +274,15 @@ void RoundDrawing::draw_with_reference(KeyPicture& key) {
     for (const auto v : rest) key.picture.data.empty() ? draw_alone(v) : draw_like(v, key.picture);
 }
 
+bool RoundDrawing::is_copy(std::size_t view, const Image& drawn, const Image& key) const {
+    return drawn.width == key.width && !drawn.data.empty() &&
+           edge_correlation(drawn, key) > edge_correlation(drawn, frames_[view].picture);
+}
+
 /// Some models copy the reference in place of following it: such a view is drawn by itself.
 void RoundDrawing::draw_like(std::size_t view, const Image& key) {
     auto checked = ask(frames_[view], order_like(view, key));
-    const bool copied =
-        checked.picture.width == key.width && !checked.picture.data.empty() &&
-        edge_correlation(checked.picture, key) > edge_correlation(checked.picture, frames_[view].picture);
-    if (!copied) return take(view, std::move(checked));
+    if (!is_copy(view, checked.picture, key)) return take(view, std::move(checked));
     log::info("the server copied the reference into a view, which is drawn without it");
     draw_alone(view);
 }
@@ -262,6 +329,52 @@ void RoundDrawing::draw_warped(std::size_t view, const std::vector<std::size_t>&
                    std::move(asked)));
 }
 
+/// A view that disagrees with the others stands out: its points have other colours there than in most views.
+void RoundDrawing::redraw_outliers(const KeyPicture& shared) {
+    const bool follows =
+        drawing_.family.references > 0 &&
+        source_.facts().references > (picture_is_reference(source_.facts(), drawing_.family));
+    if (request_.anew || !follows || views_.size() < LeastOfOutliers) return;
+    const auto key = key_view();
+    const Image picture = shared.picture.data.empty() ? squares_[key] : shared.picture;
+    if (picture.data.empty()) return;
+    const auto before = disagreements();
+    for (const auto v : outliers_of(before, key)) {
+        if (is_own(v)) continue;
+        log::info("{} disagrees with the other views ({:.2f}), and is drawn once more like the key view",
+                  views_[v].view.name, before[v]);
+        auto order = order_like(v, picture);
+        order.seed = server_seed(Random::stream(request_.seed, OutlierStream + v).next());
+        const Image old = squares_[v];
+        auto checked = ask(frames_[v], std::move(order));
+        if (checked.flaw != Flaw::None || is_copy(v, checked.picture, picture)) continue;
+        squares_[v] = std::move(checked.picture);
+        if (disagreements()[v] < before[v]) ++round_.redrawn;
+        else squares_[v] = old;
+    }
+}
+
+bool RoundDrawing::is_own(std::size_t view) const {
+    return std::any_of(drawing_.own.begin(), drawing_.own.end(),
+                       [&](const auto& own) { return is_named(views_[view], own.view); });
+}
+
+/// Per view, 0 for those that are not there.
+std::vector<double> RoundDrawing::disagreements() const {
+    std::vector<edit::EditView> views;
+    std::vector<Image> pictures;
+    for (std::size_t v = 0; v < views_.size(); ++v) {
+        if (!is_there(v)) continue;
+        views.push_back(views_[v]);
+        pictures.push_back(pasted(views_[v], frames_[v], squares_[v]));
+    }
+    const auto of_there = edit::view_disagreements(views, pictures);
+    std::vector<double> all(views_.size(), 0.0);
+    for (std::size_t v = 0, next = 0; v < views_.size(); ++v)
+        if (is_there(v)) all[v] = of_there[next++];
+    return all;
+}
+
 RedrawOrder RoundDrawing::order(std::string prompt) const {
     const auto& family = drawing_.family;
     RedrawOrder order = order_of(family);
@@ -286,19 +399,40 @@ RedrawOrder RoundDrawing::order_like(std::size_t view, const Image& key) const {
     return order;
 }
 
+RedrawOrder RoundDrawing::whole_order(std::size_t view, const Image* key) const {
+    auto order = key == nullptr ? order_for(view) : order_like(view, *key);
+    put_frame(order, frames_[view]);
+    suit_to_server(order, source_.facts(), drawing_.family);
+    return order;
+}
+
 void RoundDrawing::draw_ahead(const std::vector<std::size_t>& views, const Image* key) {
     if (!source_.is_spread()) return;
     std::vector<RedrawOrder> orders;
-    for (const auto v : views) {
-        if (is_there(v) || frames_[v].mask.count() == 0) continue;
-        orders.push_back(key == nullptr ? order_for(v) : order_like(v, *key));
-        put_frame(orders.back(), frames_[v]);
+    for (const auto v : views)
+        if (!is_there(v) && frames_[v].mask.count() > 0) orders.push_back(whole_order(v, key));
+    try {
+        ask_ahead(orders);
+    } catch (const Error&) {
+        take_kept(views, key);
+        throw;
     }
-    ask_ahead(std::move(orders));
+    if (is_drawn_early()) take_kept(views, key);
 }
 
-void RoundDrawing::ask_ahead(std::vector<RedrawOrder> orders, std::size_t views_each) {
-    for (auto& order : orders) suit_to_server(order, source_.facts(), drawing_.family);
+void RoundDrawing::take_kept(const std::vector<std::size_t>& views, const Image* key) {
+    for (const auto v : views) {
+        if (is_there(v) || frames_[v].mask.count() == 0) continue;
+        const auto order = whole_order(v, key);
+        if (!source_.is_kept(order)) continue;
+        auto checked = check_answer(frames_[v], source_.ask(order, {}));
+        if (checked.flaw != Flaw::None) continue;
+        checked.picture = match_colours(checked.picture, frames_[v].picture, frames_[v].sent_mask);
+        take(v, std::move(checked));
+    }
+}
+
+void RoundDrawing::ask_ahead(const std::vector<RedrawOrder>& orders, std::size_t views_each) {
     auto hosts = drawing_.nickname;
     for (const auto& one : source_.further())
         if (!one.left_out) hosts += ", " + one.name;
@@ -309,7 +443,7 @@ void RoundDrawing::ask_ahead(std::vector<RedrawOrder> orders, std::size_t views_
                                   job_.report(fmt::format("view {} of {} at {}", shown_ + 1, total, hosts),
                                               shown_, total);
                               },
-                              job_.stop});
+                              drawing_job_.stop});
 }
 
 CheckedPicture RoundDrawing::ask(const ViewFrame& frame, RedrawOrder order, bool may_stay) {
@@ -333,7 +467,7 @@ CheckedPicture RoundDrawing::ask(const ViewFrame& frame, RedrawOrder order, bool
 }
 
 Image RoundDrawing::ask_server(RedrawOrder order) {
-    if (job_.stop_requested()) throw Error(ErrorCode::Cancelled, "redrawing the views was stopped");
+    if (drawing_job_.stop_requested()) throw Error(ErrorCode::Cancelled, "redrawing the views was stopped");
     suit_to_server(order, source_.facts(), drawing_.family);
     const int total = static_cast<int>(views_.size());
     shown_ = std::max(shown_, std::min(static_cast<int>(done_), total - 1));
@@ -343,14 +477,24 @@ Image RoundDrawing::ask_server(RedrawOrder order) {
     // Steps inside a view are not shown: few servers tell them.
     const auto waits = [&](std::string_view words, int place, int) {
         if (words == DrawingStage) return job_.report(stage, now, total);
+        if (words == SlowStage) return report_slow(stage, place);
         job_.report(fmt::format("{}: {}{}", stage, words, place > 0 ? fmt::format(", place {}", place) : ""),
                     now, total);
     };
-    return source_.ask(order, {waits, job_.stop});
+    return source_.ask(order, {waits, drawing_job_.stop});
+}
+
+/// Says once per view that it is waited for. `usual`: s.
+void RoundDrawing::report_slow(const std::string& stage, int usual) {
+    const auto text = fmt::format("{}: {} ({} s)", stage, SlowStage, usual);
+    job_.report(text, shown_, static_cast<int>(views_.size()));
+    if (std::exchange(told_slow_, shown_) != shown_)
+        log::warning("{}; it is waited for, and Cancel ends it", text);
 }
 
 void RoundDrawing::take(std::size_t view, CheckedPicture checked) {
     ++done_;
+    tried_[view] = true;
     round_.drift += checked.drift;
     auto& notes = round_.notes;
     if (!checked.note.empty()) {
@@ -358,6 +502,10 @@ void RoundDrawing::take(std::size_t view, CheckedPicture checked) {
         if (std::find(notes.begin(), notes.end(), checked.note) == notes.end()) notes.push_back(checked.note);
     }
     if (checked.flaw == Flaw::None) squares_[view] = std::move(checked.picture);
+    const auto round = partial_round({});
+    if (offered_ || drawing_.partial.stop == nullptr || !is_enough(round.drawn, round.wanted)) return;
+    drawing_.partial.stop->offer(ended_);
+    offered_ = true;
 }
 
 /// The view that the artist names, else one of his own, else that with the most to change; from behind it

@@ -61,9 +61,9 @@ edit::ViewSection crop_around(const Mask& mask, int side) {
     return {begin(box.left, box.width), begin(box.top, box.height), side};
 }
 
-int sent_side(int asked, int family_side) {
+int sent_side(int asked, int family_side, int step) {
     const int side = asked > 0 ? asked : family_side;
-    return std::max(SideStep, (side + SideStep / 2) / SideStep * SideStep);
+    return std::max(step, (side + step / 2) / step * step);
 }
 
 Image at_side(const Image& picture, int side) { return localize::resize_image(picture, side, side); }

@@ -9,8 +9,6 @@ namespace gse::remote {
 
 /// Least side of a part that is cut out of a view, px.
 inline constexpr int LeastCrop = 512;
-/// Sides of sent pictures are multiples of it, px.
-inline constexpr int SideStep = 64;
 
 /// Part of a square view as it is sent. Pictures are squares of one side.
 struct ViewFrame {
@@ -37,8 +35,9 @@ ViewFrame frame_of(const edit::EditView& view, const edit::ViewSection& section,
 /// Part of a whole picture of the view [S,S,3], of any side, that the frame shows.
 Image framed(const Image& whole, const ViewFrame& frame);
 
-/// Side that a family's picture is sent at: `asked`, or the family's where it is 0, as a multiple of 64.
-int sent_side(int asked, int family_side);
+/// Side that a family's picture is sent at: `asked`, or the family's where it is 0, as a multiple of `step`
+/// px.
+int sent_side(int asked, int family_side, int step);
 
 /// Picture as a square of that side: mean of areas, bilinear where it grows.
 Image at_side(const Image& picture, int side);

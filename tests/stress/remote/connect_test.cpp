@@ -58,6 +58,38 @@ DOCTEST_TEST_CASE("each server is recognised by what it answers") {
     }
 }
 
+DOCTEST_TEST_CASE("servers on this machine are found by their ports, or told with their problem") {
+    if (!can_stand_in()) return;
+    StandIn comfy("comfy"), locked("forge"), invoke("invoke"), gone("sdserver");
+    locked.set({{"password", "basic mira:geheim"}});
+    gone.kill();
+    const Variable token("GSEDITPRO_SERVER_TOKEN", "geheim");
+    const std::vector<int> ports{comfy.port(), locked.port(), gone.port(), invoke.port()};
+    const auto found = find_here(ports, {});
+    DOCTEST_REQUIRE(found.size() == 3);
+    DOCTEST_CHECK(found[0].url == comfy.url());
+    DOCTEST_CHECK(found[0].product == "ComfyUI");
+    DOCTEST_CHECK(found[0].problem.empty());
+    DOCTEST_CHECK(found[1].problem.find("password") != std::string::npos);
+    DOCTEST_CHECK(found[2].problem.find("InvokeAI") != std::string::npos);
+    for (auto* one : {&comfy, &locked, &invoke})
+        for (const auto& entry : one->log()) {
+            DOCTEST_CHECK(entry["method"] == "GET");
+            DOCTEST_CHECK(entry["secret"] == "");
+        }
+}
+
+DOCTEST_TEST_CASE("an older sd-server tells its features in another place") {
+    if (!can_stand_in()) return;
+    auto& stand_in = shared_stand_in("sdserver");
+    DOCTEST_CHECK(connect(stand_in.address(), {})->probe({}).references == 4);
+    stand_in.reset({{"old_features", "1"}});
+    const auto facts = connect(stand_in.address(), {})->probe({});
+    DOCTEST_CHECK(facts.references == 0);
+    DOCTEST_CHECK(facts.takes_mask);
+    stand_in.reset();
+}
+
 DOCTEST_TEST_CASE("a server that hangs is not waited for as long as an answer may take") {
     if (!can_stand_in()) return;
     auto& stand_in = shared_stand_in("forge");

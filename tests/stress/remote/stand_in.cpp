@@ -109,10 +109,19 @@ StandIn& shared_stand_in(const std::string& flavour) {
 }
 
 StandIn::StandIn(const std::string& flavour, const std::string& host,
-                 const std::filesystem::path& certificate)
-    : flavour_(flavour), host_(host), certificate_(certificate) {
+                 const std::filesystem::path& certificate, int port)
+    : flavour_(flavour), port_(port), host_(host), certificate_(certificate) {
     setenv("PYTHONDONTWRITEBYTECODE", "1", 1);
     start();
+}
+
+std::unique_ptr<StandIn> stand_in_at_usual_port(const std::string& flavour) {
+    for (const int port : UsualPorts) try {
+            return std::make_unique<StandIn>(flavour, "127.0.0.1", std::filesystem::path(), port);
+        } catch (const std::runtime_error&) {  // somebody else has it
+        }
+    test::skip("no usual port of image servers is free");
+    return nullptr;
 }
 
 void StandIn::start() {

@@ -22,7 +22,7 @@ class StandIn {
 public:
     /// `certificate` is a file with a certificate and its key, for TLS. Throws where it does not start.
     explicit StandIn(const std::string& flavour, const std::string& host = "127.0.0.1",
-                     const std::filesystem::path& certificate = {});
+                     const std::filesystem::path& certificate = {}, int port = 0);
     ~StandIn();
     StandIn(const StandIn&) = delete;
     StandIn& operator=(const StandIn&) = delete;
@@ -53,6 +53,9 @@ private:
     std::string host_;
     std::filesystem::path certificate_;
 };
+
+/// Server on the first of UsualPorts that is free; null where none is.
+std::unique_ptr<StandIn> stand_in_at_usual_port(const std::string& flavour);
 
 /// The one server of a flavour that cases share, as if it had just been started.
 StandIn& shared_stand_in(const std::string& flavour);

@@ -129,6 +129,7 @@ Shown shown_by(Session& session) {
              static_cast<const ui::ExportPart&>(model), static_cast<const ui::NoticePart&>(model),
              static_cast<const ui::WindowPart&>(model));
     for (const auto& text : model.server.choice.target_picture) shown["server.pictures"] += text;
+    shown["server.here"] = fmt::format("{}", model.server.here.size());
     shown["server.drawing"] = fmt::format("{}", model.drawing.preview != nullptr);
     shown["models.front"] = model.model_settings.front;  // the rest is of the program
     return shown;

@@ -25,6 +25,21 @@ struct Panel : Harness {
 
 }  // namespace
 
+DOCTEST_TEST_CASE("servers on this machine are looked for on a click alone, and one of them is taken") {
+    Panel panel;
+    DOCTEST_CHECK_FALSE(panel.asked("find_servers"));
+    DOCTEST_CHECK(panel.find("models.server.here.0") == nullptr);
+    DOCTEST_CHECK(panel.asks("models.server.find", "find_servers"));
+    auto& server = panel.application.model().server;
+    server.looked = true;
+    server.here = {{"http://127.0.0.1:8000", "127.0.0.1:8000 speaks no protocol of image servers", false},
+                   {"http://127.0.0.1:8188", "ComfyUI at 127.0.0.1:8188", true}};
+    panel.frame(2);
+    DOCTEST_CHECK(panel.find("models.server.here.0") == nullptr);  // it cannot be used
+    DOCTEST_CHECK(panel.asks("models.server.here.1", "set_server http://127.0.0.1:8188"));
+    DOCTEST_CHECK(panel.shell.state().models.server_url == "http://127.0.0.1:8188");
+}
+
 DOCTEST_TEST_CASE("an address is judged as it is typed; without one there is nothing to test or to use") {
     Panel panel;
     DOCTEST_CHECK_FALSE(panel.rect("models.server.test").enabled);

@@ -50,6 +50,14 @@ DOCTEST_TEST_CASE("the last view that is used cannot be dropped") {
     DOCTEST_CHECK(sheet.rect("targets.0.redo").enabled);
 }
 
+DOCTEST_TEST_CASE("a view that was never drawn can be redrawn, and not accepted") {
+    Sheet sheet;
+    sheet.last().targets[2].missing = true;
+    sheet.frame(2);
+    DOCTEST_CHECK_FALSE(sheet.rect("targets.2.accept").enabled);
+    DOCTEST_CHECK(sheet.asks("targets.2.redo", "order_target 1 6 redo"));
+}
+
 DOCTEST_TEST_CASE("nothing is said about a round that is over, or when the edit is") {
     Sheet sheet;
     sheet.click("targets.round.0");

@@ -152,6 +152,20 @@ class Server(WindowTest):
         window.wait_widget("prompt.source.by_server", 20)   # what it found may be wrong
         window.picture("server_10_again")
 
+    def test_servers_on_this_machine_are_looked_for_on_a_click(self):
+        window, _ = self.start()
+        window.click("tab.Models")
+        window.scroll_to("models.server.find", "panel.Models")
+        self.assertFalse(window.state()["server"]["looked"])
+        window.press("models.server.find", lambda s: s["server"]["looked"], "nobody looked")
+        window.picture("server_11_here")
+        usable = [one["url"] for one in window.state()["server"]["here"] if one["usable"]]
+        self.assertEqual(window.state()["server"]["url"], "")
+        if usable:   # of somebody else on this machine
+            index = [one["usable"] for one in window.state()["server"]["here"]].index(True)
+            window.press(f"models.server.here.{index}", lambda s: s["server"]["url"] == usable[0],
+                         "its address was not taken")
+
     def test_an_edit_at_the_server_is_stopped(self):
         window, server = self.start()
         server.ask("set?draw_s=30")

@@ -56,6 +56,10 @@ DOCTEST_TEST_CASE("views that show one colour agree, and one that differs from a
     const auto odd = edit::view_agreement(views, painted(views, greys));
     DOCTEST_CHECK(odd.disagreement > 0);
     DOCTEST_CHECK(odd.disagreement < 0.4 / 2);  // most points are as in most views
+    const auto each = edit::view_disagreements(views, painted(views, greys));
+    DOCTEST_CHECK(each[3] == doctest::Approx(0.4));
+    for (std::size_t v = 0; v < views.size(); ++v)
+        if (v != 3) DOCTEST_CHECK(each[v] == doctest::Approx(0).epsilon(1e-6));
 
     for (std::size_t v = 0; v < views.size(); ++v) greys[v] = v % 2 == 0 ? 0.1f : 0.9f;
     const auto split = edit::view_agreement(views, painted(views, greys));

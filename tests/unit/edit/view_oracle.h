@@ -1,6 +1,7 @@
 // An oracle of view guidance and the edit of a ball that it leads, for tests of the session without networks.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -38,6 +39,11 @@ public:
                 for (auto& value : output.colour.data) value += static_cast<float>(random.uniform(0, 0.1));
             targets.images.push_back(output.colour);
         }
+        if (missing_in_round > 0 && views.size() > 1) {
+            targets.rejected.assign(views.size(), 0);
+            std::fill_n(targets.rejected.begin(), missing_in_round, std::uint8_t{1});
+            targets.missing = targets.rejected;
+        }
         targets.scalars["broken"] = std::nan("");
         targets.scalars["views"] = static_cast<double>(views.size());
         return targets;
@@ -48,6 +54,7 @@ public:
     bool fails_alone = false;                        // where a single view is asked for
     double least_strength = 0;                       // below it the pictures stay as they are
     bool noisy = false;                              // another picture for another seed
+    int missing_in_round = 0;                        // first views that a whole round lacks
 
 private:
     const GaussianSet& target_;

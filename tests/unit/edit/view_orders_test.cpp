@@ -118,6 +118,30 @@ DOCTEST_TEST_CASE(
     DOCTEST_CHECK(result.changed_outside_label == 0);
 }
 
+DOCTEST_TEST_CASE("a view that was not drawn is missing: it cannot be accepted, and Redo has it drawn") {
+    const auto chosen = drawn(Redrawing().edited(view_request(1, 30)));
+    DOCTEST_REQUIRE(chosen.size() == 4);
+    const std::size_t first = *chosen.begin(), second = *std::next(chosen.begin());
+    for (const bool redone : {false, true}) {
+        DOCTEST_CAPTURE(redone);
+        Redrawing run;
+        run.oracle.missing_in_round = 2;
+        run.oracle.fails_alone = !redone;
+        Artist artist;
+        artist.sit_at(run.tools);
+        artist.says[0] = {{0, first, TargetChoice::Accept}, {0, second, TargetChoice::Redo}};
+        const auto result = run.edited(view_request(1, 30));
+        DOCTEST_CHECK(artist.sheets.front().views[0].missing);
+        DOCTEST_CHECK(artist.last(0).missing);
+        DOCTEST_CHECK(artist.last(0).dropped);
+        DOCTEST_CHECK(artist.last(1).missing == !redone);
+        DOCTEST_CHECK(artist.last(1).dropped == !redone);
+        DOCTEST_CHECK_FALSE(artist.last(2).missing);
+        DOCTEST_CHECK_FALSE(drawn(result).contains(first));
+        DOCTEST_CHECK(drawn(result).contains(second) == redone);
+    }
+}
+
 DOCTEST_TEST_CASE("the next round begins with all views again") {
     Redrawing run;
     Artist artist;

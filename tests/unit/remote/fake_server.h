@@ -35,7 +35,7 @@ inline Image where(const Image& mask, const Image& inside, const Image& outside)
 class FakeServer : public remote::ImageServer {
 public:
     FakeServer() {
-        facts.product = "fake";
+        facts.product = "sd-server";  // it keeps what lies outside of a mask
         facts.model = "sd-v1-5";
     }
     remote::ServerFacts facts;
@@ -47,7 +47,8 @@ public:
     std::size_t lost_at = ~std::size_t{0};     // call that ends when all its previews were shown
     std::string model = {};                    // that it says has drawn
     std::size_t previews = 0;                  // pictures in the making that it shows for each, if asked
-    int place = 0;                             // in its queue, which it tells before it draws; 0 = it draws
+    std::function<void(std::size_t call)> while_drawn = {};  // before it says once more that it draws
+    int place = 0;  // in its queue, which it tells before it draws; 0 = it draws
 
     remote::ServerFacts probe(const JobControl&) override { return facts; }
     remote::RedrawnPicture redraw(const remote::RedrawOrder& order, const JobControl& job) override {
@@ -58,6 +59,11 @@ public:
         if (call >= fails_from) throw Error(ErrorCode::Foreign, "nobody answers");
         for (std::size_t i = 0; i < previews && order.preview; ++i)
             order.preview(Image(8, 8, 3, 0.1f * static_cast<float>(i)));
+        if (while_drawn) {
+            while_drawn(call);
+            if (job.stop_requested()) throw Error(ErrorCode::Cancelled, "stopped");
+            job.report(remote::DrawingStage, 0, 0);
+        }
         if (call == lost_at) throw Error(ErrorCode::Foreign, "the connection ended");
         orders.push_back(order);
         if (draws) return {draws(order, call), model};

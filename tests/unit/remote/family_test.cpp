@@ -34,6 +34,7 @@ DOCTEST_TEST_CASE("family: names of real models lead to the family that drives t
         {"FLUX.2-dev", "flux2"},
         {"Qwen-Image-Edit", "qwen-edit"},
         {"qwen_image_edit_2509_fp8.safetensors", "qwen-edit-plus"},
+        {"qwen-image-Q4_K_S.gguf", "qwen-image"},
         {"z_image_turbo_bf16.safetensors", "z-image"},
         {"Z-Image-Base-Q8_0.gguf", "z-image-base"},
         {"gpt-image-1", "editor"}};
@@ -51,9 +52,43 @@ DOCTEST_TEST_CASE("family: every family has settings that a server takes") {
         DOCTEST_CHECK(family.steps >= 1);
         DOCTEST_CHECK(family.strength <= 1);
         DOCTEST_CHECK(family.again_strength <= family.strength);
-        DOCTEST_CHECK(family.side % 64 == 0);
+        DOCTEST_CHECK(family.side % family.side_step == 0);
+        DOCTEST_CHECK(family.side_step % family.latent_cell == 0);
         if (family.instructed()) DOCTEST_CHECK(family.strength == 1);
     }
+}
+
+DOCTEST_TEST_CASE("family: Qwen's pictures have sides in steps of 112") {
+    for (const auto* name : {"qwen-image", "qwen-edit", "qwen-edit-plus"}) {
+        DOCTEST_CHECK(family_named(name).side == 9 * 112);
+        DOCTEST_CHECK(order_of(family_named(name)).side_step == 112);
+    }
+    for (const auto* name : {"flux1", "kontext", "flux2", "flux2-klein", "z-image"})
+        DOCTEST_CHECK(family_named(name).side_step % 16 == 0);
+}
+
+DOCTEST_TEST_CASE("family: whole pictures are redrawn with a mask only where the server keeps the rest") {
+    const auto masked = [](ServerKind kind, const std::string& product, std::string_view family) {
+        ServerFacts facts;
+        facts.kind = kind;
+        facts.product = product;
+        RedrawOrder order;
+        order.picture = Image(64, 64, 3);
+        order.mask = Image(64, 64, 1, 1);
+        suit_to_server(order, facts, family_named(family));
+        return !order.mask.data.empty();
+    };
+    for (const auto* family : {"kontext", "flux2-klein", "qwen-edit-plus", "editor"}) {
+        DOCTEST_CAPTURE(family);
+        DOCTEST_CHECK(masked(ServerKind::SdCpp, "sd-server", family));
+        DOCTEST_CHECK(masked(ServerKind::Comfy, "ComfyUI", family));
+        DOCTEST_CHECK(masked(ServerKind::OpenAi, "sd-server", family));
+        DOCTEST_CHECK_FALSE(masked(ServerKind::OpenAi, "vLLM-Omni", family));
+        DOCTEST_CHECK_FALSE(masked(ServerKind::Webui, "SD.Next", family));
+    }
+    DOCTEST_CHECK(masked(ServerKind::Webui, "A1111", "ip2p"));
+    DOCTEST_CHECK(masked(ServerKind::Webui, "Forge", "flux1-fill"));
+    DOCTEST_CHECK(masked(ServerKind::OpenAi, "vLLM-Omni", "sd15"));
 }
 
 DOCTEST_TEST_CASE("agreement: what suits a family depends on what the server takes") {

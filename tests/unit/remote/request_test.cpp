@@ -76,6 +76,8 @@ DOCTEST_TEST_CASE("orders that no server must see are refused") {
     refused([](RedrawOrder& o) { o.prompt = " \n"; });
     refused([](RedrawOrder& o) { o.picture = Image(65, 64, 3); });
     refused([](RedrawOrder& o) { o.picture = Image(64, 128, 1); });
+    refused([](RedrawOrder& o) { o.side_step = 112; });
+    refused([](RedrawOrder& o) { o.side_step = 8; });
     refused([](RedrawOrder& o) { o.mask = Image(64, 64, 1); });
     refused([](RedrawOrder& o) { o.strength = 0; });
     refused([](RedrawOrder& o) { o.strength = std::nan(""); });
@@ -83,6 +85,14 @@ DOCTEST_TEST_CASE("orders that no server must see are refused") {
     refused([](RedrawOrder& o) { o.steps = 0; });
     refused([](RedrawOrder& o) { o.references = {o.picture, o.picture}; });
     refused([](RedrawOrder& o) { o.references = {Image{}}; });
+}
+
+DOCTEST_TEST_CASE("sides may be multiples of another step than 64") {
+    auto order = plain_order();
+    order.picture = Image(224, 112, 3);
+    order.mask = {};
+    order.side_step = 112;
+    DOCTEST_CHECK_NOTHROW(check_order(order, {}));
 }
 
 DOCTEST_TEST_CASE("answers are bounded by what a picture can need") {

@@ -36,10 +36,14 @@ DOCTEST_TEST_CASE("frame: one crop holds the largest mask of all views with a ma
     DOCTEST_CHECK(crop_side({view_with(256, disc(256, 10))}) == 256);
 }
 
-DOCTEST_TEST_CASE("frame: sides that are sent are multiples of 64") {
-    DOCTEST_CHECK(sent_side(0, 1024) == 1024);
-    DOCTEST_CHECK(sent_side(100, 1024) == 128);
-    DOCTEST_CHECK(sent_side(16, 512) == 64);
+DOCTEST_TEST_CASE("frame: sides that are sent are multiples of the family's step") {
+    DOCTEST_CHECK(sent_side(0, 1008, 112) == 1008);
+    DOCTEST_CHECK(sent_side(1024, 1008, 112) == 1008);
+    DOCTEST_CHECK(sent_side(768, 1008, 112) == 784);
+    DOCTEST_CHECK(sent_side(16, 1008, 112) == 112);
+    DOCTEST_CHECK(sent_side(0, 1024, 64) == 1024);
+    DOCTEST_CHECK(sent_side(100, 1024, 64) == 128);
+    DOCTEST_CHECK(sent_side(16, 512, 64) == 64);
 }
 
 DOCTEST_TEST_CASE("frame: what is pasted back changes nothing outside the mask, bit by bit") {

@@ -81,6 +81,34 @@ void draw_address(Context& context) {
     }
 }
 
+/// Looks for servers on this machine, and lists them.
+void draw_servers_here(Context& context) {
+    const auto& server = context.model.server;
+    if (button(context, {.name = "models.server.find",
+                         .text = "Look on this machine",
+                         .why_off = context.model.job.running ? "A job is running." : "",
+                         .tooltip = "Ask the usual ports of image servers here what listens. No picture and "
+                                    "no password is sent."}))
+        context.emit(command::FindServers{});
+    if (server.looking) dim_text("The usual ports of this machine are being asked.");
+    if (server.looked && server.here.empty())
+        dim_text("No program listens on the usual ports of image servers. Type the address.");
+    for (std::size_t i = 0; i < server.here.size(); ++i) {
+        const auto& one = server.here[i];
+        if (!one.usable) {
+            dim_text(one.text);
+            continue;
+        }
+        if (!button(context, {.name = fmt::format("models.server.here.{}", i),
+                              .text = one.text,
+                              .tooltip = "Take this server's address"}))
+            continue;
+        context.state.models.server_url = one.url;
+        context.state.models.server_problem.clear();
+        take_address(context);
+    }
+}
+
 void draw_switch(Context& context) {
     bool on = context.model.server.on;
     ImGui::BeginDisabled(!on && !why_not_use(context).empty());
@@ -171,6 +199,7 @@ void draw_image_server(Context& context) {
         "A picture model that runs elsewhere, such as sd-server, Forge or ComfyUI, can draw the views of an "
         "edit.");
     draw_address(context);
+    draw_servers_here(context);
     draw_switch(context);
     draw_facts(context.model.server, context);
     if (context.model.server.choice.url.empty()) return;
