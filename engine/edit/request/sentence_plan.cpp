@@ -127,20 +127,20 @@ bool bears(const std::string& joint, const std::string& source) {
     return std::find(Bearing.begin(), Bearing.end(), joint) != Bearing.end();
 }
 
-/// "statue" of "a statue on a white pedestal", "bear" of "a bear wearing a red hat", or "vase" of "a vase with
+/// "statue" of "a statue on a white pedestal", "bear" of "a bear wearing a red hat", "vase" of "a vase with
 /// red flowers". What the source carries, and what bears it, is there before. Empty for other sentences, and
 /// where the source has no new look.
 std::string linked_thing(const language::Sentence& sentence, const std::string& source) {
     constexpr std::size_t Joint = 2;  // behind an article and a noun
     const auto& words = sentence.words();
     const auto place = sentence.position_of(source);
-    if (place >= words.size() || !language::is_a(words.front(), Articles)) return {};
+    if (place >= words.size() || place <= Joint + 1 || !language::is_a(words.front(), Articles)) return {};
     const bool article = language::is_a(words[Joint + 1], Articles);
     const auto joins = [](const std::string& word) {
         return language::is_a(word, language::WordClass::Stop | language::WordClass::Beside);
     };
     const auto look = words.begin() + Joint + 1, noun = words.begin() + static_cast<std::ptrdiff_t>(place);
-    const bool has_look = article ? Joint + 2 < place : look < noun && std::none_of(look, noun, joins);
+    const bool has_look = article ? Joint + 2 < place : std::none_of(look, noun, joins);
     return has_look && bears(words[Joint], source) ? words[1] : std::string();
 }
 

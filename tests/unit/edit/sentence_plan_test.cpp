@@ -161,8 +161,7 @@ DOCTEST_TEST_CASE("a new look of what a thing wears, holds or has is no wish for
           std::pair{"a bulldozer with a green bucket", "bucket"},
           std::pair{"the bear wears a red hat", "hat"}, std::pair{"a cat in a blue scarf", "scarf"},
           std::pair{"a kitchen with a red oven", "oven"}, std::pair{"a vase with red flowers", "flowers"},
-          std::pair{"a man wearing black leather shoes", "shoes"},
-          std::pair{"a car with red wheels", "wheels"}}) {
+          std::pair{"a man wearing black shoes", "shoes"}, std::pair{"a car with red wheels", "wheels"}}) {
         const std::string typed = prompt;
         DOCTEST_CAPTURE(typed);
         const auto wanted = request(typed, source);
@@ -175,7 +174,8 @@ DOCTEST_TEST_CASE("a new look of what a thing wears, holds or has is no wish for
     // Without a new look of the source the other thing is what is new.
     const auto beside = request("a cat with a ball", "ball");
     DOCTEST_CHECK(edit::assumed_scene(beside).things.size() == 1);
-    for (const std::string listed : {"a cat with balls", "a cat with milk and balls"})
+    for (const std::string listed :
+         {"a cat with balls", "a cat with milk and balls", "blue balls", "a balls"})
         DOCTEST_CHECK(edit::assumed_scene(request(listed, "balls")).things.size() == 1);
 }
 
