@@ -45,7 +45,7 @@ template <> void EditController::on(const command::Edit& one) {
     search_.sentence().set_step(std::nullopt);
     search_.choose_for_source();  // another source is another matter
     if (!search_.sentence().follows_plan()) return start(std::nullopt);
-    if (edit::pictures_decide(search_.request())) return read_steps();
+    if (edit::pictures_decide(search_.request(), models_.list().words_to_say())) return read_steps();
     begin_steps(search_.sentence().scene());
 }
 

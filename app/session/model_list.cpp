@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/language/vocabulary.h"
 #include "engine/pipeline/models/model_catalogue.h"
 #include "engine/pipeline/models/model_words.h"
 
@@ -43,6 +44,10 @@ const ui::ModelView* ModelList::find(const std::string& path) const {
 std::string ModelList::name_of(const std::string& path) const {
     const auto* row = find(path);
     return row == nullptr || row->name.empty() ? path : row->name;
+}
+
+std::vector<std::string> ModelList::words_to_say() const {
+    return language::promptable_vocabulary(known_words_, generated_vocabulary_);
 }
 
 void ModelList::show(ui::ModelPart& model) const {

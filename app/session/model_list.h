@@ -26,6 +26,8 @@ public:
     std::string name_of(const std::string& path) const;
     const std::vector<std::string>& known_words() const { return known_words_; }
     const std::vector<std::string>& generated_vocabulary() const { return generated_vocabulary_; }
+    /// Words of sentences that it takes: found or drawn; empty = any.
+    std::vector<std::string> words_to_say() const;
     void show(ui::ModelPart& model) const;
 
 private:

@@ -476,8 +476,7 @@ void SearchController::refresh_estimate() {
     work.tune_steps = settings.learn_scene && !work.located && !learned ? settings.learning.steps : 0;
     work.rows = current.size();
     work.traits = models_.traits();
-    work.words =
-        language::promptable_vocabulary(models_.list().known_words(), models_.list().generated_vocabulary());
+    work.words = models_.list().words_to_say();
     const auto estimate = [&](const std::vector<PlannedEdit>& edits) {
         costs_.estimate(edits, servers_.cost_of(edits));
     };

@@ -137,6 +137,11 @@ std::vector<std::string> nearest_words(const std::string& word, const std::vecto
     return words;
 }
 
+std::vector<std::string> things_among(std::vector<std::string> known) {
+    std::erase_if(known, [](const auto& word) { return is_a(word, Description); });
+    return known;
+}
+
 std::string words_to_use(const std::string& word, const std::vector<std::string>& known) {
     const auto near = nearest_words(word, known);
     if (!near.empty()) return quoted(near);

@@ -33,6 +33,9 @@ std::string unknown_word(const std::vector<std::string>& known, std::string_view
 std::vector<std::string> nearest_words(const std::string& word, const std::vector<std::string>& known,
                                        std::size_t most = 3);
 
+/// The words that are no looks: neither colours nor materials nor states.
+std::vector<std::string> things_among(std::vector<std::string> known);
+
 /// "bear", "dog" or "cat": what to use instead of a word the model does not know; the nearest, else all that
 /// name or describe things.
 std::string words_to_use(const std::string& word, const std::vector<std::string>& known);

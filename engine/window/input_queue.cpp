@@ -16,11 +16,15 @@ constexpr std::uint64_t ClickFrames = 2;  // until the field, or what a button o
 
 bool is_modifier(int key) { return key >= FirstModifier && key <= LastModifier; }
 
+/// Key that writes its character and commands nothing.
+bool writes(const InputQueue::Event& event) {
+    return event.key >= FirstPrintable && event.key <= LastPrintable && (event.modifiers & Commanding) == 0;
+}
+
 /// Key with an effect of its own, other than its character.
 bool acts(const InputQueue::Event& event) {
     if (event.character || event.button >= 0 || event.action != Press || is_modifier(event.key)) return false;
-    const bool writes = event.key >= FirstPrintable && event.key <= LastPrintable;
-    return !writes || (event.modifiers & Commanding) != 0;
+    return !writes(event);
 }
 
 }  // namespace
@@ -46,6 +50,7 @@ void InputQueue::note(const Event& event) {
         typed_ = true;
         return;
     }
+    if (typing_ && writes(event)) return;
     if (event.action == Press || event.action == Release) changed_.push_back(event.key);
     other_pressed_ |= event.action == Press && !is_modifier(event.key);
     if (!acts(event)) return;
@@ -58,8 +63,9 @@ bool InputQueue::click_waits() const {
                        [](const Event& event) { return event.button >= 0; });
 }
 
-std::vector<InputQueue::Event> InputQueue::next_frame() {
+std::vector<InputQueue::Event> InputQueue::next_frame(bool typing) {
     ++frame_;
+    typing_ = typing;
     changed_.clear();
     pressed_ = other_pressed_ = typed_ = clicked_ = false;
     std::vector<Event> events;

@@ -27,8 +27,9 @@ public:
     bool waiting() const { return !waiting_.empty(); }
     /// True while a button's press or release waits: the cursor is still where the last one was.
     bool click_waits() const;
-    /// Input of the frame that begins, in its order.
-    std::vector<Event> next_frame();
+    /// Input of the frame that begins, in its order. `typing`: a text field has the focus. A frame then takes
+    /// all letters that wait, as their keys mean nothing but their characters.
+    std::vector<Event> next_frame(bool typing = false);
 
 private:
     bool fits(const Event& event) const;
@@ -39,6 +40,7 @@ private:
                   free_from_ = 0;  // presses and characters wait for that frame: the focus is still moving
     std::vector<int> changed_;     // keys that went down or up in this frame
     bool clicked_ = false;         // a button went down or up in this frame
+    bool typing_ = false;          // a text field has the focus in this frame
     bool pressed_ = false, other_pressed_ = false,
          typed_ = false;  // in this frame: a key that does something, any but a
                           // modifier, a character

@@ -168,7 +168,7 @@ void Window::State::hand_on_input() {
     const ImVec2 cursor_before = io.MousePos;
     const bool held = input.click_waits();  // the cursor may have moved on since
     std::optional<ImVec2> clicked;
-    for (const auto& event : input.next_frame()) {
+    for (const auto& event : input.next_frame(io.WantTextInput)) {
         if (event.button >= 0) {
             if (event.button < static_cast<int>(buttons_down.size()))
                 buttons_down[static_cast<std::size_t>(event.button)] = event.action == GLFW_PRESS;

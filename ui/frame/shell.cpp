@@ -84,8 +84,18 @@ void update_sentence(Context& context) {
 /// Brings a panel to the front that the artist has to answer, with the room that its pictures need.
 void ask_with(UiState& state, PanelId panel) {
     show_panel(state, panel);
-    if (state.layout.place(panel).area == Area::Bottom)
-        state.layout.bottom_share = std::max(state.layout.bottom_share, Layout::AskingShare);
+    auto& layout = state.layout;
+    if (layout.place(panel).area != Area::Bottom || layout.bottom_share >= Layout::AskingShare) return;
+    layout.share_before_asking = layout.bottom_share;
+    layout.bottom_share = Layout::AskingShare;
+}
+
+/// Gives the room back that a panel took to ask.
+void take_back_room(Context& context) {
+    auto& layout = context.state.layout;
+    const bool asks = context.model.search.problem != edit::SearchProblem::None || context.model.targets_wait;
+    if (layout.share_before_asking <= 0 || asks) return;
+    layout.bottom_share = std::exchange(layout.share_before_asking, 0.0f);
 }
 
 /// A search that came to nothing shows why.
@@ -119,6 +129,7 @@ void grow_by_double_click(Layout& layout) {
     constexpr float Large = 0.5f, HardlyMore = 0.05f;
     tooltip("Double click: half of the window's height, and back");
     if (!ImGui::IsItemHovered() || !ImGui::IsMouseDoubleClicked(0)) return;
+    layout.share_before_asking = 0;
     const float usual = Layout::standard().bottom_share;
     layout.bottom_share = layout.bottom_share > usual + HardlyMore ? usual : Large;
 }
@@ -182,6 +193,7 @@ void drag_splitters(Context& context, const Plan& plan) {
     if (plan.bottom_used) {
         const float drag = splitter(context, "split.bottom", plan.split_bottom.low, plan.split_bottom.high);
         const float height = plan.tools.size().y;
+        if (drag != 0) layout.share_before_asking = 0;  // the artist's own share
         if (drag != 0)
             layout.bottom_share =
                 std::clamp((plan.bottom.size().y - drag) / std::max(1.0f, height), 0.08f, 0.9f);
@@ -377,6 +389,7 @@ std::vector<Command> Shell::draw(const ViewModel& model, Textures& textures) {
     update_sentence(context);
     show_failed_search(context);
     show_waiting_targets(context);
+    take_back_room(context);
     handle_keys(context);
     answer_requests(context);
     keep_controls(context);

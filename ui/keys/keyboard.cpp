@@ -160,6 +160,16 @@ void walk_menus(Context& context) {
     if (pressed(key::Escape)) keyboard.menu_walk = 0;
 }
 
+/// Esc closes a menu or list that the mouse opened, which ImGui leaves open without the focus of keys.
+/// Dialogs read Esc themselves.
+void close_by_escape(const Context& context) {
+    const ImGuiContext& g = *ImGui::GetCurrentContext();
+    if (context.keyboard.on || !pressed(key::Escape) || g.ActiveId != 0 || keeper() == nullptr) return;
+    const ImGuiWindow* top = g.OpenPopupStack.back().Window;
+    if (top == nullptr || (top->Flags & ImGuiWindowFlags_Modal) != 0) return;
+    ImGui::ClosePopupToLevel(g.OpenPopupStack.Size - 1, true);
+}
+
 void leave(Context& context) {
     ImGuiContext& g = *ImGui::GetCurrentContext();
     g.NavId = 0;
@@ -192,6 +202,7 @@ void begin_keyboard(Context& context) {
     if (pressed(key::F6, true)) next_area(context);
     keyboard.escape_taken = pressed(key::Escape) && keyboard.on && !keyboard.popup_before && g.ActiveId == 0;
     if (keyboard.escape_taken) leave(context);
+    close_by_escape(context);
     if (keyboard.on) press_focused(context);
 }
 

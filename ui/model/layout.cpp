@@ -61,7 +61,7 @@ std::string Layout::to_json() const {
     Json json;
     json["right_em"] = right_em;
     json["right_split"] = right_split;
-    json["bottom_share"] = bottom_share;
+    json["bottom_share"] = share_before_asking > 0 ? share_before_asking : bottom_share;
     for (std::size_t panel = 0; panel < PanelCount; ++panel)
         json["panels"][PanelTable[panel].name] = {{"area", static_cast<int>(places[panel].area)},
                                                   {"open", places[panel].open}};

@@ -53,7 +53,8 @@ struct Layout {
     float right_em = 25;                        // width of the right column
     float right_split = 0.62f;                  // share of its height that the upper area takes
     static constexpr float AskingShare = 0.4f;  // of the height, for a panel that the artist has to answer
-    float bottom_share = 0.19f;  // of the height, taken by the bottom area; the picture has two thirds
+    float bottom_share = 0.19f;     // of the height, taken by the bottom area; the picture has two thirds
+    float share_before_asking = 0;  // bottom_share to go back to when nothing asks any more; 0 = none
     bool panels_hidden = false;
 
     static Layout standard();

@@ -97,6 +97,7 @@ StepFacts step_facts(const edit::EditRequest& request, const edit::PlannedStep& 
             fmt::format("{}: {}", first_letter_up(planned.problem.reason), planned.problem.remedy);
         return facts;
     }
+    facts.rearranges = !edit::is_drawn(planned.words->mode);
     const auto source = language::normalised_prompt(request.source);
     const bool about_source = planned.words->source == source;
     const bool labelled =
@@ -163,18 +164,25 @@ std::string locate_problem_of(const std::string& source, const SentenceGround& g
     return facts.source_known ? std::string() : unknown_source(source, ground);
 }
 
+/// Words of a step that the model is told; of one that draws nothing, those of the thing alone.
+std::string told_words(const StepFacts& step, const edit::EditRequest& request) {
+    if (!step.rearranges) return step.told.prompt;
+    return step.told.source.empty() ? language::normalised_prompt(request.source) : step.told.source;
+}
+
 /// Chips of words that are news, and of words of an order, which are not for the model.
 void mark_chips(const edit::EditRequest& request, SentenceFacts& facts) {
-    std::string told = facts.told.prompt;
+    std::string told = facts.rearranges ? language::normalised_prompt(request.source) : facts.told.prompt;
     std::vector<std::string> targets{request.target.empty() ? facts.guessed_target : request.target};
     if (facts.steps.size() > 1)
         for (const auto& step : facts.steps) {
-            told += " " + step.told.prompt;
+            told += " " + told_words(step, request);
             targets.push_back(step.told.target);
         }
     for (std::size_t index = 0; index < facts.chips.size(); ++index) {
         auto& chip = facts.chips[index];
-        const bool slip = !chip.suggestion.empty() && language::has_phrase(told, chip.suggestion);
+        const bool slip =
+            !facts.rearranges && !chip.suggestion.empty() && language::has_phrase(told, chip.suggestion);
         if (!told.empty() && !slip && !language::has_phrase(told, chip.text))
             chip.known = true, chip.suggestion.clear();
         chip.target = std::any_of(targets.begin(), targets.end(),
@@ -208,12 +216,13 @@ SentenceFacts facts_of(const edit::EditRequest& request, const SentenceGround& g
         const std::size_t index = language::position_of(request.source, unknown);
         for (const auto& near : language::nearest_words(unknown, ground.known))
             facts.source_suggestions.push_back(with_word(request.source, index, near));
-        facts.source_help = language::words_to_use(unknown, ground.known);
+        facts.source_help = language::words_to_use(unknown, language::things_among(ground.known));
     }
     const auto planned =
         edit::changes_of(request, edit::assumed_scene(request, ground.made),
                          {ground.said, {ground.known.empty() || ground.draws_any_word, ground.known}});
     for (const auto& step : planned) facts.steps.push_back(step_facts(request, step, ground));
+    facts.rearranges = facts.steps.size() == 1 && facts.steps.front().rearranges;
     facts.follows_plan = edit::follows_plan(request, planned, {ground.said, {}});
     facts.problem = problem_of(request, ground, facts);
     facts.locate_problem = locate_problem_of(language::normalised_prompt(request.source), ground, facts);

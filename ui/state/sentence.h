@@ -30,6 +30,7 @@ struct StepFacts {
     std::string problem;        // why it cannot be done, and what would do it, one sentence; empty = it can
     bool may_be_shown = false;  // pictures of the scene may show it already
     edit::EditWords told = {};  // words that the model is told
+    bool rearranges = false;    // splats that are there: no word of it is drawn
 };
 
 struct SentenceFacts {
@@ -49,6 +50,7 @@ struct SentenceFacts {
     bool refused = false;          // by what the sentence means, whatever the model
     std::string missing;           // noun that it is refused for: nothing in the scene is called so
     std::string cut_at;            // first word that the text encoder does not read; empty = it reads all
+    bool rearranges = false;       // the sentence as a whole does: none of its words is drawn
 };
 
 SentenceFacts facts_of(const edit::EditRequest& request, const SentenceGround& ground);

@@ -12,6 +12,7 @@
 #include "engine/language/plan/plan_sentence.h"
 #include "engine/language/plan/plan_text.h"
 #include "engine/language/plan/words/lexicon.h"
+#include "engine/language/vocabulary.h"
 #include "engine/language/words.h"
 
 namespace gse::edit {
@@ -126,15 +127,20 @@ bool bears(const std::string& joint, const std::string& source) {
     return std::find(Bearing.begin(), Bearing.end(), joint) != Bearing.end();
 }
 
-/// "statue" of "a statue on a white pedestal", or "bear" of "a bear wearing a red hat". What the source
-/// carries, and what bears it, is there before. Empty for other sentences, and where the source has no new
-/// look.
+/// "statue" of "a statue on a white pedestal", "bear" of "a bear wearing a red hat", "vase" of "a vase with
+/// red flowers". What the source carries, and what bears it, is there before. Empty for other sentences, and
+/// where the source has no new look.
 std::string linked_thing(const language::Sentence& sentence, const std::string& source) {
     constexpr std::size_t Joint = 2;  // behind an article and a noun
     const auto& words = sentence.words();
     const auto place = sentence.position_of(source);
-    if (place >= words.size() || !language::is_a(words.front(), Articles)) return {};
-    const bool has_look = Joint + 2 < place && language::is_a(words[Joint + 1], Articles);
+    if (place >= words.size() || place <= Joint + 1 || !language::is_a(words.front(), Articles)) return {};
+    const bool article = language::is_a(words[Joint + 1], Articles);
+    const auto joins = [](const std::string& word) {
+        return language::is_a(word, language::WordClass::Stop | language::WordClass::Beside);
+    };
+    const auto look = words.begin() + Joint + 1, noun = words.begin() + static_cast<std::ptrdiff_t>(place);
+    const bool has_look = article ? Joint + 2 < place : std::none_of(look, noun, joins);
     return has_look && bears(words[Joint], source) ? words[1] : std::string();
 }
 
@@ -310,8 +316,8 @@ bool is_told_as_typed(const EditRequest& request, const plan::Plan& plan) {
     return is_description(sentence) && plan.steps.front().text == plan::reason::NotASentence;
 }
 
-bool pictures_decide(const EditRequest& request) {
-    if (!is_planned(request)) return false;
+bool pictures_decide(const EditRequest& request, const std::vector<std::string>& words) {
+    if (!is_planned(request) || !language::vocabulary_contains(words, request.source)) return false;
     const auto scene = assumed_scene(request);
     const auto plan = plan_of(request, scene);
     const language::Sentence sentence(request.prompt);

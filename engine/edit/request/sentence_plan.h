@@ -82,8 +82,9 @@ bool follows_plan(const EditRequest& request, const std::vector<PlannedStep>& st
 EditRequest request_of(EditRequest request, const language::plan::StepSentence& words);
 
 /// True where pictures of the scene decide what the sentence asks for. A look stands before the source's name
-/// beside another change ("a blue bear wearing a hat"), or a ground is named in passing.
-bool pictures_decide(const EditRequest& request);
+/// beside another change ("a blue bear wearing a hat"), or a ground is named in passing. `words`: the words
+/// of the model that looks at them; it says nothing of a thing that it has no word for.
+bool pictures_decide(const EditRequest& request, const std::vector<std::string>& words = {});
 
 /// Reason why the request is no single edit, by its words alone: nothing to change, an operation that no edit
 /// does, several changes. Nothing where target, mode or instruction were chosen. Looks before the source's

@@ -59,7 +59,9 @@ plan::SceneWords words_of_scene(const EditRecipe& recipe, const std::string& giv
                                 std::shared_ptr<DiskCache> cache) {
     if (!given.empty()) return plan::scene_words(edit::with_source(given, recipe.request));
     auto scene = edit::assumed_scene(recipe.request, labels);
-    if (!edit::pictures_decide(recipe.request)) return scene;
+    const auto path = model_path(recipe.job);
+    const auto words = language::promptable_vocabulary(model_words(path), generated_vocabulary(path));
+    if (!edit::pictures_decide(recipe.request, words)) return scene;
     EditRecipe looking = recipe;
     looking.request = edit::source_alone(looking.request);
     looking.use_dreambooth = false;

@@ -77,6 +77,27 @@ DOCTEST_TEST_CASE("what an addition left behind is not what the next edit of ano
     app.shut_down();
 }
 
+DOCTEST_TEST_CASE("a thing labelled by hand needs no word of the model where a ground is named in passing") {
+    if (!networks()) return;
+    const Place place;
+    Session session;
+    session.open_bear();
+    auto& app = session.app;
+    auto request = app.model().request;
+    request.source = "flowers";
+    request.prompt = "red flowers on the grass";
+    request.target.clear();
+    request.method = "views";
+    request.edited_views = 2;
+    app.run(command::SetRequest{request});
+    app.run(command::Select{stroke_over_bear(30), ui::SetOperation::Add, true});
+    app.run(command::Edit{});
+    DOCTEST_REQUIRE(session.settled());
+    DOCTEST_CHECK_MESSAGE(app.model().job.error.empty(), app.model().job.error);
+    DOCTEST_CHECK(app.model().result_waiting);
+    app.shut_down();
+}
+
 DOCTEST_TEST_CASE("an addition beside a thing that the model does not know is not taken for that thing") {
     if (!networks()) return;
     const Place place;

@@ -144,6 +144,12 @@ DOCTEST_TEST_CASE("Alt opens the menus, arrows go through them, Enter chooses") 
     DOCTEST_CHECK(harness.find("menu.open") != nullptr);
     harness.key(key::Escape);
     DOCTEST_CHECK(harness.find("menu.open") == nullptr);
+    // So it does where the mouse opened it.
+    harness.click("menu.File");
+    DOCTEST_REQUIRE(harness.find("menu.open") != nullptr);
+    harness.key(key::Escape);
+    harness.frame(3);
+    DOCTEST_CHECK(harness.find("menu.open") == nullptr);
     // Alt held for something else opens nothing.
     harness.modifiers(false, false, true);
     harness.key('W');

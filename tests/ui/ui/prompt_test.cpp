@@ -195,6 +195,23 @@ DOCTEST_TEST_CASE("the reading of a sentence is shown where it is not the senten
     DOCTEST_CHECK_FALSE(shows_reading(told + "."));
 }
 
+DOCTEST_TEST_CASE("the room that a failed search takes is given back with the next scene or search") {
+    Harness harness({Wide, High, 1, Situation::Scene, false});
+    const auto split = [&] { return harness.find("split.bottom")->y; };
+    harness.frame(3);
+    const float usual = split();
+    auto& search = harness.application.model().search;
+    search.problem = edit::SearchProblem::Unsure;
+    search.number = 7;
+    harness.frame(3);
+    DOCTEST_CHECK(split() < usual);
+    DOCTEST_CHECK(ui::Layout::from_json(harness.shell.layout()).bottom_share ==
+                  ui::Layout::standard().bottom_share);
+    search.problem = edit::SearchProblem::None;
+    harness.frame(3);
+    DOCTEST_CHECK(split() == usual);
+}
+
 DOCTEST_TEST_CASE("a search that labelled nothing shows its pictures and the ways on") {
     Harness harness({Wide, High, 1, Situation::Failed, false});
     DOCTEST_REQUIRE(harness.find("panel.Attention") != nullptr);  // it came to the front by itself

@@ -255,6 +255,35 @@ DOCTEST_TEST_CASE("a word that a label stands for is not said to have no effect"
     for (const auto& chip : facts.chips) DOCTEST_CHECK_MESSAGE(chip.known, chip.text);
 }
 
+DOCTEST_TEST_CASE("words of an order that no model draws are not said to have no effect") {
+    ui::SentenceGround ground;
+    ground.known = {"bear", "red", "a", "golden"};
+    edit::EditRequest request;
+    request.source = "bear";
+    for (const std::string prompt : {"make the bear bigger", "two bears", "move the bear to the left",
+                                     "remove the bear", "make the bear red and bigger"}) {
+        request.prompt = prompt;
+        const auto facts = ui::facts_of(request, ground);
+        DOCTEST_CAPTURE(prompt);
+        DOCTEST_CHECK(facts.problem.empty());
+        for (const auto& chip : facts.chips) DOCTEST_CHECK_MESSAGE(chip.known, chip.text);
+    }
+    request.source = "guitar";  // which the model cannot find
+    request.prompt = "make the guitar bigger";
+    for (const auto& chip : ui::facts_of(request, ground).chips)
+        DOCTEST_CHECK_MESSAGE(chip.known == (chip.text != "guitar"), chip.text);
+    request.prompt = "a shiny guitar";
+    DOCTEST_CHECK_FALSE(ui::facts_of(request, ground).chips[1].known);
+}
+
+DOCTEST_TEST_CASE("for a source that the model does not know only things are offered") {
+    edit::EditRequest request;
+    request.source = request.prompt = "guitar";
+    ui::SentenceGround ground;
+    ground.known = {"bear", "hat", "red", "wooden", "a"};
+    DOCTEST_CHECK(ui::facts_of(request, ground).source_help == "a word it knows: bear, hat");
+}
+
 DOCTEST_TEST_CASE("an order is told as a description, and its own words are not marked as unknown") {
     edit::EditRequest request;
     request.source = "bear";

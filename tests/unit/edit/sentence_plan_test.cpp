@@ -160,7 +160,8 @@ DOCTEST_TEST_CASE("a new look of what a thing wears, holds or has is no wish for
          {std::pair{"a bear wearing a red hat", "hat"}, std::pair{"a man holding a white helmet", "helmet"},
           std::pair{"a bulldozer with a green bucket", "bucket"},
           std::pair{"the bear wears a red hat", "hat"}, std::pair{"a cat in a blue scarf", "scarf"},
-          std::pair{"a kitchen with a red oven", "oven"}}) {
+          std::pair{"a kitchen with a red oven", "oven"}, std::pair{"a vase with red flowers", "flowers"},
+          std::pair{"a man wearing black shoes", "shoes"}, std::pair{"a car with red wheels", "wheels"}}) {
         const std::string typed = prompt;
         DOCTEST_CAPTURE(typed);
         const auto wanted = request(typed, source);
@@ -173,6 +174,9 @@ DOCTEST_TEST_CASE("a new look of what a thing wears, holds or has is no wish for
     // Without a new look of the source the other thing is what is new.
     const auto beside = request("a cat with a ball", "ball");
     DOCTEST_CHECK(edit::assumed_scene(beside).things.size() == 1);
+    for (const std::string listed :
+         {"a cat with balls", "a cat with milk and balls", "blue balls", "a balls"})
+        DOCTEST_CHECK(edit::assumed_scene(request(listed, "balls")).things.size() == 1);
 }
 
 DOCTEST_TEST_CASE("what another thing wears, holds or has is told from things of their own") {
@@ -334,6 +338,12 @@ DOCTEST_TEST_CASE("pictures are asked where a look or a ground may be there alre
     DOCTEST_CHECK(edit::pictures_decide(request("a golden bear on the snow")));
     DOCTEST_CHECK(!edit::pictures_decide(request("a golden bear")));
     DOCTEST_CHECK(!edit::pictures_decide(request("paint the bear blue and give it a hat")));
+
+    const std::vector<std::string> words{"bear", "golden", "snow"};
+    DOCTEST_CHECK(edit::pictures_decide(request("a golden bear on the snow"), words));
+    auto unknown = request("a golden guitar on the snow");
+    unknown.source = "guitar";  // labelled by hand
+    DOCTEST_CHECK_FALSE(edit::pictures_decide(unknown, words));
 }
 
 }  // namespace sentence_plan_test

@@ -72,6 +72,53 @@ DOCTEST_TEST_CASE("what is typed in one go arrives whole, doubled letters and co
     DOCTEST_CHECK(read_all(queue).left == "grand");
 }
 
+DOCTEST_TEST_CASE("letters typed into a field all come with one frame, commands among them with their own") {
+    constexpr bool Typing = true;
+    constexpr int ShiftKey = 340, Shift = 1;
+    InputQueue queue;
+    const auto typed_in = [&] {
+        std::string typed;
+        for (const auto& event : queue.next_frame(Typing))
+            if (event.character) typed += static_cast<char>(event.codepoint);
+        return typed;
+    };
+    type(queue, "a bear wearing glass");
+    DOCTEST_CHECK(typed_in() == "a bear wearing glass");
+    DOCTEST_CHECK_FALSE(queue.waiting());
+
+    press(queue, ShiftKey);
+    press(queue, 'A', Shift);
+    queue.push({true, 0, 0, 0, 0, 'A'});
+    release(queue, 'A', Shift);
+    release(queue, ShiftKey);
+    type(queue, "b");
+    tap(queue, Backspace);
+    type(queue, "c");
+    press(queue, ControlKey);
+    tap(queue, 'A', Control);
+    release(queue, ControlKey);
+    type(queue, "d");
+    std::string all;
+    int frames = 0;
+    bool control_down = false;
+    for (; queue.waiting(); ++frames) {
+        DOCTEST_REQUIRE(frames < 20);
+        int backspaces = 0, selects = 0;
+        for (const auto& event : queue.next_frame(Typing)) {
+            if (event.character) all += static_cast<char>(event.codepoint);
+            if (event.key == ControlKey) control_down = event.action == 1;
+            if (event.key == Backspace) ++backspaces;
+            if (event.key == 'A' && (event.modifiers & Control) != 0) {
+                ++selects;
+                if (event.action == 1) DOCTEST_CHECK(control_down);
+            }
+        }
+        DOCTEST_CHECK(backspaces <= 1);  // down in one frame, up in the next
+        DOCTEST_CHECK(selects <= 1);
+    }
+    DOCTEST_CHECK(all == "Abcd");
+}
+
 DOCTEST_TEST_CASE("characters after Tab go to the field that Tab moves to") {
     InputQueue queue;
     type(queue, "bear");

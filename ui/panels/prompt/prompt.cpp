@@ -171,12 +171,14 @@ void draw_remarks(Context& context) {
                                   context.model.words_read, prompt.cut_at));
     draw_missing(context);
     if (prompt.refused) return;  // words alone would not help
-    const bool unknown =
-        std::any_of(prompt.chips.begin(), prompt.chips.end(), [](const Chip& chip) { return !chip.known; });
+    // The source's own remark says more.
+    const bool unknown = std::any_of(prompt.chips.begin(), prompt.chips.end(),
+                                     [](const Chip& chip) { return !chip.known && !chip.source; });
     if (unknown) coloured_text(palette::Warning, "Words the model does not know have no effect.");
     const bool chosen =
         std::any_of(prompt.chips.begin(), prompt.chips.end(), [](const Chip& chip) { return chip.target; });
-    if (!chosen) dim_text("Click the word that is new: it is the target of the edit.");
+    if (!chosen && prompt.steps.empty())
+        dim_text("Click the word that is new: it is the target of the edit.");
 }
 
 /// Instruction for a model that edits pictures.
