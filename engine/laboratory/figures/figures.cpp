@@ -282,10 +282,15 @@ private:
         return report;
     }
 
+    Json verdicts() const {
+        const auto& file = run_.parameters.verdicts;
+        return file.empty() ? Json::object() : read_json(file);
+    }
+
     std::string scans() {
         const Json report = scans_report();
         return section("Scans with truth made by hand", "gseditpro-lab eval --real SUITE",
-                       report.is_null() ? std::string() : real_tables(report));
+                       report.is_null() ? std::string() : real_tables(report, verdicts()));
     }
 
     const FiguresRun& run_;

@@ -14,6 +14,7 @@ struct FiguresParameters {
     std::string seeds = "1 2";
     std::string suites = "edits words searches encoder methods servers stability speed real";
     std::string real;
+    std::string verdicts;
 
     template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         f("seeds", self.seeds, "Seeds of the evaluations, with spaces between.");
@@ -23,6 +24,9 @@ struct FiguresParameters {
         f("real", self.real,
           "Suite of scanned scenes with truth made by hand (JSON), as eval takes it; empty = it is not "
           "measured.");
+        f("verdicts", self.verdicts,
+          "Verdicts by eye on the edits of that suite: a JSON object of tasks. Each has a text for \"word\", "
+          "\"box\" and \"click\" that begins with the verdict (\"success: a little pale\"). Empty = none.");
     }
 };
 

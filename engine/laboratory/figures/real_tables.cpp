@@ -3,9 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <functional>
+#include <map>
 #include <vector>
 
+#include "engine/base/error.h"
 #include "engine/laboratory/eval/real/real_summary.h"
 #include "engine/laboratory/figures/figure_tables.h"
 
@@ -80,16 +83,55 @@ std::string run_text(const Json& task, const char* mode) {
     return text;
 }
 
+constexpr std::array Modes{"word", "box", "click"};
+
+/// Verdict on a run; empty where there is none.
+std::string verdict_of(const Json& verdicts, const Json& task, const char* mode) {
+    const auto found = verdicts.find(task["task"].get<std::string>());
+    if (found == verdicts.end()) return {};
+    if (!found->is_object()) throw Error(ErrorCode::Malformed, "a verdict is no object of ways to label");
+    return found->value(mode, std::string());
+}
+
+/// "By eye, by word: 3 success, 1 partly.", a line per way to label.
+std::string counted_verdicts(const Json& report, const Json& verdicts) {
+    std::string text;
+    for (const auto* mode : Modes) {
+        std::map<std::string, int> counts;
+        for (const auto& task : report["tasks"])
+            if (const auto verdict = verdict_of(verdicts, task, mode); !verdict.empty())
+                ++counts[verdict.substr(0, verdict.find(':'))];
+        std::string line;
+        for (const auto& [verdict, number] : counts)
+            line += fmt::format("{}{} {}", line.empty() ? "" : ", ", number, verdict);
+        if (!line.empty()) text += fmt::format("By eye, by {}: {}.\n", mode, line);
+    }
+    return text.empty() ? text : text + "\n";
+}
+
+/// A line per task; empty without verdicts.
+std::string verdicts_table(const Json& report, const Json& verdicts) {
+    std::vector<Cells> rows{{"task", "by word, by eye", "by box, by eye", "by click, by eye"}};
+    for (const auto& task : report["tasks"]) {
+        if (!verdicts.contains(task["task"].get<std::string>())) continue;
+        rows.push_back({task["task"].get<std::string>()});
+        for (const auto* mode : Modes) rows.back().push_back(verdict_of(verdicts, task, mode));
+    }
+    return rows.size() > 1 ? "\n" + markdown_table(rows) : std::string();
+}
+
 }  // namespace
 
-std::string real_tables(const Json& report) {
+std::string real_tables(const Json& report, const Json& verdicts) {
+    if (!verdicts.is_object()) throw Error(ErrorCode::Malformed, "the verdicts are no object of tasks");
     const auto& summary = report["summary"];
     std::vector<Cells> rows{{"task", "source", "sentence", "by word", "by box", "by click"}};
     for (const auto& task : report["tasks"])
         rows.push_back({task["task"].get<std::string>(), task["source"].get<std::string>(),
                         task["prompt"].get<std::string>(), run_text(task, "word"), run_text(task, "box"),
                         run_text(task, "click")});
-    return groups_table(summary["groups"]) + scenes_text(summary) + markdown_table(rows);
+    return groups_table(summary["groups"]) + scenes_text(summary) + counted_verdicts(report, verdicts) +
+           markdown_table(rows) + verdicts_table(report, verdicts);
 }
 
 }  // namespace gse::bench

@@ -101,6 +101,17 @@ DOCTEST_TEST_CASE("Groups of scans stand in columns, and every task has a line")
         has(tables, "| bear.blue | bear | a blue bear | refused: unsure, 0.12 sure | done, IoU 0.75 |"));
 }
 
+DOCTEST_TEST_CASE("Verdicts by eye are counted, and stand in a table of their own") {
+    DOCTEST_CHECK_FALSE(has(real_tables(scans()), "by eye"));
+    const Json verdicts{{"bear.blue", {{"word", "refused"}, {"box", "partly: an ear is left out"}}},
+                        {"bear.unknown", {{"box", "success"}}}};
+    const auto tables = real_tables(scans(), verdicts);
+    DOCTEST_CHECK(has(tables, "By eye, by word: 1 refused.\nBy eye, by box: 1 partly.\n"));
+    DOCTEST_CHECK(has(tables, "| bear.blue | refused | partly: an ear is left out |  |"));
+    DOCTEST_CHECK_THROWS_AS(real_tables(scans(), Json::array()), Error);
+    DOCTEST_CHECK_THROWS_AS(real_tables(scans(), {{"bear.blue", "success"}}), Error);
+}
+
 DOCTEST_TEST_CASE("Medians leave out failed edits") {
     DOCTEST_CHECK(has(kinds_table({report(1)}), "| recolour | 2 | 60.0 % | - | 60 dB |"));
     DOCTEST_CHECK(has(words_table({report(1), report(2)}), "| pink | 2 | 50.0 % | - | 60 dB |"));
