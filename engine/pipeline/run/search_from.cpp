@@ -141,8 +141,8 @@ Located locate_part(RunContext& context, Located located, const JobControl& cont
 Located completed_by_shape(RunContext& context, Located located) {
     auto& result = located.result;
     const auto tools = context.second_look();
-    if (tools.recognition == nullptr || !located.within.empty() || language::names_ground(result.word) ||
-        result.found.rule.nature == ThingNature::Vessel ||
+    if (tools.recognition == nullptr || !tools.recognition->available() || !located.within.empty() ||
+        language::names_ground(result.word) || result.found.rule.nature == ThingNature::Vessel ||
         edit::encoder_knows(finding_of(context, located), *tools.recognition))
         return located;
     const bool worn = language::has_usual_place(result.word);
