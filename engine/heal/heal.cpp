@@ -113,6 +113,7 @@ private:
             ++healed_.carried;
         }
         rows_.swap(rest);
+        step("held parts", 1, 1);
     }
 
     /// Removes what the label left out, as far as no surface is made of it.
