@@ -73,6 +73,7 @@ const std::vector<Shot>& shots() {
              auto layout = ui::Layout::from_json(harness.shell.layout());
              layout.right_split = 0.8f;
              harness.shell.set_layout(layout.to_json());
+             harness.shell.show(PanelId::Settings);
          }},
         {"brush",
          Situation::Located,
