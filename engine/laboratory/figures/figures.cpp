@@ -113,13 +113,14 @@ private:
         return fmt::format(
             "# Figures\n\nOne command writes this page; do not edit it by hand:\n\n```sh\ngseditpro-lab "
             "figures "
-            "--seeds \"{}\" --results FOLDER --real SUITE --out engine/FIGURES.md\n```\n\nMeasured on: {}, "
+            "--seeds \"{}\" --results FOLDER --real SUITE{} --out engine/FIGURES.md\n```\n\nMeasured on: {}, "
             "{} cores, {}; "
             "the bundled model,\neverything "
             "else as it is set by default. FOLDER's results are taken, others are measured.\nGoals and "
             "words are explained in "
             "[METHOD.md](METHOD.md#metrics).\n",
-            run_.parameters.seeds, machine["processor"].get<std::string>(), machine["cores"].get<int>(),
+            run_.parameters.seeds, run_.parameters.verdicts.empty() ? "" : " \\\n    --verdicts FILE",
+            machine["processor"].get<std::string>(), machine["cores"].get<int>(),
             machine["instruction_sets"].get<std::string>());
     }
 
