@@ -93,20 +93,20 @@ std::string verdict_of(const Json& verdicts, const Json& task, const char* mode)
     return found->value(mode, std::string());
 }
 
-/// "By eye, by word: 3 success, 1 partly.", a line per way to label.
+/// How often each verdict was given, by way to label; empty without verdicts.
 std::string counted_verdicts(const Json& report, const Json& verdicts) {
-    std::string text;
-    for (const auto* mode : Modes) {
-        std::map<std::string, int> counts;
-        for (const auto& task : report["tasks"])
-            if (const auto verdict = verdict_of(verdicts, task, mode); !verdict.empty())
-                ++counts[verdict.substr(0, verdict.find(':'))];
-        std::string line;
-        for (const auto& [verdict, number] : counts)
-            line += fmt::format("{}{} {}", line.empty() ? "" : ", ", number, verdict);
-        if (!line.empty()) text += fmt::format("By eye, by {}: {}.\n", mode, line);
+    std::map<std::string, std::array<int, Modes.size()>> counts;
+    for (const auto& task : report["tasks"])
+        for (std::size_t mode = 0; mode < Modes.size(); ++mode)
+            if (const auto verdict = verdict_of(verdicts, task, Modes[mode]); !verdict.empty())
+                ++counts[verdict.substr(0, verdict.find(':'))][mode];
+    if (counts.empty()) return {};
+    std::vector<Cells> rows{{"by eye", "by word", "by box", "by click"}};
+    for (const auto& [verdict, numbers] : counts) {
+        rows.push_back({verdict});
+        for (const int number : numbers) rows.back().push_back(std::to_string(number));
     }
-    return text.empty() ? text : text + "\n";
+    return markdown_table(rows) + "\n";
 }
 
 /// A line per task; empty without verdicts.
