@@ -592,6 +592,7 @@ Located locate_by_label(RunContext& context, const Located& located, std::vector
 Located with_label(const Located& located, const std::vector<std::uint8_t>& bits) {
     Located corrected = located;
     corrected.result.label.bits = std::make_shared<const std::vector<std::uint8_t>>(bits);
+    corrected.label_doubt.clear();
     corrected.key = key_of(corrected);
     return corrected;
 }

@@ -456,6 +456,9 @@ DOCTEST_TEST_CASE("stages: each is a value that names what it follows from, and 
     DOCTEST_CHECK(*located.result.label.bits == bits);  // a value stays what it is
     DOCTEST_CHECK(locate_again(context, again, located.recipe, {}).key == located.key);
     DOCTEST_CHECK(with_label(located, std::vector<std::uint8_t>(bits.size(), 1)).key != located.key);
+    Located doubtful = located;
+    doubtful.label_doubt = "look at it";
+    DOCTEST_CHECK(with_label(doubtful, bits).label_doubt.empty());  // who corrects it has looked
 
     const auto plan = plan_of(context, located, recipe);
     const Edited edited = edit_scene(context, located, plan, recipe, {}, {});
